@@ -32,7 +32,7 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from);
 
 /// Call end(data) when the arena is destroyed, before its memory goes; the latest first. For what a
 /// library or the system allocates.
-void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);
+void ct_arena_on_destroy(struct ct_arena *a, void (*end)(void *data), void *data);
 
 /// size bytes, zeroed, at a multiple of 16; longer ones at one of 64. Cost: O(size).
 void *ct_arena_alloc(struct ct_arena *a, size_t size);
@@ -40,7 +40,7 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size);
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size);
 /// size bytes, zeroed, from the start of a line of the cache: what vectors of four numbers are read from that lie side by
 /// side, half of which would reach over two lines elsewhere.
-void *ct_arena_line(struct ct_arena *a, size_t size);
+void *ct_arena_alloc_cache_line(struct ct_arena *a, size_t size);
 char *ct_arena_strdup(struct ct_arena *a, const char *s);
 char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n);
 char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)

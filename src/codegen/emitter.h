@@ -70,14 +70,14 @@ void ct_emitter_release(struct ct_emitter *e, const uint32_t *v, uint32_t n);
 /// Pins come off, and values of an instruction that are not read again leave.
 void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i);
 /// All leave their registers, those that are read again for memory.
-void ct_emitter_forget(struct ct_emitter *e);
+void ct_emitter_spill_all(struct ct_emitter *e);
 /// Reads of all values, none of them done.
 void ct_emitter_list_uses(struct ct_emitter *e);
 void ct_emitter_instruction(struct ct_emitter *e, uint32_t at);
 /// Reads of v before a place in the order are done.
-void ct_emitter_pass(struct ct_emitter *e, uint32_t v, uint32_t at);
+void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at);
 /// Places in the work array of values that are dead now.
-void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n);
+void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n);
 
 // ---- x86_angles.c -----------------------------------------------------------------------------
 

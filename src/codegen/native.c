@@ -291,7 +291,7 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     f->nwork = code.nwork;
     f->ntable = code.ntable;
     f->table = copy_table(a, &code);
-    ct_arena_at_end(a, unmap, f); // first: it may run out of memory
+    ct_arena_on_destroy(a, unmap, f); // first: it may run out of memory
     const bool ok = map(f, code.byte, code.nbyte);
     ct_arena_destroy(scratch);
     return ok ? f : NULL;

@@ -53,7 +53,7 @@ struct ct_copy {
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
     uint32_t strip;                // rows of a strip; 0: all
-    bool is_side_by_side;          // rows may be done together
+    bool is_vectorized;            // rows may be done together
     uint32_t nslot, *slot;         // instructions of a row that are its own, ascending
     struct ct_operand *operand;    // (3 x nslot)
     struct ct_operand *result;     // (nslot) where it is kept; CT_REACH_ROW: nowhere

@@ -82,7 +82,7 @@ struct ct_repetition {
     uint32_t keep_first, keep_behind; // see leave_ends
 
     // rows side by side, see choose_lanes
-    bool is_side_by_side;
+    bool is_vectorized;
     unsigned char *part; // (period) the loop that it is in; npart - 1: one row at a time
     uint32_t npart, nlate;
 

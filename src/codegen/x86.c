@@ -54,7 +54,7 @@ static void leave_register(struct ct_emitter *e, uint32_t v)
 }
 
 // Reads of v before a place in the order are done.
-void ct_emitter_pass(struct ct_emitter *e, uint32_t v, uint32_t at)
+void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at)
 {
     while (next_use(e, v) < at)
         e->next[v]++;
@@ -355,7 +355,7 @@ static void emit_operation(struct ct_emitter *e, const struct ct_instruction *i)
 }
 
 // Places in the work array of values that are dead now.
-void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n)
+void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
         if (next_use(e, v[k]) == none && is_spilled(e, v[k])) {
@@ -391,7 +391,7 @@ void ct_emitter_instruction(struct ct_emitter *e, uint32_t at)
 {
     const struct ct_instruction *i = &e->l->ins[e->order[at]];
     for (uint32_t k = 0; k < i->narg; k++) {
-        ct_emitter_pass(e, i->arg[k], at + 1);
+        ct_emitter_advance_uses(e, i->arg[k], at + 1);
         if (e->reg[i->arg[k]] >= 0)
             e->pinned |= 1u << e->reg[i->arg[k]];
     }
@@ -403,11 +403,11 @@ void ct_emitter_instruction(struct ct_emitter *e, uint32_t at)
         keep_result(e, i->res[r]);
     }
     ct_emitter_unpin(e, i);
-    ct_emitter_give_up(e, i->arg, i->narg);
-    ct_emitter_give_up(e, i->res, i->nres);
+    ct_emitter_free_slots(e, i->arg, i->narg);
+    ct_emitter_free_slots(e, i->res, i->nres);
 }
 
-void ct_emitter_forget(struct ct_emitter *e)
+void ct_emitter_spill_all(struct ct_emitter *e)
 {
     for (int r = 0; r < CT_NREGISTER; r++) {
         const uint32_t v = e->content[r];
@@ -444,14 +444,14 @@ void ct_emitter_list_uses(struct ct_emitter *e)
 
 // Instructions from which on loops are sought: straight code of more is not held by the nearest cache of code, 32 KiB, and
 // fetching it takes longer than what it does.
-enum { LEAST_ROLLED = 4000 };
+enum { LEAST_REROLLED = 4000 };
 
 static void roll_up(struct ct_emitter *e)
 {
     bool is_alone[CT_NKIND];
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
-    if (e->norder < LEAST_ROLLED)
+    if (e->norder < LEAST_REROLLED)
         return;
     e->reroll
         = ct_reroll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,

@@ -118,7 +118,7 @@ static struct ct_home gather_angles(struct ct_emitter *e)
         const int r = ct_emitter_load(e, wave(e, k)->arg[0]);
         ct_put_store(&e->code,
                      ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, first.slot + k}), r);
-        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        ct_emitter_advance_uses(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
         ct_emitter_unpin(e, wave(e, k));
     }
     return first;
@@ -145,8 +145,8 @@ static void place_waves(struct ct_emitter *e, uint32_t sines, uint32_t cosines)
                              ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, o - 1}),
                              ct_emitter_load(e, i->res[r]));
         ct_emitter_unpin(e, i);
-        ct_emitter_give_up(e, i->arg, 1);
-        ct_emitter_give_up(e, i->res, i->nres);
+        ct_emitter_free_slots(e, i->arg, 1);
+        ct_emitter_free_slots(e, i->res, i->nres);
     }
 }
 
@@ -159,10 +159,10 @@ void ct_emitter_angles(struct ct_emitter *e)
     const bool copied = !are_side_by_side(e);
     const struct ct_home angles = copied ? gather_angles(e) : inputs;
     for (uint32_t k = 0; k < e->nangle; k++)
-        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        ct_emitter_advance_uses(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
     const uint32_t sines = e->nwork, cosines = sines + e->nangle;
     e->nwork += 2 * e->nangle;
-    ct_emitter_forget(e);
+    ct_emitter_spill_all(e);
     ct_put_vzeroupper(c);
     ct_put_address(c, CT_RDI, ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, sines}));
     ct_put_address(c, CT_RSI, ct_emitter_memory(e, angles));

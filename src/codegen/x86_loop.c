@@ -183,7 +183,7 @@ static void fetch_next_row(struct body *b)
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
 {
-    const int32_t together = loop->is_side_by_side ? CT_ROWS_TOGETHER : 1;
+    const int32_t together = loop->is_vectorized ? CT_ROWS_TOGETHER : 1;
     struct body b = {.e = *e, .together = together};
     b.e.l = &b.l;
     b.e.stream = b.stream;
@@ -233,14 +233,14 @@ static void pass_loop(struct ct_emitter *e, const struct ct_loop *loop)
     for (uint32_t at = loop->first; at < end; at++) {
         const struct ct_instruction *i = &e->l->ins[e->order[at]];
         for (uint32_t k = 0; k < i->narg; k++)
-            ct_emitter_pass(e, i->arg[k], end);
-        ct_emitter_give_up(e, i->arg, i->narg);
+            ct_emitter_advance_uses(e, i->arg[k], end);
+        ct_emitter_free_slots(e, i->arg, i->narg);
     }
 }
 
 static void emit_part(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
 {
-    if (loop->is_side_by_side)
+    if (loop->is_vectorized)
         emit_side_by_side(e, loop, rows);
     else
         emit_rows(e, loop, rows, true, 0);
@@ -291,7 +291,7 @@ static void emit_copies(struct ct_emitter *e, const struct ct_loop *loop)
         e->pinned = 0;
         ct_emitter_release(e, &loop->copy[i].value, 1);
     }
-    ct_emitter_forget(e);
+    ct_emitter_spill_all(e);
 }
 
 // The loops of one stretch. Returns the one behind them.

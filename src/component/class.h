@@ -170,11 +170,11 @@ struct ct_component_class {
 ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
                         int standard);
 /// One more rotation, about `axis` in the frame turned so far.
-void ct_motion_turn(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
+void ct_motion_add_rotation(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
 /// Three translational rows: the origins coincide.
-void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m);
+void ct_motion_lock_translation(struct ct_exs *x, struct ct_motion *m);
 /// Three rotational rows (y|z) (z|x) (x|y): the axes coincide.
-void ct_motion_hold_turn(struct ct_exs *x, struct ct_motion *m);
+void ct_motion_lock_rotation(struct ct_exs *x, struct ct_motion *m);
 /// The next coordinate is a length along a direction of `from`.
 void ct_motion_measure_length(struct ct_motion *m, ct_ex3 along);
 /// The next coordinate is the angle about n; across: a unit vector normal to n.
@@ -182,7 +182,7 @@ void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
 
 /// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
 /// value: of all symbols, decides which coordinate axis to start from.
-void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
+void ct_axes_normal(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
 
 /// The choices of a WORD or WORDS key as n texts in arena a.
 const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, size_t *n);

@@ -46,8 +46,8 @@ bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *w
 bool ct_read_shape(struct ct_reader *r, const struct ct_node *node, enum ct_node_kind kind,
                    const char *wanted);
 /// A list with least..most entries.
-bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
-                    const char *wanted);
+bool ct_read_list(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
+                  const char *wanted);
 /// One of n words; its index, or -1 after an error. what: "interpolation".
 int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *what,
                  const char *const *names, size_t n);
@@ -60,10 +60,10 @@ bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, cons
 bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p,
                             const char *sort);
 /// Suggestions cost a pass over all names each; after many errors nobody reads them.
-bool ct_read_suggests(const struct ct_reader *r);
+bool ct_read_wants_suggestions(const struct ct_reader *r);
 /// "; did you mean 'x'?" or "".
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
-                         size_t n);
+const char *ct_read_suggestion(struct ct_reader *r, const char *name, const char *const *names,
+                               size_t n);
 
 // ---- values ------------------------------------------------------------------------------------------
 
@@ -73,15 +73,15 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
 /// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
 bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
 /// Room for n expressions and their places, all zero.
-void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n);
+void ct_read_alloc(struct ct_reader *r, struct ct_value *v, size_t n);
 /// The entries of a list as expressions, each with the key's flags and unit.
 bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *v);
 bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex3 *v, struct ct_mark at[3]);
 bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis);
-bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                   struct ct_turn **turn, size_t *nturn);
+bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                       struct ct_turn **turn, size_t *nturn);
 bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame);
 /// A value of any kind that does not depend on coordinate counts.
 bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
@@ -109,7 +109,7 @@ const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_fami
                                                const struct ct_node_pair *p, const char *sort,
                                                const char *standard);
 /// Room for the values of all keys, none given.
-void ct_read_clear(struct ct_reader *r, struct ct_instance *self);
+void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's
 /// keys count.
 bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,

@@ -270,7 +270,7 @@ static bool fill_elements(const struct work *w)
 // ---- the section along the axis -------------------------------------------------------------------------------
 
 // Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
-enum { NLOOK = 5 };
+enum { NSAMPLE = 5 };
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
 {
@@ -294,16 +294,16 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
 {
     const struct ct_value *v = get(w, key);
     const char *wanted = strict ? "greater than 0" : "at least 0";
-    double point[NLOOK], weight[NLOOK];
+    double point[NSAMPLE], weight[NSAMPLE];
     if (!v->given || v->is_wrong || v->n <= i)
         return true;
     const bool varies = is_along(w, v, i);
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     double from = 0;
     for (int k = 0; k < (varies ? w->beam->nelement : 1); k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
         const double ends[] = {from, to};
-        for (int p = 0; p < (varies ? NLOOK : 1); p++) {
+        for (int p = 0; p < (varies ? NSAMPLE : 1); p++) {
             const double at = from + point[p] * (to - from), value = value_at(w, v, i, at);
             if (!(value > 0 || (!strict && value == 0)))
                 return wrong_along(w, key, i, at, value, wanted);
@@ -399,17 +399,17 @@ static void cut_elements(const struct work *w)
 static bool vanishes(const struct work *w, const char *key)
 {
     const struct ct_value *v = get(w, key);
-    double point[NLOOK], weight[NLOOK];
+    double point[NSAMPLE], weight[NSAMPLE];
     if (!v->given || v->is_wrong)
         return false;
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     double from = 0;
     for (int k = 0; k < (is_along(w, v, 0) ? w->beam->nelement : 1); k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
         int nzero = 0;
-        for (int p = 0; p < NLOOK; p++)
+        for (int p = 0; p < NSAMPLE; p++)
             nzero += value_at(w, v, 0, from + point[p] * (to - from)) == 0;
-        if (nzero == NLOOK)
+        if (nzero == NSAMPLE)
             return true;
         from = to;
     }
@@ -428,13 +428,13 @@ static unsigned find_stiff(const struct work *w)
 static bool check_nu_along(const struct work *w)
 {
     const struct ct_value *v = get(w, "nu");
-    double point[NLOOK], weight[NLOOK], from = 0;
+    double point[NSAMPLE], weight[NSAMPLE], from = 0;
     if (!v->given || v->is_wrong || !is_along(w, v, 0))
         return true;
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     for (int k = 0; k < w->beam->nelement; k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
-        for (int p = 0; p < NLOOK; p++) {
+        for (int p = 0; p < NSAMPLE; p++) {
             const double at = from + point[p] * (to - from), nu = value_at(w, v, 0, at);
             if (!(nu > -1 && nu <= 0.5))
                 return wrong_along(w, "nu", 0, at, nu, "between -1 and 0.5");

@@ -7,7 +7,7 @@ static bool read_elements(struct ct_reader *r, const struct ct_node *node,
     enum { MOST = 10000 };
     if (node->kind != CT_NODE_LIST)
         return ct_read_count(r, node, key->name, 1, &v->count);
-    if (!ct_read_length(r, node, 1, MOST, "a list of the places where elements end"))
+    if (!ct_read_list(r, node, 1, MOST, "a list of the places where elements end"))
         return false;
     v->count = (long)node->n;
     return ct_read_items(r, node, key, v);
@@ -22,7 +22,7 @@ static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
         return v->count >= 0;
     }
     v->count = 3;
-    return ct_read_length(r, node, 3, 3, "true, false or a list of 3")
+    return ct_read_list(r, node, 3, 3, "true, false or a list of 3")
         && ct_read_items(r, node, key, v);
 }
 
@@ -33,7 +33,7 @@ static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
     if (!ct_read_shape(r, node, CT_NODE_MAP, "{alpha: a, beta: b}"))
         return false;
     bool ok = ct_read_keys(r, node, "'damping' of a beam", names, COUNT(names));
-    ct_read_room(r, v, COUNT(names));
+    ct_read_alloc(r, v, COUNT(names));
     for (size_t i = 0; i < COUNT(names); i++) {
         const struct ct_node *item = ct_node_get(node, names[i]);
         double value;

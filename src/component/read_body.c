@@ -97,7 +97,7 @@ static bool check_mass(struct ct_reader *r, const struct ct_body *b,
 }
 
 // One rotation in the plane of i and j makes A_ij vanish.  (golub2013, 8.5)
-static void rotate_away(double A[3][3], int i, int j)
+static void jacobi_rotation(double A[3][3], int i, int j)
 {
     const int k = 3 - i - j;
     if (A[i][j] == 0)
@@ -126,7 +126,7 @@ static void principal_moments(const double I[6], double lam[3])
     double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
     for (int n = 0; n < SWEEPS; n++)
         for (int k = 2; k >= 0; k--)
-            rotate_away(A, k == 0, k == 2 ? 1 : 2);
+            jacobi_rotation(A, k == 0, k == 2 ? 1 : 2);
     for (int i = 0; i < 3; i++)
         lam[i] = A[i][i];
     order(&lam[0], &lam[1]);
@@ -210,7 +210,7 @@ static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_no
     self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
+    ct_read_alloc_values(r, self);
     if (self->cls->body == CT_BODY_BEAM)
         return ct_read_beam(r, b, node);
     b->is_particle = self->cls->body == CT_BODY_PARTICLE;

@@ -11,12 +11,12 @@
 
 static const char *nearest_frame(struct ct_reader *r, const char *name)
 {
-    if (!ct_read_suggests(r))
+    if (!ct_read_wants_suggestions(r))
         return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
     for (size_t i = 0; i < r->m->nframe; i++)
         names[i] = r->m->frame[i].name;
-    return ct_read_near(r, name, names, r->m->nframe);
+    return ct_read_suggestion(r, name, names, r->m->nframe);
 }
 
 static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at)
@@ -60,8 +60,8 @@ static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark
 
 // Inside its own expressions a custom joint's coordinates go by their own names: in its motion they are
 // the arguments, in its efforts what J.q1 ... are elsewhere.
-static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
+static bool find_joint_coordinate(struct ct_reader *r, const char *name, ct_ex *e,
+                                  const char **why, enum ct_name_result *result)
 {
     const struct ct_instance *custom = r->local_of;
     for (int i = 0; custom && i < custom->ncoord; i++) {
@@ -84,8 +84,8 @@ static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const ch
 
 // In its section and its points a beam knows its own length, in its section the place along it too;
 // there these names go before parameters.
-static bool find_along(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
+static bool find_beam_name(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
+                           enum ct_name_result *result)
 {
     if (!r->beam)
         return false;
@@ -114,7 +114,8 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
 {
     struct ct_reader *r = user;
     enum ct_name_result result;
-    if (find_local(r, name, e, why, &result) || find_along(r, name, e, why, &result))
+    if (find_joint_coordinate(r, name, e, why, &result)
+        || find_beam_name(r, name, e, why, &result))
         return result;
     if (strcmp(name, "t") == 0) {
         *e = r->m->time;
@@ -140,7 +141,7 @@ static bool signal_exists(const struct ct_reader *r, const char *first)
 
 static const char *nearest_subject(struct ct_reader *r, const char *first)
 {
-    if (!ct_read_suggests(r))
+    if (!ct_read_wants_suggestions(r))
         return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
     size_t n = r->ncomponent;
@@ -151,7 +152,7 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
     names[n++] = "system";
     names[n++] = "energy";
     names[n++] = "constraint";
-    return ct_read_near(r, first, names, n);
+    return ct_read_suggestion(r, first, names, n);
 }
 
 // The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two letters.
@@ -298,7 +299,7 @@ bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flag
                   const char *unit, ct_ex3 *v, struct ct_mark at[3])
 {
     *v = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
-    if (!ct_read_length(r, node, 3, 3, "a list of 3"))
+    if (!ct_read_list(r, node, 3, 3, "a list of 3"))
         return false;
     bool ok = true;
     for (int i = 0; i < 3; i++) {
@@ -309,7 +310,7 @@ bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flag
     return ok;
 }
 
-void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n)
+void ct_read_alloc(struct ct_reader *r, struct ct_value *v, size_t n)
 {
     v->n = n;
     v->e = CT_NEWN(r->a, ct_ex, n);
@@ -321,7 +322,7 @@ void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n)
 bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *v)
 {
-    ct_read_room(r, v, node->n);
+    ct_read_alloc(r, v, node->n);
     bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
         v->at[i] = node->item[i]->mark;
@@ -331,7 +332,7 @@ bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct
 }
 
 // A count decides about the equations: keep account of the parameters in it.
-static bool read_deciding(struct ct_reader *r, ct_ex e, double *v)
+static bool read_structural_number(struct ct_reader *r, ct_ex e, double *v)
 {
     struct ct_model *m = r->m;
     if (!m->decided) {
@@ -351,7 +352,7 @@ bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *
     ct_ex e;
     double v;
     *count = least;
-    if (!ct_read_expr(r, node, 0, "", &e) || !read_deciding(r, e, &v))
+    if (!ct_read_expr(r, node, 0, "", &e) || !read_structural_number(r, e, &v))
         return false;
     // an integer computed from parameters: n * eps of round-off
     if (fabs(v - round(v)) > 1e-9 * fabs(v))

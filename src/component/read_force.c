@@ -53,7 +53,7 @@ static bool read_force(struct ct_reader *r, struct ct_instance *self,
     self->cls = ct_read_class(r, CT_FAMILY_FORCE, &p, "force", NULL);
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
+    ct_read_alloc_values(r, self);
     bool ok = ct_read_component_keys(r, self, node, "force", false);
     ok &= ct_read_own_values(r, self, node);
     struct ct_mark at = self->mark;

@@ -172,7 +172,7 @@ static bool read_entries(struct ct_reader *r, const struct ct_node *node,
     if (alone && n != 1)
         return ct_error(r->ctx, node->mark, CT_E_LENGTH, "found %s where %s is wanted",
                         ct_node_what(node), wanted);
-    if (!alone && !ct_read_length(r, node, n, n, wanted))
+    if (!alone && !ct_read_list(r, node, n, n, wanted))
         return false;
     v->n = n;
     v->e = CT_NEWN(r->a, ct_ex, n);
@@ -263,7 +263,7 @@ static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
     v->given = true;
     v->mark = p->value->mark;
     v->n = 1;
-    return ct_read_turns(r, p->value, 0, &v->turn, &v->nturn);
+    return ct_read_rotations(r, p->value, 0, &v->turn, &v->nturn);
 }
 
 static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_node_pair *p)
@@ -404,7 +404,7 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
     self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint", NULL);
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
+    ct_read_alloc_values(r, self);
     struct joint j
         = {.self = self, .value = (struct ct_value *)(uintptr_t)self->value, .node = node};
     const bool framed = has_frames(self->cls);
@@ -431,11 +431,11 @@ int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
     if (joint >= 0)
         return joint;
     const char *near = "";
-    if (ct_read_suggests(r)) {
+    if (ct_read_wants_suggestions(r)) {
         const char **names = CT_NEWN(r->ctx->scratch, const char *, m->njoint);
         for (size_t i = 0; i < m->njoint; i++)
             names[i] = m->joint[i].name;
-        near = ct_read_near(r, name, names, m->njoint);
+        near = ct_read_suggestion(r, name, names, m->njoint);
     }
     ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name, near);
     return -1;

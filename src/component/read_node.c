@@ -5,16 +5,16 @@
 
 #include <string.h>
 
-bool ct_read_suggests(const struct ct_reader *r)
+bool ct_read_wants_suggestions(const struct ct_reader *r)
 {
     enum { MOST = 200 };
     return r->ctx->nerror < MOST;
 }
 
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
-                         size_t n)
+const char *ct_read_suggestion(struct ct_reader *r, const char *name, const char *const *names,
+                               size_t n)
 {
-    const char *near = ct_read_suggests(r) ? ct_nearest(name, names, n) : NULL;
+    const char *near = ct_read_wants_suggestions(r) ? ct_nearest(name, names, n) : NULL;
     return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
 }
 
@@ -40,13 +40,13 @@ bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *w
         if (!known)
             ok = ct_error(r->ctx, node->pair[i].mark, CT_E_KEY_UNKNOWN, "%s has no key '%s'%s",
                           what, node->pair[i].key,
-                          ct_read_near(r, node->pair[i].key, names, n));
+                          ct_read_suggestion(r, node->pair[i].key, names, n));
     }
     return ok;
 }
 
-bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
-                    const char *wanted)
+bool ct_read_list(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
+                  const char *wanted)
 {
     if (!ct_read_shape(r, node, CT_NODE_LIST, wanted))
         return false;
@@ -69,7 +69,7 @@ int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *wh
     for (size_t i = 1; i < n; i++)
         list = ct_arena_printf(r->ctx->scratch, "%s, %s", list, names[i]);
     ct_error(r->ctx, node->mark, CT_E_WORD, "unknown %s '%s'%s (known: %s)", what, node->text,
-             ct_read_near(r, node->text, names, n), list);
+             ct_read_suggestion(r, node->text, names, n), list);
     return -1;
 }
 

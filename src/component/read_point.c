@@ -47,7 +47,7 @@ static bool read_point(struct ct_reader *r, const struct ct_node *node, struct c
         ok &= read_place(r, at, f);
     if (rotate) {
         size_t n;
-        ok &= ct_read_turns(r, rotate, 0, &f->turn, &n);
+        ok &= ct_read_rotations(r, rotate, 0, &f->turn, &n);
         f->nturn = (int)n;
     }
     if (!at && !rotate)

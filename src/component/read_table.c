@@ -90,7 +90,7 @@ static bool find_column(struct ct_reader *r, const struct ct_node *node,
     }
     return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' has no column '%s'%s",
                     csv->file, name,
-                    ct_read_near(r, name, names, csv->nrow ? csv->ncolumn : 0));
+                    ct_read_suggestion(r, name, names, csv->nrow ? csv->ncolumn : 0));
 }
 
 // A number with blanks around it and nothing else.

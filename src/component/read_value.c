@@ -49,7 +49,7 @@ bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
             axis->e[i] = CT_EX_ONE;
         return i >= 0;
     }
-    if (!ct_read_length(r, node, 3, 3, "x, y, z or a list of 3"))
+    if (!ct_read_list(r, node, 3, 3, "x, y, z or a list of 3"))
         return false;
     return ct_read_vec3(r, node, 0, NULL, axis, NULL) && normalise(r, node, axis);
 }
@@ -57,7 +57,7 @@ bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
 static bool read_turn(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                       struct ct_turn *turn)
 {
-    if (!ct_read_length(r, node, 2, 2, "[axis, angle]"))
+    if (!ct_read_list(r, node, 2, 2, "[axis, angle]"))
         return false;
     const bool ok = ct_read_axis(r, node->item[0], &turn->axis);
     return ct_read_expr(r, node->item[1], flags, "rad", &turn->angle) && ok;
@@ -70,13 +70,13 @@ static bool is_one_turn(const struct ct_node *node)
         || (node->n == 2 && node->item[1]->kind != CT_NODE_LIST);
 }
 
-bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                   struct ct_turn **turn, size_t *nturn)
+bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                       struct ct_turn **turn, size_t *nturn)
 {
     enum { MOST = 1000 };
     *nturn = 0;
     *turn = NULL;
-    if (!ct_read_length(r, node, 1, MOST, "[axis, angle] or a list of such"))
+    if (!ct_read_list(r, node, 1, MOST, "[axis, angle] or a list of such"))
         return false;
     const bool one = is_one_turn(node);
     const size_t n = one ? 1 : node->n;
@@ -93,7 +93,7 @@ bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned fla
 static bool read_scalar(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_key *key, struct ct_value *v)
 {
-    ct_read_room(r, v, 1);
+    ct_read_alloc(r, v, 1);
     v->at[0] = node->mark;
     return ct_read_expr(r, node, key->flags, key->unit, &v->e[0]);
 }
@@ -107,7 +107,7 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
         = key->least == key->most
             ? ct_arena_printf(r->ctx->scratch, "a list of %d", key->most)
             : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
-    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+    if (!ct_read_list(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     return ct_read_items(r, node, key, v);
 }
@@ -129,8 +129,8 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
 static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
                       struct ct_value *v)
 {
-    ct_read_room(r, v, 3 * n);
-    if (n == 2 && !ct_read_length(r, node, 2, 2, "a list of two axes"))
+    ct_read_alloc(r, v, 3 * n);
+    if (n == 2 && !ct_read_list(r, node, 2, 2, "a list of two axes"))
         return false;
     bool ok = true;
     for (size_t k = 0; k < n; k++) {
@@ -148,10 +148,10 @@ static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
 static bool read_texts(struct ct_reader *r, const struct ct_node *node,
                        const struct ct_key *key, const char *wanted, struct ct_value *v)
 {
-    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+    if (!ct_read_list(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     const char **name = CT_NEWN(r->a, const char *, node->n);
-    ct_read_room(r, v, node->n);
+    ct_read_alloc(r, v, node->n);
     v->name = name;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
@@ -234,7 +234,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
         return read_scalar(r, node, key, v);
     case CT_VALUE_VEC3: {
         ct_ex3 e;
-        ct_read_room(r, v, 3);
+        ct_read_alloc(r, v, 3);
         const bool ok = ct_read_vec3(r, node, key->flags, key->unit, &e, v->at);
         for (int i = 0; i < 3; i++)
             v->e[i] = e.e[i];
@@ -249,7 +249,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
     case CT_VALUE_TURNS:
         if (node->kind == CT_NODE_LIST && node->n == 0 && key->least == 0)
             return true;
-        return ct_read_turns(r, node, key->flags, &v->turn, &v->nturn);
+        return ct_read_rotations(r, node, key->flags, &v->turn, &v->nturn);
     case CT_VALUE_FRAME:
         return ct_read_frame(r, node, &v->frame);
     case CT_VALUE_NAMES:

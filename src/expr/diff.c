@@ -133,7 +133,7 @@ ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
     case CT_OP_GT:
     case CT_OP_GE:
     case CT_OP_EQ:
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return CT_EX_ZERO;

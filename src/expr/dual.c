@@ -136,7 +136,7 @@ double ct_op_partial(enum ct_op op, int i, double a, double b, double v)
     case CT_OP_GT:
     case CT_OP_GE:
     case CT_OP_EQ:
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return 0;

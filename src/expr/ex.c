@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-const struct ct_op_info ct_op_info[CT_NOP] = {
+const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 #define OP(op, narg, name, value) {name, narg},
 #include "expr/ops.def"
 #undef OP

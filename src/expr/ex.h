@@ -34,13 +34,13 @@ enum ct_op {
 #define OP(op, narg, name, value) op,
 #include "expr/ops.def"
 #undef OP
-    CT_NOP
+    CT_OP_COUNT
 };
 
 extern const struct ct_op_info {
     const char *name;
     int narg;
-} ct_op_info[CT_NOP];
+} ct_op_info[CT_OP_COUNT];
 
 /// What a symbol stands for. The kind decides who gives its value at run time.
 enum ct_sym_kind {

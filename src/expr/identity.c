@@ -224,10 +224,10 @@ static bool merge_factors(struct ct_collector *c, struct ct_poly p, const struct
     const struct ct_poly a = c->angle[c->atom[f].angle - 1].argument;
     const struct ct_poly b = c->angle[c->atom[g].angle - 1].argument;
     const struct ct_poly arg = ct_poly_add(&c->ps, a, same == sine ? 1 : -1, b);
-    const struct ct_poly wave = ct_collector_trig(c, sine ? CT_OP_SIN : CT_OP_COS, arg);
+    const struct ct_poly harmonic = ct_collector_trig(c, sine ? CT_OP_SIN : CT_OP_COS, arg);
     const struct ct_term scale = {t->c, fmax(t->size, (*partner)->size), rest};
     struct ct_term room = scale;
-    *merged = ct_poly_mul(&c->ps, (struct ct_poly){&room, 1}, wave);
+    *merged = ct_poly_mul(&c->ps, (struct ct_poly){&room, 1}, harmonic);
     return true;
 }
 
@@ -366,20 +366,20 @@ static struct ct_poly expand_angles(struct ct_collector *c, struct ct_poly p)
 
 // ---- products as sums of waves ------------------------------------------------------------------
 
-struct wave {
+struct harmonic {
     double c;
     bool is_sine;
     struct ct_poly argument;
 };
 
 // w times sine or cosine of `by`: two waves of half the height.
-static void split_wave(struct ct_polys *ps, struct wave w, const struct ct_atom *f,
-                       struct ct_poly by, struct wave out[2])
+static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_atom *f,
+                       struct ct_poly by, struct harmonic out[2])
 {
     const bool sine = w.is_sine != f->is_sine;
     const double half = w.c / 2;
-    out[0] = (struct wave){half, sine, ct_poly_add(ps, w.argument, 1, by)};
-    out[1] = (struct wave){half, sine, ct_poly_add(ps, w.argument, -1, by)};
+    out[0] = (struct harmonic){half, sine, ct_poly_add(ps, w.argument, 1, by)};
+    out[1] = (struct harmonic){half, sine, ct_poly_add(ps, w.argument, -1, by)};
     if (w.is_sine && f->is_sine) // sin a sin b = (cos(a - b) - cos(a + b)) / 2
         out[0].c = -half;
     else if (f->is_sine) // cos a sin b = (sin(a + b) - sin(a - b)) / 2
@@ -404,9 +404,9 @@ static int degree(const struct ct_collector *c, uint32_t mono)
 
 static struct ct_poly waves_of_term(struct ct_collector *c, const struct ct_term *t)
 {
-    struct wave w[2 << LARGEST_DEGREE], split[2];
+    struct harmonic w[2 << LARGEST_DEGREE], split[2];
     size_t n = 1;
-    w[0] = (struct wave){t->c, false, {NULL, 0}};
+    w[0] = (struct harmonic){t->c, false, {NULL, 0}};
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_power power = ct_mono_power(&c->ps, t->mono, k);
         const struct ct_atom f = c->atom[power.atom];
@@ -426,7 +426,7 @@ static struct ct_poly waves_of_term(struct ct_collector *c, const struct ct_term
 }
 
 // p itself if it has too many.
-static struct ct_poly waves(struct ct_collector *c, struct ct_poly p)
+static struct ct_poly harmonics(struct ct_collector *c, struct ct_poly p)
 {
     size_t n = 0;
     for (size_t k = 0; k < p.n; k++) {
@@ -494,8 +494,8 @@ static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum eff
     if (expanded.t != p.t)
         best = shorter(c, best, merge(c, expanded));
     // waves of what is merged: fewer terms, often within the limit where p is not
-    best = shorter(c, best, halves(c, waves(c, p)));
-    return shorter(c, best, halves(c, waves(c, best)));
+    best = shorter(c, best, halves(c, harmonics(c, p)));
+    return shorter(c, best, halves(c, harmonics(c, best)));
 }
 
 // The terms carry their common factor; it is taken out and put back.

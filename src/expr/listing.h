@@ -18,7 +18,7 @@
 
 /// Operators that no node has. `w[res]` are the results.
 enum {
-    CT_OP_SINCOS = CT_NOP, // res[0] = sin(a), res[1] = cos(a)
+    CT_OP_SINCOS = CT_OP_COUNT, // res[0] = sin(a), res[1] = cos(a)
     // the same where the body has several angles: by ct_sincos (sincos.h), for which back ends take many at once
     CT_OP_ANGLE_SIN,
     CT_OP_ANGLE_COS,

@@ -70,9 +70,9 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
-double ct_vector_size_of_many(const double *v, size_t n)
+double ct_vector_max_norm_many(const double *v, size_t n)
 {
-    return ct_vector_size_of_few(v, n);
+    return ct_vector_max_norm_few(v, n);
 }
 
 double ct_vector_dot(const double *x, const double *y, size_t n)
@@ -154,7 +154,7 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
     }
 }
 
-void ct_cholesky_back(double *x, const double *L, int n, int lda)
+void ct_cholesky_solve_transposed(double *x, const double *L, int n, int lda)
 {
     int info;
     const int one = 1, ldx = max_int(1, n);

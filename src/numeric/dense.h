@@ -18,9 +18,9 @@
 /// Largest |v_i| of n; 0 where n is 0. What is no number is passed over.
 double ct_vector_largest(const double *v, size_t n);
 /// The same of n numbers that are many; what is no number is the largest.
-double ct_vector_size_of_many(const double *v, size_t n);
+double ct_vector_max_norm_many(const double *v, size_t n);
 /// The same one by one, as a few are: for them a vector takes longer to begin than to do its work.
-static inline double ct_vector_size_of_few(const double *v, size_t n)
+static inline double ct_vector_max_norm_few(const double *v, size_t n)
 {
     // without their sign, numbers are in the order of their bits; what is no number comes last
     uint64_t most = 0;
@@ -35,10 +35,10 @@ static inline double ct_vector_size_of_few(const double *v, size_t n)
     return size;
 }
 /// The same of any number of them.
-static inline double ct_vector_size(const double *v, size_t n)
+static inline double ct_vector_max_norm(const double *v, size_t n)
 {
     enum { FEW = 4 };
-    return n > FEW ? ct_vector_size_of_many(v, n) : ct_vector_size_of_few(v, n);
+    return n > FEW ? ct_vector_max_norm_many(v, n) : ct_vector_max_norm_few(v, n);
 }
 
 /// x . y of n numbers
@@ -75,7 +75,7 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
 /// H (n x n, symmetric: lower) = L^-1 H L^-T with that factor.
 void ct_cholesky_congruence(double *H, const double *L, int n, int lda);
 /// x = L^-T x.
-void ct_cholesky_back(double *x, const double *L, int n, int lda);
+void ct_cholesky_solve_transposed(double *x, const double *L, int n, int lda);
 
 /// Cholesky of a banded matrix in place: A(i, j), j <= i <= j + band, at A[i - j + (band + 1) * j]. False if it is not
 /// positive definite.

@@ -15,7 +15,7 @@
 
 /// An operation of sparse factors, and of a sum over a list, takes so many of full ones: measured where both take as long, with beams
 /// of 2 to 8 elements, closed loops of them and a platform, of 16 to 40 equations.
-#define CT_SPARSE_OPERATION 1.25
+#define CT_SPARSE_OPERATION_COST 1.25
 
 struct ct_pattern {
     int n, nz;
@@ -42,13 +42,13 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
                                      bool is_complex);
 /// Factor the matrix of these values, (nz) or as many pairs. The first time, and where those of before are no longer sound, pivots are
 /// sought anew, which allocates. False if it is singular.
-bool ct_factors_make(struct ct_factors *f, double *value);
+bool ct_factors_compute(struct ct_factors *f, double *value);
 /// x (n numbers or pairs, in: right-hand side, out: solution).
 void ct_factors_solve(struct ct_factors *f, double *x);
 /// z (nz, out): for each entry (i, j) of the pattern the entry (j, i) of the inverse, of real factors. Allocates where pivots were
 /// sought anew since the last time.
 void ct_factors_inverse(struct ct_factors *f, double *z);
 /// How often pivots were sought.
-long ct_factors_sought(const struct ct_factors *f);
+long ct_factors_npivoting(const struct ct_factors *f);
 
 #endif

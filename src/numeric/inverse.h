@@ -31,11 +31,11 @@ void ct_inverse_apply_complex(double *restrict x, const double *restrict inverse
                               const double *restrict b, int n);
 
 /// x (rows, out) = A b, A (rows x n), rows a multiple of four.
-void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
-                int rows, int n);
+void ct_matrix_vector(double *restrict x, const double *restrict A, const double *restrict b,
+                      int rows, int n);
 /// x + i y = (re + i im) (a + i b), of the same shapes.
-void ct_product_complex(double *restrict x, double *restrict y, const double *restrict re,
-                        const double *restrict im, const double *restrict a,
-                        const double *restrict b, int rows, int n);
+void ct_matrix_vector_complex(double *restrict x, double *restrict y, const double *restrict re,
+                              const double *restrict im, const double *restrict a,
+                              const double *restrict b, int rows, int n);
 
 #endif

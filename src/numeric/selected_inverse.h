@@ -10,19 +10,20 @@
 #include "base/arena.h"
 
 /// Factors in compressed columns, rows sorted: L (of ones on the diagonal, which come first), U (its diagonal last).
-struct ct_triangles {
+struct ct_lu_factors {
     int n;
     int *L_start, *L_row, *U_start, *U_row;
     double *L, *U;
 };
 
-struct ct_selected;
+struct ct_selected_inverse;
 
 /// What is to be done for factors of this pattern; t must stay.
-struct ct_selected *ct_selected_create(struct ct_arena *a, const struct ct_triangles *t);
-/// Where Z(i, j) is among what ct_selected_find gives; an entry of L + U at (j, i) must be there.
-int ct_selected_place(const struct ct_selected *s, int i, int j);
+struct ct_selected_inverse *ct_selected_inverse_create(struct ct_arena *a,
+                                                       const struct ct_lu_factors *t);
+/// Where Z(i, j) is among what ct_selected_inverse_compute gives; an entry of L + U at (j, i) must be there.
+int ct_selected_inverse_index(const struct ct_selected_inverse *s, int i, int j);
 /// Entries of Z for the numbers that t has now. Allocates nothing.
-const double *ct_selected_find(struct ct_selected *s);
+const double *ct_selected_inverse_compute(struct ct_selected_inverse *s);
 
 #endif

@@ -31,13 +31,13 @@ struct ct_sparse *ct_sparse_create_along(struct ct_arena *a, int n, const int *r
 /// are sought. False if it is singular.
 bool ct_sparse_factor(struct ct_sparse *s, const double *value);
 /// The same with pivots sought anew, which allocates.
-bool ct_sparse_factor_anew(struct ct_sparse *s, const double *value);
+bool ct_sparse_factor_repivot(struct ct_sparse *s, const double *value);
 /// x (n, out) = A^-1 b by the last factors, with one step of refinement if *is_refined (in: it is wanted at once;
 /// out: it was made). Returns the largest backward error of a row, |b - A x| / (|b| + most |A| most |x|).
 double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is_refined);
 /// The same, refined with residuals in extended precision (where long double has it) until corrections no longer fall: what
 /// the condition of the matrix takes from double precision comes back. Allocates nothing.
-void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b);
+void ct_sparse_solve_extended(struct ct_sparse *s, double *x, const double *b);
 /// The smallest pivot against the largest, of the last factors.
 double ct_sparse_pivot(const struct ct_sparse *s);
 /// Multiplications and additions of factoring, and entries of the factors: what it costs.
