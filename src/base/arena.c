@@ -33,9 +33,10 @@ struct ct_arena {
     size_t total;
 };
 
-// With what precedes the payload.
+// Bytes of a chunk with its header: they double from one page to the size of two large pages.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Smaller chunks come from memory that has been used, and most of it in one piece: zeros are written as it is given out.
+// Chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
+// malloc and are zeroed when memory is given out.
 static const size_t least_page_chunk = 1 << 18;
 
 // size: of all.
@@ -168,8 +169,8 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     free(from);
 }
 
-// Bytes before the next piece of this size. Longer ones start on a line of the caches: numbers of four lanes would lie across two
-// lines every other time, which takes a tenth more of a program in lanes.
+// Padding before an allocation of this size. Arrays start on a cache line, so that SIMD loads of
+// four doubles do not cross lines.
 static size_t padding(const struct chunk *c, size_t size)
 {
     const size_t line = 64, least = 256;
@@ -181,7 +182,8 @@ static bool has_room(const struct chunk *c, size_t size)
     return c && c->size - c->used >= size + padding(c, size);
 }
 
-// A chunk for this size becomes the newest: the next spare one with room, else a new one, twice as long as the last.
+// Make a chunk with room for this size the newest one: a spare one, else a new one of twice the
+// size of the last.
 static struct chunk *next_chunk(struct ct_arena *a, size_t size)
 {
     const size_t most_padding = 64;
@@ -245,7 +247,8 @@ char *ct_arena_strdup(struct ct_arena *a, const char *s)
     return ct_arena_strndup(a, s, strlen(s));
 }
 
-// Texts put together, as most names are: the length where fmt has no conversion but %s, else -1. to: NULL to measure.
+// Fast path of printf for formats that only contain %s: copies into `to` (NULL: measure only).
+// Returns the length, -1 if there is another conversion.
 static long join(char *to, const char *fmt, va_list ap)
 {
     long n = 0;

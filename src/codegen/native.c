@@ -1,4 +1,4 @@
-// See native.h.
+// Executable memory, prologue and calls of native code; see native.h.
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "codegen/native.h"
 #include "codegen/native_wide.h"
@@ -16,7 +16,8 @@
 #include <math.h>
 #include <string.h>
 
-// Shorter programs gain too little from fused operations to give up the bits of the tape.
+// Instructions from which products and sums are contracted to fused operations: shorter programs
+// keep the bits of the tape.
 static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);

@@ -1,4 +1,5 @@
-// See native_wide.h. The work array has a part for each half, then the inputs and the outputs of four lanes.
+// Eight lanes as two halves of four; see native_wide.h. The work array has a part for each half,
+// then the inputs and outputs of four lanes.
 #include "codegen/native_wide.h"
 
 #include <string.h>

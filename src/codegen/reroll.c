@@ -1,4 +1,6 @@
-// See reroll.h. A repeat becomes a loop where its operands can be reached; else it is cut, or left as it was.
+// Loop rerolling: addresses of operands. A repetition becomes a loop if every operand is the row's
+// own, invariant, or affine in the row. Else end rows are dropped, or it stays straight. See
+// reroll.h.
 #include "codegen/reroll_layout.h"
 
 #include <string.h>
@@ -30,7 +32,7 @@ static bool use_stream(struct ct_repetition *r, int kind, uint32_t other, int32_
     return true;
 }
 
-// Those of the row itself, or the same in all: the most. Row by row, as they lie in memory.
+// Operands from the same row and loop invariants.
 static void resolve_row_and_fixed(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     for (uint32_t i = 0; i < 3 * r->period; i++)
@@ -63,7 +65,7 @@ static uint32_t input_of(const struct ct_repetitions *p, uint32_t v)
     return p->l->rate[v] == CT_RATE_CALL && p->l->is_leaf[v] ? p->l->input[v] : none;
 }
 
-// Is v the input `rows` times stride behind `first`? There may be none there: what is no input has no place, either.
+// Is v the input at index first + rows * stride?
 static bool is_input_at(const struct ct_repetitions *p, uint32_t v, uint32_t first,
                         int32_t stride, int32_t rows)
 {
@@ -87,7 +89,8 @@ static bool resolve_inputs(const struct ct_repetitions *p, struct ct_repetition 
     return use_stream(r, CT_SOURCE_INPUTS, 0, stride);
 }
 
-// v at a row of `other` that it does not have: true if that place is free or holds v. *is_new: it must be put there.
+// May v be stored as result of `other` at a row beyond its ends (peeled value)? *is_new: not there
+// yet.
 static bool is_edge_free(const struct ct_repetition *other, uint32_t slot, int32_t row,
                          uint32_t v, bool *is_new)
 {
@@ -119,7 +122,8 @@ static void add_edge(const struct ct_repetitions *p, const struct ct_repetition 
     make_room(other, row);
 }
 
-// Results of one instruction of a repeat, a row further every time; at the ends perhaps of what takes its place there.
+// Results of one instruction of a repetition with constant row distance; at the ends, values
+// stored in their place.
 static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition *r,
                             uint32_t operand, struct ct_source *out)
 {
@@ -174,7 +178,7 @@ static bool is_same_sequence(const struct ct_repetitions *p, const struct ct_rep
     return true;
 }
 
-// Copied, if everything is there before the loop.
+// A column of values copied before the loop; all must be computed before it.
 static bool resolve_column(const struct ct_repetitions *p, struct ct_repetition *r,
                            uint32_t operand, struct ct_source *out)
 {
@@ -194,7 +198,7 @@ static bool resolve_column(const struct ct_repetitions *p, struct ct_repetition 
 
 // ---- which loops there are --------------------------------------------------------------------
 
-// Columns that hold something else than constants and parameters. Row by row, as operands lie in memory.
+// Number of columns that change with each evaluation, and so are copied in each.
 static size_t count_copied(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     size_t n = 0;
@@ -212,7 +216,7 @@ static size_t count_copied(const struct ct_repetitions *p, const struct ct_repet
     return n;
 }
 
-// Is operand at a row what the middle row's is, so many rows further?
+// Does the operand at a row follow the same rule as at the middle row?
 static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition *r,
                      uint32_t operand, int kind, uint32_t row)
 {
@@ -242,7 +246,7 @@ static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition 
     }
 }
 
-// Rows around the middle that take an operand in one way, as many as possible.
+// The longest range of rows around the middle in which an operand follows one rule.
 static void regular_rows(const struct ct_repetitions *p, const struct ct_repetition *r,
                          uint32_t operand, uint32_t *first, uint32_t *behind)
 {
@@ -261,7 +265,7 @@ static void regular_rows(const struct ct_repetitions *p, const struct ct_repetit
     }
 }
 
-// An operand that must be copied, or cannot be: rows at the ends that do otherwise may be left out.
+// Drop irregular rows at the ends for an operand that would be copied or has no address.
 static bool drop_end_rows(const struct ct_repetitions *p, struct ct_repetition *r,
                           uint32_t operand)
 {
@@ -279,8 +283,8 @@ static uint32_t dropped_rows(const struct ct_repetition *r)
     return r->count - (r->keep_behind - r->keep_first);
 }
 
-// Is it worth while to leave rows out? A copy of an operand costs as much as two instructions, straight code about one more
-// than that of a loop.
+// Do copies cost more than straight code for the end rows? A copy is a load and a store; straight
+// code costs about one instruction fetch more than code of a loop.
 static bool copies_cost_more(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     size_t nsaved = 0;
@@ -341,8 +345,8 @@ static void assign_range(const struct ct_repetitions *p, const struct ct_repetit
         p->repetition_of[r->first + k] = to;
 }
 
-// Some operand cannot be reached. The rows at the ends may do it on something else, as the first beam of a chain does that
-// nothing hangs on: without the first row, without the last one, without both; then none.
+// Some operand has no address. Try without irregular end rows, then without the first row, the last
+// one, both; then give up.
 static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
 {
     static const struct {
@@ -370,7 +374,7 @@ static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
     assign_range(p, r, (uint32_t)(r - p->repetition));
 }
 
-// Edges of a repeat but for those that `asker` has put there last.
+// Remove the edges that `asker` has added last.
 static void remove_edges(struct ct_repetition *r, uint32_t asker)
 {
     size_t n = r->nedge;
@@ -394,8 +398,8 @@ static void withdraw_edges(struct ct_repetitions *p, const struct ct_repetition 
             remove_edges(&p->repetition[r->stream[i].other], (uint32_t)(r - p->repetition));
 }
 
-// Operands are made before they are read, so that a repeat relies on itself and those before it alone: when it is cut, these
-// stay as they are, but for the edges that it has put there.
+// A repetition reads results of itself and of earlier ones only. When it is trimmed, earlier ones
+// change only by the edges that it has added to them.
 static void resolve_all(struct ct_repetitions *p)
 {
     for (size_t i = 0; i < p->nrepetition; i++) {

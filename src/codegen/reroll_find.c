@@ -1,11 +1,12 @@
-// See reroll_layout.h: repeats in the sequence of operators, together with how far back near operands are.
+// Detection of repetitions by a rolling hash of operators and distances to near operands; see
+// reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
 
 enum {
-    WINDOW = 16, // instructions that must repeat to be looked at
-    NEAR = 64,   // operands so close belong to what repeats
+    WINDOW = 16, // instructions of the rolling hash
+    NEAR = 64,   // distances to operands up to this are part of the hash
     MOST_PERIOD = 8192,
     MOST_TRIES = 64,
     LEAST_SAVED = 48, // instructions
@@ -74,7 +75,7 @@ static void link_windows(struct ct_repetitions *p)
     }
 }
 
-// The repeat that starts at i and saves most.
+// The repetition at i that saves most instructions.
 static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t i,
                                         uint32_t *longest)
 {
@@ -102,14 +103,14 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
     return best;
 }
 
-// Rows fewer than before, side by side: are they nearly as many sets of lanes?
+// Are SIMD lanes filled nearly as well (7/8) with fewer rows as before?
 static bool fills_lanes(uint32_t rows, uint32_t before, uint32_t lanes)
 {
     return 8 * (rows / lanes) >= 7 * (before / lanes);
 }
 
-// Where rows begin is chosen so that the fewest results are read across that place. same: places that repeat what is a
-// row before them. Cost: two rows.
+// Choose the boundary between rows with the fewest live values across it. same: instructions that
+// repeat those one row before. Cost: two rows.
 static void choose_row_boundary(const struct ct_repetitions *p, struct ct_repetition *r,
                                 uint32_t same, uint32_t lanes)
 {

@@ -1,11 +1,12 @@
-// See reroll_layout.h.
+// Memory layout of rerolled loops: live-out results, loop distribution, strip mining, slots of the
+// work array; see reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
 
 #include <string.h>
 
-// ---- what leaves its row ------------------------------------------------------------------------
+// ---- live-out results ------------------------------------------------------------------------
 
 // Does row `row` of `reader` take the operand from where all rows take it?
 static bool is_taken_in_turn(const struct ct_repetitions *p, const struct ct_repetition *reader,
@@ -57,7 +58,7 @@ static void find_live_out(const struct ct_repetitions *p)
     }
 }
 
-// ---- rows side by side --------------------------------------------------------------------------
+// ---- vectorisation over rows -------------------------------------------------------------------
 
 enum { MOST_PARTS = 6 }; // done side by side
 
@@ -84,8 +85,9 @@ static unsigned char part_of(const struct ct_repetitions *p, const struct ct_rep
     return part;
 }
 
-// What reads results of rows before goes into the next part. What so reads itself, as running sums do, rises until it
-// is among the late ones, and takes along what depends on it. Cost: instructions of a row times MOST_PARTS at most.
+// Loop distribution: an instruction that reads results of earlier rows goes into a later part.
+// Recurrences, such as running sums, and what depends on them end in the last part, which is not
+// vectorised. Cost: at most MOST_PARTS passes over the instructions of a row.
 static void distribute_loop(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     for (bool changes = true; changes;) {
@@ -113,7 +115,7 @@ static bool is_late(const struct ct_repetition *r, uint32_t slot)
     return r->part[slot] + 1u == r->npart;
 }
 
-// Reads whose rows are not side by side.
+// Operands that need a gather, as their rows are not contiguous.
 static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     uint32_t n = 0;
@@ -129,7 +131,7 @@ static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_r
     return n;
 }
 
-// What parts of a row read of each other.
+// Reads between the parts of a distributed loop.
 static uint32_t count_crossing_reads(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     uint32_t n = 0;
@@ -144,7 +146,7 @@ static uint32_t count_crossing_reads(const struct ct_repetitions *p, struct ct_r
     return n;
 }
 
-// Rows of a strip: the last one has as many, or at least as many as are done together.
+// Rows of a strip, so that the last strip is full or fills the SIMD lanes.
 static uint32_t strip_of(uint32_t count, uint32_t lanes)
 {
     static const uint32_t wanted[] = {16, 12, 20, 8};
@@ -154,8 +156,8 @@ static uint32_t strip_of(uint32_t count, uint32_t lanes)
     return 0;
 }
 
-// Does it pay? A read that gathers four numbers costs about five instructions, a result of a late row that the others read
-// two.
+// Cost model of vectorisation in instructions: a gather of four doubles takes five (two pairs of
+// loads and a merge), a value handed between parts two (store and load).
 static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
 {
     enum { GATHER = 5, HAND_OVER = 2, LEAST = 16 };
@@ -201,7 +203,7 @@ static uint32_t rounded_up(uint32_t n, uint32_t to)
     return (n + to - 1) / to * to;
 }
 
-// An odd number of sets of lanes, so that places of different results fall into all sets of a cache.
+// Pad to an odd number of vectors, so that columns do not map to the same cache sets.
 static uint32_t odd_rows(uint32_t rows, uint32_t lanes)
 {
     return rows / lanes % 2 == 0 ? rows + lanes : rows;

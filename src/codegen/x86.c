@@ -1,4 +1,4 @@
-// See x86.h: the walk over the listing that decides in which register each value is.
+// Register allocation and instruction selection over a listing; see x86.h.
 #include "codegen/emitter.h"
 
 #include <assert.h>
@@ -137,7 +137,8 @@ static struct ct_rm operand(struct ct_emitter *e, uint32_t v)
     return ct_in_register(ct_emitter_load(e, v));
 }
 
-// Which of two exchangeable operands must be in a register: one that is, or the one read again first.
+// Which of two exchangeable operands must be in a register: one that is, or the one read again
+// first.
 static bool prefer_second(const struct ct_emitter *e, uint32_t a, uint32_t b)
 {
     const bool has_a = e->reg[a] >= 0, has_b = e->reg[b] >= 0;
@@ -161,8 +162,8 @@ void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i)
     ct_emitter_release(e, i->res, i->nres);
 }
 
-// The register of the result, which may be that of an operand: an operand read again is stored before
-// its register is given away, and instructions read before they write.
+// The register of the result, which may be that of an operand: an operand read again is stored
+// before its register is given away, and instructions read before they write.
 static int result(struct ct_emitter *e, const struct ct_instruction *i)
 {
     ct_emitter_unpin(e, i);
@@ -442,8 +443,8 @@ void ct_emitter_list_uses(struct ct_emitter *e)
         e->next[v] = e->start[v];
 }
 
-// Instructions from which on loops are sought: straight code of more is not held by the nearest cache of code, 32 KiB, and
-// fetching it takes longer than what it does.
+// Instructions from which loops are searched: about 8 bytes each, as many fill the first-level
+// instruction cache of 32 KiB.
 enum { LEAST_REROLLED = 4000 };
 
 static void roll_up(struct ct_emitter *e)
@@ -496,8 +497,9 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
 // Saved for loops; one of them twice, see below.
 static const int loop_register[] = {CT_R12, CT_R12, CT_R13, CT_R15};
 
-// The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
-// pushes and the return address keep the stack aligned to 16, and so does an even number more.
+// The areas are pointed at by the arguments themselves, or by registers that calls leave alone.
+// Three pushes and the return address keep the stack aligned to 16, and so does an even number
+// more.
 static void emit_entry(struct ct_emitter *e, bool calls)
 {
     if (calls) {

@@ -1,5 +1,5 @@
-// Functions that code calls: they and what they need come first, while few values are alive; sines and cosines of what needs no
-// other function are one call.
+// Scheduling of calls: functions and what they need come first, while few values are live. Sines
+// and cosines of all angles that need no other function are one call.
 #include "codegen/emitter.h"
 
 #include <string.h>
@@ -16,7 +16,8 @@ static bool is_wave(const struct ct_instruction *i)
     return i->op >= CT_OP_ANGLE_SIN && i->op <= CT_OP_ANGLE_SINCOS;
 }
 
-// When an instruction comes: what angles need, their sines and cosines, other calls and what they need, the rest.
+// Scheduling priority: what angles need, their sines and cosines, other calls and their needs, the
+// rest.
 enum turn { FOR_ANGLES, ANGLES, FOR_CALLS, REST, NTURN };
 
 // Angles are those that no call leads to.
@@ -83,7 +84,7 @@ static const struct ct_instruction *wave(const struct ct_emitter *e, uint32_t k)
     return &e->l->ins[e->order[e->first_angle + k]];
 }
 
-// In the order of the places of their angles, so that inputs side by side can be read where they are.
+// Sort by address of the angles, so that contiguous inputs are read without a copy.
 static void sort_waves(struct ct_emitter *e)
 {
     uint32_t *order = e->order + e->first_angle;

@@ -38,7 +38,8 @@ enum ct_value_kind {
     CT_VALUE_ROTARY,   // true, false or three expressions
     CT_VALUE_RAYLEIGH, // {alpha: a, beta: b}: two expressions
     CT_VALUE_SHAPES,   // {u: [...], v: [...], ...}: expressions of x, each with its name
-    CT_VALUE_FIELDS, // `equilibrium` (count 1), or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
+    // `equilibrium` (count 1) or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
+    CT_VALUE_FIELDS,
     CT_VALUE_PLACES, // points; a place may be one number, the distance along the axis
 };
 
@@ -85,7 +86,8 @@ struct ct_value {
 
 enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
 
-/// How a coordinate is measured from the relative motion of the frames, for a joint that is a chord.
+/// How a coordinate is measured from the relative motion of the frames, for a joint that is a
+/// chord.
 ///   length      q = along . d                        u = along . d'
 ///   angle       q = angle about `about` from v (axes of `from`) to R w (w in axes of `to`)
 ///               u = (from . w_rel) + (to . w_rel),   w_rel = angular velocity of `to` in `from`
@@ -123,8 +125,9 @@ struct ct_motion {
     ct_ex3 rot_from[3], rot_to[3];
 };
 
-/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored coordinate
-/// (beside `rotate` without the four of the quaternion), u one per speed; `~` leaves a hole.
+/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored
+/// coordinate (beside `rotate` without the four of the quaternion), u one per speed; `~` leaves a
+/// hole.
 struct ct_initial {
     struct ct_value q, u;
     struct ct_value rotate; // turns; n = 0 when absent
@@ -180,8 +183,8 @@ void ct_motion_measure_length(struct ct_motion *m, ct_ex3 along);
 /// The next coordinate is the angle about n; across: a unit vector normal to n.
 void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
 
-/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
-/// value: of all symbols, decides which coordinate axis to start from.
+/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n
+/// is one. value: of all symbols, decides which coordinate axis to start from.
 void ct_axes_normal(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
 
 /// The choices of a WORD or WORDS key as n texts in arena a.

@@ -1,4 +1,4 @@
-// Pieces from which the joint classes build their motion; see class.h.
+// Building blocks of joint kinematics: axes, rotations, constraint rows, measures; see class.h.
 #include "component/class.h"
 
 #include <math.h>

@@ -9,7 +9,7 @@ static const char *const top_keys[]
     = {"cotree", "name",   "description", "gravity", "parameters",
        "bodies", "joints", "forces",      "outputs", "simulation"};
 
-// ---- diagnostics in the order of the file ------------------------------------------------------------------
+// ---- diagnostics in the order of the file ------------------------------------------------------
 
 struct group {
     const struct ct_diagnostic *first; // an error or warning; its notes follow
@@ -56,7 +56,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
             ctx->diagnostic[k++] = group[g].first[i];
 }
 
-// ---- the top of the file ------------------------------------------------------------------------------------------
+// ---- the top of the file -----------------------------------------------------------------------
 
 static void check_version(struct ct_reader *r)
 {

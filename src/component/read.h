@@ -1,5 +1,12 @@
-// What the parts of the reader share: read.c (the file), read_value.c (values by kind), read_expr.c (expressions) and one file per
-// section: read_parameter.c, read_body.c, read_joint.c, read_force.c, read_run.c; tables in read_table.c.
+// What the parts of the reader share. Each calls those below it only, but for tables in
+// expressions:
+//
+//     read.c                                                      the file
+//     read_parameter  read_body  read_joint  read_force  read_run   sections
+//     read_beam  read_point  read_component                       parts of components
+//     read_value  read_beam_value  read_field                     values by kind
+//     read_expr <-> read_table                                    expressions, names, tables
+//     read_node                                                   shapes, keys, words
 //
 // What always holds: a function that returns false has reported; reading then goes on with the next
 // value, so that one pass shows as many problems as it can.
@@ -38,7 +45,7 @@ struct ct_reader {
     size_t nbody_node, body_node_cap, njoint_node, joint_node_cap, nforce_node, force_node_cap;
 };
 
-// ---- keys and shapes ------------------------------------------------------------------------------
+// ---- keys and shapes ---------------------------------------------------------------------------
 
 /// node is a map and has keys of this list only. what: "joint 'a'", for messages.
 bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *what,
@@ -59,20 +66,20 @@ bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, cons
 /// A body, joint or force: its name must differ from all others.
 bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p,
                             const char *sort);
-/// Suggestions cost a pass over all names each; after many errors nobody reads them.
+/// False after many errors: a suggestion costs a pass over all names.
 bool ct_read_wants_suggestions(const struct ct_reader *r);
 /// "; did you mean 'x'?" or "".
 const char *ct_read_suggestion(struct ct_reader *r, const char *name, const char *const *names,
                                size_t n);
 
-// ---- values ------------------------------------------------------------------------------------------
+// ---- values ------------------------------------------------------------------------------------
 
 /// One expression; flags are CT_KEY_TIME, _STATE, _LOCAL; unit as in ct_key.
 bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex *e);
 /// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
 bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
-/// Room for n expressions and their places, all zero.
+/// Allocate n expressions and their marks, all zero.
 void ct_read_alloc(struct ct_reader *r, struct ct_value *v, size_t n);
 /// The entries of a list as expressions, each with the key's flags and unit.
 bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
@@ -96,19 +103,20 @@ bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
 bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                     struct ct_value *v);
 bool ct_fill_fields(struct ct_reader *r, const struct ct_instance *self, struct ct_beam *beam);
-/// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL: any
+/// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL:
+/// any
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
                    ct_ex *e);
 /// [rad] Angles beyond it, written without a unit, are asked about: E152.
 extern const double ct_read_full_turn;
 
-// ---- components --------------------------------------------------------------------------------------
+// ---- components --------------------------------------------------------------------------------
 
 /// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
                                                const struct ct_node_pair *p, const char *sort,
                                                const char *standard);
-/// Room for the values of all keys, none given.
+/// Allocate the values of all keys, none given.
 void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's
 /// keys count.
@@ -118,7 +126,7 @@ bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
 bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
                         const struct ct_node *node);
 
-// ---- sections: `declare` makes names known, `fill` reads values -----------------------------------------
+// ---- sections: `declare` makes names known, `fill` reads values --------------------------------
 
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset);
 void ct_read_bodies_declare(struct ct_reader *r);

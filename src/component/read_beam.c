@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what is asked of single values ------------------------------------------------------------------------
+// ---- what is asked of single values ------------------------------------------------------------
 
 struct work {
     struct ct_reader *r;
@@ -105,7 +105,7 @@ static bool check_scalars(const struct work *w)
     return check_density(w) && ok;
 }
 
-// ---- which keys go together ---------------------------------------------------------------------------------
+// ---- which keys go together --------------------------------------------------------------------
 
 static unsigned find_known(const struct work *w)
 {
@@ -152,7 +152,8 @@ static bool check_theory(const struct work *w)
     return ok;
 }
 
-// What moves in the middle of an element by itself has no stiffness there and no mass at the ends.
+// Quadratic twist and stretch are internal freedoms of an element: reduced integration gives them
+// no stiffness, lumped mass no inertia.
 static bool check_quadratic(const struct work *w, const char *key)
 {
     const char *rule = get(w, "mass")->count ? "mass" : "integration";
@@ -164,7 +165,8 @@ static bool check_quadratic(const struct work *w, const char *key)
                     w->self->name, key, rule);
 }
 
-// With foreshortening the rates of the deflections draw the axis in: what is left of their forces would be of no model.
+// Foreshortening makes velocity-quadratic forces of the deflections; without them the model would
+// be inconsistent.
 static bool check_quadratic_velocity(const struct work *w)
 {
     if (!get(w, "quadratic_velocity")->count || get(w, "formulation")->count == CT_BEAM_LINEAR)
@@ -194,7 +196,7 @@ static bool check_deformation(const struct work *w, unsigned known)
         return has(w, "Iy") || has(w, "Iz")
             || needs(w, "'Iz' or 'Iy'", "second moment of the section for bending");
     for (size_t i = 0; i < COUNT(wanted); i++) {
-        const bool asked = // of a missing G a word has been said
+        const bool asked = // a missing G has been reported
             timoshenko
             && ((wanted[i].bit == CT_BEAM_BENDING_Y && has(w, "Iy"))
                 || (wanted[i].bit == CT_BEAM_BENDING_Z && has(w, "Iz")));
@@ -204,7 +206,7 @@ static bool check_deformation(const struct work *w, unsigned known)
     return ok;
 }
 
-// ---- elements -----------------------------------------------------------------------------------------------
+// ---- elements ----------------------------------------------------------------------------------
 
 static bool check_ends(const struct work *w, const struct ct_value *v, double length)
 {
@@ -267,9 +269,9 @@ static bool fill_elements(const struct work *w)
     return ok;
 }
 
-// ---- the section along the axis -------------------------------------------------------------------------------
+// ---- the section along the axis ----------------------------------------------------------------
 
-// Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
+// Sample points inside an element for checks of the section; its ends may be jumps or cusps.
 enum { NSAMPLE = 5 };
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
@@ -289,7 +291,7 @@ static bool wrong_along(const struct work *w, const char *key, size_t i, double 
                     w->self->name, key, what, where, wanted);
 }
 
-// Value of a key's i-th expression must be positive (strict) or not negative all along the beam, and infinite nowhere.
+// The i-th expression of a key must be finite and positive (strict) or nonnegative along the beam.
 static bool check_along(const struct work *w, const char *key, size_t i, bool strict)
 {
     const struct ct_value *v = get(w, key);
@@ -316,8 +318,7 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
     return true;
 }
 
-// What quadrature by element misses of the integral of a key's i-th value over the beam, against its size: by one fine enough for
-// what switches anywhere.
+// Relative error of element-wise quadrature of the key's i-th value, against a finer quadrature.
 static double quadrature_error(const struct work *w, const struct ct_value *v, size_t i)
 {
     enum {
@@ -395,7 +396,7 @@ static void cut_elements(const struct work *w)
     beam->is_cut = beam->nelement > before;
 }
 
-// Does nothing of the key's value resist anywhere in one of the elements?
+// Is the value of the key zero all along one of the elements?
 static bool vanishes(const struct work *w, const char *key)
 {
     const struct ct_value *v = get(w, key);
@@ -416,7 +417,7 @@ static bool vanishes(const struct work *w, const char *key)
     return false;
 }
 
-// A value of 0 is no more than none.
+// Deformations with stiffness; a value of 0 counts as not given.
 static unsigned find_stiff(const struct work *w)
 {
     return w->beam->known
@@ -469,7 +470,8 @@ static bool check_section(const struct work *w)
     return ok;
 }
 
-// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of elements.
+// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of
+// elements.
 static ct_ex integrate_mass(const struct work *w)
 {
     enum { POINTS = 8 };
@@ -489,7 +491,7 @@ static ct_ex integrate_mass(const struct work *w)
     return sum;
 }
 
-// ---- filling ----------------------------------------------------------------------------------------------------
+// ---- filling -----------------------------------------------------------------------------------
 
 static void fill_material(const struct work *w)
 {

@@ -84,7 +84,7 @@ static bool read_ground(struct ct_reader *r, const struct ct_node *node)
     return ct_read_points(r, &r->m->body[0], node) && ok;
 }
 
-// ---- mass and inertia -------------------------------------------------------------------------------------
+// ---- mass and inertia --------------------------------------------------------------------------
 
 static bool check_mass(struct ct_reader *r, const struct ct_body *b,
                        const struct ct_value *mass)
@@ -119,7 +119,8 @@ static void order(double *a, double *b)
     *a = low;
 }
 
-// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where I is diagonal.
+// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where
+// I is diagonal.
 static void principal_moments(const double I[6], double lam[3])
 {
     enum { SWEEPS = 8 }; // they converge quadratically
@@ -134,8 +135,8 @@ static void principal_moments(const double I[6], double lam[3])
     order(&lam[0], &lam[1]);
 }
 
-// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum of
-// the other two.
+// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum
+// of the other two.
 static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
                           const struct ct_value *given)
 {
@@ -185,7 +186,7 @@ static bool fill_rigid(struct ct_reader *r, struct ct_body *b)
     return fill_inertia(r, b, ct_instance_value(&b->instance, "inertia"));
 }
 
-// ---- a body ------------------------------------------------------------------------------------------------
+// ---- a body ------------------------------------------------------------------------------------
 
 // What a rigid body has and a particle has not deserves a better word than "unknown key".
 static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,

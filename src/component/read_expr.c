@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- frames -------------------------------------------------------------------------------------------
+// ---- frames ------------------------------------------------------------------------------------
 
 static const char *nearest_frame(struct ct_reader *r, const char *name)
 {
@@ -43,7 +43,7 @@ bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame)
     return true;
 }
 
-// ---- expressions --------------------------------------------------------------------------------------
+// ---- expressions -------------------------------------------------------------------------------
 
 // The one symbol of a signal.
 static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark at)
@@ -58,8 +58,8 @@ static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark
     return e;
 }
 
-// Inside its own expressions a custom joint's coordinates go by their own names: in its motion they are
-// the arguments, in its efforts what J.q1 ... are elsewhere.
+// Inside its own expressions a custom joint's coordinates go by their own names: in its motion
+// they are the arguments, in its efforts what J.q1 ... are elsewhere.
 static bool find_joint_coordinate(struct ct_reader *r, const char *name, ct_ex *e,
                                   const char **why, enum ct_name_result *result)
 {
@@ -155,7 +155,8 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
     return ct_read_suggestion(r, first, names, n);
 }
 
-// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two letters.
+// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two
+// letters.
 static bool point_exists(struct ct_reader *r, const char *text, struct ct_mark where)
 {
     const char *const dot = strchr(text, '.'), *const next = dot ? strchr(dot + 1, '.') : NULL;
@@ -211,7 +212,8 @@ static bool is_same_dimension(const char *a, const char *b)
         || ct_unit_parse(b, strlen(b), &v, &at) != CT_UNIT_OK || ct_unit_same(&u, &v);
 }
 
-// A parameter that stands alone, or with a minus, has the dimension it was given with; in expressions numbers are SI, and nothing is known.
+// A parameter alone, or with a minus sign, has the dimension it was given with. The dimension of
+// other expressions is not known.
 static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node,
                                  const char *unit, ct_ex e)
 {
@@ -238,8 +240,8 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
 
 const double ct_read_full_turn = 6.283185307179586;
 
-// An angle that can hardly be radians: a number without a unit beyond a turn, or a parameter that is such a whole number (which no
-// multiple of pi is).
+// Warn of angles that are probably degrees: a number beyond a full turn without a unit, or a
+// parameter that is such an integer, which no multiple of pi is.
 static void check_degrees(struct ct_reader *r, const struct ct_node *node, ct_ex e)
 {
     double value;

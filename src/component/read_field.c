@@ -10,7 +10,7 @@ static const char *const field_name[CT_BEAM_NFIELD] = {"u", "v", "w", "rx"};
 static const char *const rate_name[CT_BEAM_NFIELD] = {"u'", "v'", "w'", "rx'"};
 static const char *const unit[] = {"m", "rad", "m/s", "rad/s"};
 
-// ---- text ------------------------------------------------------------------------------------------------
+// ---- text --------------------------------------------------------------------------------------
 
 static void add(struct ct_value *v, const char **name, const char *own, struct ct_mark at,
                 ct_ex e)
@@ -98,7 +98,7 @@ bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struc
         && read_entries(r, rates, key->flags, false, true, v, name);
 }
 
-// ---- the frame ---------------------------------------------------------------------------------------------
+// ---- the frame ---------------------------------------------------------------------------------
 
 struct field_check {
     struct ct_reader *r;
@@ -158,7 +158,7 @@ static bool check_field(const struct field_check *c, enum ct_code code)
     return ok;
 }
 
-// ---- filling -----------------------------------------------------------------------------------------------
+// ---- filling -----------------------------------------------------------------------------------
 
 static const struct ct_beam_given *take(struct ct_reader *r, const struct ct_value *v, int *n)
 {

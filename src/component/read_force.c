@@ -21,7 +21,8 @@ void ct_read_forces_declare(struct ct_reader *r)
     }
 }
 
-// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have (`at`, `on`).
+// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have
+// (`at`, `on`).
 static const char *name_of_end(const struct ct_component_class *cls)
 {
     const char *name = "to";

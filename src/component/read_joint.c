@@ -1,4 +1,5 @@
-// Joints: their frames and own keys first, then what belongs to the coordinates, which those decide.
+// Joints: their frames and own keys first, then what belongs to the coordinates, which those
+// decide.
 #include "component/read.h"
 
 #include <limits.h>
@@ -70,7 +71,7 @@ void ct_read_joints_declare(struct ct_reader *r)
     }
 }
 
-// ---- counts ------------------------------------------------------------------------------------------------
+// ---- counts ------------------------------------------------------------------------------------
 
 static bool is_particle_frame(const struct ct_reader *r, int frame)
 {
@@ -142,7 +143,7 @@ static bool check_has_coordinate(struct ct_reader *r, const struct joint *j,
                     self->cls->nfree != 0 ? " beside a particle" : "", p->key);
 }
 
-// ---- lists of coordinates ------------------------------------------------------------------------------------
+// ---- lists of coordinates ----------------------------------------------------------------------
 
 static bool hole_allowed(const char *key)
 {
@@ -215,7 +216,7 @@ static bool read_coords(struct ct_reader *r, struct joint *j, const struct ct_ke
         && check_rotation_entries(r, j, key, v);
 }
 
-// ---- initial -------------------------------------------------------------------------------------------------
+// ---- initial -----------------------------------------------------------------------------------
 
 static bool check_quaternion(struct ct_reader *r, const struct joint *j,
                              const struct ct_value *q)
@@ -298,7 +299,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_n
     return ok;
 }
 
-// ---- a driver and the start it contradicts -------------------------------------------------------------------------
+// ---- a driver and the start it contradicts -----------------------------------------------------
 
 // Value of an expression of t at t = 0; false if it has none.
 static bool value_at_start(struct ct_reader *r, ct_ex e, double *v)
@@ -342,7 +343,7 @@ static bool check_driven_start(struct ct_reader *r, const struct joint *j)
     return ok;
 }
 
-// ---- a joint ------------------------------------------------------------------------------------------------------
+// ---- a joint -----------------------------------------------------------------------------------
 
 // Ends on one rigid body never move against each other; on one beam they do.
 static bool check_two_bodies(struct ct_reader *r, const struct joint *j)
@@ -422,7 +423,7 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
     return ok;
 }
 
-// ---- gears: they name joints, so all joints come first ---------------------------------------------------------------
+// ---- gears: they name joints, so all joints come first -----------------------------------------
 
 int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
 {

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- outputs --------------------------------------------------------------------------------------------------
+// ---- outputs -----------------------------------------------------------------------------------
 
 static bool add_output(struct ct_reader *r, struct ct_output output, struct ct_names *names)
 {
@@ -80,7 +80,7 @@ void ct_read_outputs(struct ct_reader *r)
     }
 }
 
-// ---- simulation -------------------------------------------------------------------------------------------------
+// ---- simulation --------------------------------------------------------------------------------
 
 // The methods of the format; a unit test holds them against the registry of integrators.
 static const char *const methods[] = {"auto",

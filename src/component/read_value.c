@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- directions and rotations -------------------------------------------------------------------------
+// ---- directions and rotations ------------------------------------------------------------------
 
 static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
 {
@@ -88,7 +88,7 @@ bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned
     return ok;
 }
 
-// ---- a value of any kind ---------------------------------------------------------------------------------
+// ---- a value of any kind -----------------------------------------------------------------------
 
 static bool read_scalar(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_key *key, struct ct_value *v)

@@ -1,7 +1,8 @@
 // Walks over the graph: derivatives, substitution, copies between stores.
 //
-// Each walk lists the nodes below its roots once, children before parents, and computes one result a
-// node. The lists live in the store's workspace; explicit stacks, as expressions may be deep.
+// Derivatives are forward mode by one symbol or direction, and reverse mode (gradient). Each walk
+// lists the nodes below its roots in topological order and computes one result per node. Stacks are
+// explicit, as expressions may be deep.
 #include "expr/ex.h"
 
 #include <assert.h>

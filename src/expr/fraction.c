@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// So few fractions that a number made in another way is hardly ever near one by chance: between v and 2 v there are at
-// most 0.3 largest_product of them, among 4.5e15 doubles. Elements of foreshortened beams have divisors up to 138600.
+// Bounds on numerator and denominator: [v, 2 v] has at most 0.3 largest_product such fractions
+// among 4.5e15 doubles, so a match by chance is unlikely (1e-7). Beam elements have divisors up to
+// 138600.
 static const double largest_divisor = 1e6, largest_number = 1e9, largest_product = 1e9;
 static const double few_roundoffs = 8 * DBL_EPSILON;
 static const double many_roundoffs = 64 * DBL_EPSILON; // of an integral over an element

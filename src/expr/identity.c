@@ -5,9 +5,9 @@
 //
 //     merged     cos^2 a + sin^2 a = 1, cos a cos b + sin a sin b = cos(a - b) and relatives,
 //                on pairs of terms, until none is left
-//     expanded   sums inside sines and cosines first multiplied out, then merged: finds what cancels
-//                between products and functions of sums
-//     waves      products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
+//     expanded   sums inside sines and cosines first multiplied out, then merged: finds what
+//                cancels between products and functions of sums
+//     harmonics  products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
 //                which everything that cancels does; pairs 1 + cos 2a become squares again
 #include "expr/collector.h"
 
@@ -26,7 +26,7 @@ static const struct ct_atom *atom_at(const struct ct_collector *c, uint32_t mono
 // What a reader has to read: terms, coefficients, factors, powers, and sums inside functions.
 static size_t length_of_term(const struct ct_collector *c, const struct ct_term *t)
 {
-    // a fraction is a sign of waves, which are only wanted where they are much shorter
+    // fractions come from product-to-sum formulas, wanted only where the result is much shorter
     size_t n = 2 + !ct_same_number(fabs(t->c), 1) + 2 * (t->c != floor(t->c));
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_atom *atom = atom_at(c, t->mono, k);
@@ -52,7 +52,7 @@ static struct ct_poly shorter(const struct ct_collector *c, struct ct_poly a, st
     return length(c, b) < length(c, a) ? b : a;
 }
 
-// ---- parts of polynomials -------------------------------------------------------------------------
+// ---- parts of polynomials ----------------------------------------------------------------------
 
 // Terms in the order of a key; those with one key are treated together.
 struct keyed {
@@ -197,7 +197,7 @@ static struct ct_poly squares(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// ---- sums and differences of angles -----------------------------------------------------------------
+// ---- sums and differences of angles ------------------------------------------------------------
 
 // The atom of the other function of the same angle.
 static uint32_t turned(const struct ct_collector *c, uint32_t atom)
@@ -282,7 +282,7 @@ static struct ct_poly merge(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// ---- sums inside functions, multiplied out ----------------------------------------------------------
+// ---- sums inside functions, multiplied out -----------------------------------------------------
 
 struct turn {
     struct ct_poly sine, cosine;
@@ -364,7 +364,7 @@ static struct ct_poly expand_angles(struct ct_collector *c, struct ct_poly p)
     return any ? sum : p;
 }
 
-// ---- products as sums of waves ------------------------------------------------------------------
+// ---- products as sums of harmonics -------------------------------------------------------------
 
 struct harmonic {
     double c;
@@ -372,7 +372,7 @@ struct harmonic {
     struct ct_poly argument;
 };
 
-// w times sine or cosine of `by`: two waves of half the height.
+// w times sine or cosine of `by`: two harmonics of half the amplitude.
 static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_atom *f,
                        struct ct_poly by, struct harmonic out[2])
 {
@@ -386,10 +386,10 @@ static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_a
         out[1].c = -half;
 }
 
-// Products of more factors give more waves than anyone reads.
+// Bounds on the factors of a product and on the harmonics of a polynomial, for readable results.
 enum { LARGEST_DEGREE = 6, LARGEST_WAVES = 256 };
 
-// Degree in sines and cosines, or LARGEST_DEGREE + 1 where waves do not apply.
+// Degree in sines and cosines, or LARGEST_DEGREE + 1 where the product-to-sum form does not apply.
 static int degree(const struct ct_collector *c, uint32_t mono)
 {
     int n = 0;
@@ -441,7 +441,7 @@ static struct ct_poly harmonics(struct ct_collector *c, struct ct_poly p)
     return sum;
 }
 
-// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: waves leave such pairs.
+// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: the form leaves such pairs.
 static struct ct_poly halve(struct ct_collector *c, struct ct_poly p, const struct ct_term *t)
 {
     for (size_t i = 0; i < ct_mono_length(&c->ps, t->mono); i++) {
@@ -493,7 +493,7 @@ static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum eff
     const struct ct_poly expanded = expand_angles(c, p);
     if (expanded.t != p.t)
         best = shorter(c, best, merge(c, expanded));
-    // waves of what is merged: fewer terms, often within the limit where p is not
+    // harmonics of the merged form: fewer terms, often within the limit where p is not
     best = shorter(c, best, halves(c, harmonics(c, p)));
     return shorter(c, best, halves(c, harmonics(c, best)));
 }

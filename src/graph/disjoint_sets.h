@@ -1,4 +1,4 @@
-// Which nodes hang together: disjoint sets with path halving.
+// Connected components of nodes by union and find: disjoint sets with path halving.
 //
 //     up:  [ 0 0 1 3 3 ]     pieces {0 1 2} and {3 4}; up[v] == v stands for its piece
 //

@@ -1,16 +1,19 @@
 // YAML text -> a tree of nodes with marks.
 //
+// src/io reads text files: whole files (text.h), CSV tables (sheet.h) and YAML. It checks syntax
+// and bounds sizes; what keys and values mean is for src/component.
+//
 //     map   { key (mark) -> node, ... }   in the order of the file
 //     list  [ node, ... ]
 //     scalar  text, quoted or not, mark
 //
-// What always holds for a tree that was read: keys are scalars and distinct within their map, depth and
-// size are bounded also through aliases, text is UTF-8 without NUL. Scalars stay text: what is a number
-// is for the caller to say. An alias is the anchored node itself (shared, with the anchored node's
-// marks: that is where a mistake is corrected).
+// What always holds for a tree that was read: keys are scalars and distinct within their map,
+// depth and size are bounded also through aliases, text is UTF-8 without NUL. Scalars stay text:
+// what is a number is for the caller to say. An alias is the anchored node itself (shared, with
+// the anchored node's marks: that is where a mistake is corrected).
 //
-// Not accepted, each with an error: several documents, merge keys `<<`, tags other than !!str, keys that are
-// not scalars, aliases inside their own anchor.
+// Not accepted, each with an error: several documents, merge keys `<<`, tags other than !!str,
+// keys that are not scalars, aliases inside their own anchor.
 #ifndef CT_IO_YAML_H
 #define CT_IO_YAML_H
 
@@ -42,9 +45,9 @@ struct ct_node {
     size_t height, weight;
 };
 
-/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there is a
-/// tree and false is returned: the caller may look for more errors. Marks show a copy of path.
-/// Errors: E002, E101 to E104.
+/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there
+/// is a tree and false is returned: the caller may look for more errors. Marks show a copy of
+/// path. Errors: E002, E101 to E104.
 bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **root);
 
 /// The same for n bytes of text; `file` names it in marks.

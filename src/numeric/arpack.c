@@ -1,4 +1,5 @@
-// See arpack.h. Implicitly restarted Lanczos in shift-invert mode (3), driven by reverse communication.
+// See arpack.h. Implicitly restarted Lanczos in shift-invert mode (3), driven by reverse
+// communication.
 #include "numeric/arpack.h"
 
 #if CT_HAS_ARPACK

@@ -1,4 +1,4 @@
-// See factors.h.
+// Sparse LU with one pattern; see factors.h.
 #include "numeric/factors.h"
 
 #include "numeric/klu_include.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// ---- the pattern ------------------------------------------------------------------------------------
+// ---- the pattern -------------------------------------------------------------------------------
 
 struct cell {
     int column, row, entry;
@@ -44,13 +44,14 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 
 #if CT_HAS_KLU
 
-// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest.
+// Threshold partial pivoting: a diagonal entry is the pivot if it is at least this part of the
+// largest one in its column, rows scaled by their largest entry. 0.1 bounds growth by 11 a step.
 static const double diagonal_preference = 0.1;
-// Pivots are sound while entries of columns grow by no more than so many times what they did when the pivots were sought: as much is
-// lost of the digits.
+// Pivots are kept while element growth is at most this many times that at the search for pivots.
+// Growth costs as many digits: three of sixteen are given up.
 static const double growth_limit = 1e3;
 
-// ---- orders -----------------------------------------------------------------------------------------
+// ---- orders ------------------------------------------------------------------------------------
 
 struct ct_pattern_order {
     klu_common common;
@@ -103,7 +104,7 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     return true;
 }
 
-// ---- factors ----------------------------------------------------------------------------------------
+// ---- factors -----------------------------------------------------------------------------------
 
 struct ct_factors {
     const struct ct_pattern *p;
@@ -114,7 +115,7 @@ struct ct_factors {
     long npivoting;
     double growth; // one over it, when pivots were sought
     // for entries of the inverse
-    long extracted; // pivots were sought so often then
+    long extracted; // value of npivoting when they were last extracted
     struct ct_arena *arena;
     struct ct_lu_factors t;
     struct ct_selected_inverse *selected;
@@ -147,7 +148,7 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
     return f;
 }
 
-// One over the growth of the largest entries of columns; 0 where it cannot be found.
+// Reciprocal pivot growth; 0 where it cannot be found.
 static double inverse_growth(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
@@ -158,7 +159,7 @@ static double inverse_growth(struct ct_factors *f, double *value)
     return ok ? c->rgrowth : 0;
 }
 
-// With the pivots of before; false if these are not sound.
+// Factor with the same pivots; false if growth is too large.
 static bool refactor(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
@@ -192,7 +193,7 @@ void ct_factors_solve(struct ct_factors *f, double *x)
         klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
 }
 
-// Room for the factors outside of the library, and the places of what is wanted of the inverse.
+// Copies of L and U outside of KLU, for the entries of the inverse.
 static void prepare_inverse(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;
@@ -219,7 +220,8 @@ static void extract(struct ct_factors *f)
                 NULL, NULL, NULL, f->row, f->column, f->scale, NULL, &f->common);
 }
 
-// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the factors' inverse.
+// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the
+// factors' inverse.
 static void map_inverse_entries(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;

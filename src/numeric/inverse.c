@@ -1,4 +1,4 @@
-// See inverse.h. Columns are handled by pairs of rows.
+// Gauss-Jordan elimination and matrix-vector products with SIMD vectors; see inverse.h.
 #include "numeric/inverse.h"
 
 #include "numeric/simd4.h"
@@ -40,7 +40,7 @@ static inline void restore_columns(double *A, const int *pivot, int n, int rows)
             exchange(A + i + rows * k, A + i + rows * pivot[k]);
 }
 
-// column (rows, out) = that of A, where a unit column comes.
+// column (rows, out) = column k of A, which is replaced by a unit column.
 static inline void swap_unit_column(double *column, double *pivot_column, int k, int rows,
                                     double one)
 {
@@ -51,7 +51,7 @@ static inline void swap_unit_column(double *column, double *pivot_column, int k,
     pivot_column[k] = one;
 }
 
-// For each number of rows code of its own, whose inner loops are known to be so long.
+// Instantiated for each number of rows, so that inner loops have a constant length.
 static inline bool invert(double *restrict A, int *pivot, int n, const int rows)
 {
     double column[CT_MOST_INVERTED];
@@ -86,7 +86,7 @@ bool ct_inverse(double *A, int *pivot, int n)
                         : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
-// Eight rows and, at last, four: columns are read once for each, and their sums do not wait for each other.
+// Blocks of eight rows, then one of four: two independent sums per column hide the latency.
 CT_SIMD4_INLINE void matrix_vector(double *restrict x, const double *restrict A,
                                    const double *restrict b, int rows, int n)
 {

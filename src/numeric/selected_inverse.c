@@ -1,6 +1,7 @@
-// See selected_inverse.h.
+// Takahashi's recursion; see selected_inverse.h.
 //
-// Z(i, j) stands where L + U has (j, i): row i of Z beside column i of U, then of L. With l in row i of U and k in column i of L,
+// Z(i, j) is stored at the index of entry (j, i) of L + U. With l in row i of U and k in column i
+// of L,
 //
 //     Z(l, i) = - sum_k Z(l, k) L(k, i),   Z(i, k) = - sum_l U(i, l) Z(l, k) / U(i, i),
 //     Z(i, i) = (1 - sum_l U(i, l) Z(l, i)) / U(i, i)

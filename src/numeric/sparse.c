@@ -1,4 +1,4 @@
-// See sparse.h.
+// Sparse LU by KLU with iterative refinement; see sparse.h.
 #include "numeric/sparse.h"
 
 #include "numeric/dense.h"
@@ -10,11 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A diagonal entry is taken as a pivot from this part of the largest in its column.
+// Threshold partial pivoting: a diagonal entry is the pivot from this part of the largest in its
+// column. 0.1 bounds growth by 11 a step.
 static const double diagonal_preference = 0.1;
-// The same where the order was chosen for the numbers, too.
+// The same in an order that was chosen for the values too (KLU's own default).
 static const double order_preference = 1e-3;
-// A backward error above this asks for refinement.
+// Backward error above which a solution is refined: some tens of units of round-off.
 static const double refinement_limit = 1e-14;
 
 struct ct_sparse {
@@ -139,8 +140,7 @@ bool ct_sparse_factor(struct ct_sparse *s, const double *value)
         && s->common.status == KLU_OK;
 }
 
-// r = b - A x; the largest of |r| / (|b| + most |A| most |x|) by rows. Rows whose terms are all round-off stand beside
-// the largest entries they could have.
+// r = b - A x. Returns the largest of |r_i| / (|b_i| + max_j |A_ij| max |x|) over the rows.
 static double backward_error(struct ct_sparse *s, const double *x, const double *b)
 {
     double worst = 0, most = 0;
