@@ -3,8 +3,8 @@
 //   across   d = R r, v = v_B + R (w x r + r_q q')           arm to a point P, r = x_P + U(q)
 //            R_P = R S(theta), w_P = w_B + R Y q'
 //   through  F_B = -R int mu c dx                            [N]     c: acceleration of the section
-//            T_B = -R int mu r x c dx                        [N m]   less gravity, in the body's axes
-//            effort(q) = -int mu r_q . c dx - V_q            one per elastic coordinate; V: strain energy
+//            T_B = -R int mu r x c dx                        [N m]   less gravity, body axes
+//            effort(q) = -int mu r_q . c dx - V_q            V: strain energy
 //
 // Source: formulation (1.6), (5.4), (5.5).
 #include "component/class.h"
@@ -78,6 +78,7 @@ const struct ct_component_class ct_component_beam = {
     .name = "beam",
     .summary = "elastic beam of finite elements, a frame at x = 0 and points",
     .family = CT_FAMILY_BODY,
+    .body = CT_BODY_BEAM,
     .key = keys,
     .nkey = COUNT(keys),
     .across = "section at x: d = r(x, q), S(x, q)",

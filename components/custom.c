@@ -22,8 +22,8 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
     for (int i = 0; i < 3 && d->given; i++)
         m->d.e[i] = ct_ex_subst(x, d->e[i], self->local, m->coord, n);
     for (size_t k = 0; turns->given && k < turns->nturn; k++)
-        ct_motion_turn(m, turns->turn[k].axis,
-                       ct_ex_subst(x, turns->turn[k].angle, self->local, m->coord, n));
+        ct_motion_add_rotation(m, turns->turn[k].axis,
+                               ct_ex_subst(x, turns->turn[k].angle, self->local, m->coord, n));
 }
 
 const struct ct_component_class ct_component_custom = {

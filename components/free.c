@@ -3,7 +3,8 @@
 //   across   d = (q1, q2, q3), S = S(q4..q7)       position in axes of `from`, unit quaternion
 //   through  F, T follow the effort laws           no reaction
 //
-// Speeds: u1..u3 rates of q1..q3, u4..u6 angular velocity of `to` relative to `from` in axes of `to`.
+// Speeds: u1..u3 rates of q1..q3, u4..u6 angular velocity of `to` relative to `from` in axes of
+// `to`.
 #include "component/class.h"
 
 static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m)

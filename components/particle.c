@@ -17,6 +17,7 @@ const struct ct_component_class ct_component_particle = {
     .name = "particle",
     .summary = "point mass; no rotation",
     .family = CT_FAMILY_BODY,
+    .body = CT_BODY_PARTICLE,
     .key = keys,
     .nkey = COUNT(keys),
     .across = "d relative to ground",

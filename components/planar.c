@@ -14,9 +14,9 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
 {
     const ct_ex3 n = ct_instance_axis(x, self, "normal", 2);
     ct_ex3 e1, e2;
-    ct_axes_across(x, n, m->value, &e1, &e2);
+    ct_axes_normal(x, n, m->value, &e1, &e2);
     m->d = ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], e1), ct_ex3_scale(x, m->coord[1], e2));
-    ct_motion_turn(m, n, m->coord[2]);
+    ct_motion_add_rotation(m, n, m->coord[2]);
     m->ntrans = 1;
     m->trans[0] = n;
     m->nrot = 2;

@@ -14,12 +14,12 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
 {
     const ct_ex3 n = ct_instance_axis(x, self, "axis", 0);
     ct_ex3 e1, e2;
-    ct_axes_across(x, n, m->value, &e1, &e2);
+    ct_axes_normal(x, n, m->value, &e1, &e2);
     m->d = ct_ex3_scale(x, m->coord[0], n);
     m->ntrans = 2;
     m->trans[0] = e1;
     m->trans[1] = e2;
-    ct_motion_hold_turn(x, m);
+    ct_motion_lock_rotation(x, m);
     ct_motion_measure_length(m, n);
 }
 

@@ -14,9 +14,9 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
 {
     const ct_ex3 n = ct_instance_axis(x, self, "axis", 2);
     ct_ex3 e1, e2;
-    ct_axes_across(x, n, m->value, &e1, &e2);
-    ct_motion_turn(m, n, m->coord[0]);
-    ct_motion_hold_place(x, m);
+    ct_axes_normal(x, n, m->value, &e1, &e2);
+    ct_motion_add_rotation(m, n, m->coord[0]);
+    ct_motion_lock_translation(x, m);
     m->nrot = 2; // e1 . n = e2 . n = 0
     m->rot_from[0] = e1;
     m->rot_from[1] = e2;

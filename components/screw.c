@@ -19,9 +19,9 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
     const ct_ex per_radian
         = ct_ex_div(x, ct_instance_value(self, "pitch")->e[0], ct_ex_const(x, two_pi));
     ct_ex3 e1, e2;
-    ct_axes_across(x, n, m->value, &e1, &e2);
+    ct_axes_normal(x, n, m->value, &e1, &e2);
     m->d = ct_ex3_scale(x, ct_ex_mul(x, per_radian, m->coord[0]), n);
-    ct_motion_turn(m, n, m->coord[0]);
+    ct_motion_add_rotation(m, n, m->coord[0]);
     ct_motion_measure_angle(m, n, e1);
 }
 

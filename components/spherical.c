@@ -11,7 +11,7 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
 {
     (void)self;
     m->quaternion = 0;
-    ct_motion_hold_place(x, m);
+    ct_motion_lock_translation(x, m);
     m->nmeasure = 1;
     m->measure[0].kind = CT_MEASURE_QUATERNION;
 }

@@ -21,9 +21,9 @@ static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_m
         a = (ct_ex3){{axes->e[0], axes->e[1], axes->e[2]}};
         b = (ct_ex3){{axes->e[3], axes->e[4], axes->e[5]}};
     }
-    ct_motion_turn(m, a, m->coord[0]);
-    ct_motion_turn(m, b, m->coord[1]);
-    ct_motion_hold_place(x, m);
+    ct_motion_add_rotation(m, a, m->coord[0]);
+    ct_motion_add_rotation(m, b, m->coord[1]);
+    ct_motion_lock_translation(x, m);
     m->nrot = 1;
     m->rot_from[0] = a;
     m->rot_to[0] = b;

@@ -9,8 +9,8 @@
 static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m)
 {
     (void)self;
-    ct_motion_hold_place(x, m);
-    ct_motion_hold_turn(x, m);
+    ct_motion_lock_translation(x, m);
+    ct_motion_lock_rotation(x, m);
 }
 
 const struct ct_component_class ct_component_weld = {

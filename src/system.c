@@ -48,7 +48,7 @@ static bool read_tree_file(struct ct_ctx *ctx, const char *path, struct ct_formu
     static const char *const keys[] = {"translation", "rotation"};
     bool ok = true;
     for (size_t i = 0; i < root->n; i++) {
-        const struct ct_simd2 *p = &root->pair[i];
+        const struct ct_node_pair *p = &root->pair[i];
         if (strcmp(p->key, keys[0]) == 0) {
             ok &= read_branches(ctx, p->value, &f->trans, &f->trans_mark, &f->ntrans);
         } else if (strcmp(p->key, keys[1]) == 0) {
@@ -100,7 +100,7 @@ struct source {
 static bool read_model(struct ct_system *s, const struct source *from,
                        const struct ct_system_options *o)
 {
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
     for (size_t i = 0; i < o->nset; i++)
         set[i].text = o->set[i];
@@ -111,17 +111,17 @@ static bool read_model(struct ct_system *s, const struct source *from,
                       : ct_model_read(&s->own, from->name, set, o->nset, &s->model))
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
-    s->read = ct_input_sampling() - start;
+    s->read = ct_monotonic_time() - start;
     return ok;
 }
 
 static bool formulate(struct ct_system *s, const struct ct_formulate_options *f,
                       struct ct_equations *out, struct ct_tree_report *report)
 {
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     const bool ok = ct_formulate(&s->own, s->own.model, &s->model, f, out, report);
     ct_own_next_stage(&s->own);
-    s->generate += ct_input_sampling() - start;
+    s->generate += ct_monotonic_time() - start;
     return ok;
 }
 

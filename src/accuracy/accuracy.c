@@ -63,12 +63,12 @@ static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s,
     double seconds[MOST_REPEATS], sum;
     int n = 1;
     const enum ct_ending ending
-        = ct_accuracy_start(a, s, end - ct_input_sampling(), compare_row, &p);
+        = ct_accuracy_start(a, s, end - ct_monotonic_time(), compare_row, &p);
     if (ending == CT_RUN_DONE)
         p.error = a->worst;
     seconds[0] = sum = p.seconds;
     while (ending == CT_RUN_DONE && n < (sum < short_times ? MOST_REPEATS : REPEATS)
-           && ct_input_sampling() + p.seconds < end
+           && ct_monotonic_time() + p.seconds < end
            && ct_accuracy_repeat(a, compare_row, &seconds[n]))
         sum += seconds[n++];
     ct_accuracy_end_run(a);
@@ -161,7 +161,7 @@ static bool climb_steps(struct ct_accuracy *a, const char *name, double end)
 
 static bool climb(struct ct_accuracy *a, const char *name)
 {
-    const double end = ct_input_sampling()
+    const double end = ct_monotonic_time()
                      + fmax(share_of_method, share_of_reference * a->reference_seconds);
     const bool is_asked = a->o->run.step > 0 && !(a->o->run.tolerance > 0);
     const bool is_fixed = is_asked || strcmp(name, "rk4") == 0;

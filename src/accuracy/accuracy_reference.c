@@ -107,7 +107,7 @@ static bool has_time(const struct candidate *c)
 static bool is_in_time(void *user)
 {
     const double *end = user;
-    return ct_input_sampling() < *end;
+    return ct_monotonic_time() < *end;
 }
 
 // Two runs with different steps; the first is the reference if they agree better than runs in double precision do, and
@@ -123,7 +123,7 @@ static void run_quad(struct ct_accuracy *a)
     a->said.ndiagnostic = a->said.nerror = 0;
     a->sim = ct_sim_create(&a->said, a->system, &o);
     bool ok = a->sim && ct_quad_can_run(ct_run_evaluator(a->sim->run));
-    double end = ct_input_sampling() + quad_limit;
+    double end = ct_monotonic_time() + quad_limit;
     for (int i = 0; i < 2 && ok; i++) {
         row[i] = CT_NEWN(a->own.model, double, a->nsample * a->nresult + 1);
         ok = ct_quad_run(a->own.model, ct_run_evaluator(a->sim->run), ct_run_state(a->sim->run),

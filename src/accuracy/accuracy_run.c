@@ -49,7 +49,7 @@ enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting 
         return ct_ctx_fault(&a->said) == CT_FAULT_OPTION ? CT_RUN_REFUSED : CT_RUN_FAILED;
     a->nrow = 0;
     a->worst = 0;
-    a->sim->deadline = ct_input_sampling() + limit;
+    a->sim->deadline = ct_monotonic_time() + limit;
     const struct ct_sim_results results = {.row = row, .user = a};
     const bool ok = ct_sim_run(&a->said, a->sim, &results);
     ct_guard_poll(); // a run that was interrupted says nothing about its method

@@ -221,7 +221,7 @@ static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, s
         const int from = n - 1 - j; // of the ascending 1/w2
         double *y = s->V + (size_t)n * (size_t)j;
         memcpy(y, H + (size_t)n * (size_t)from, (size_t)n * sizeof *y);
-        ct_cholesky_back(y, L, n, n);
+        ct_cholesky_solve_transposed(y, L, n, n);
         s->w2[j] = 1 / value[from];
         for (int i = 0; i < n; i++)
             y[i] *= sqrt(s->w2[j]);

@@ -125,7 +125,7 @@ static void find_stiffness(struct search *s)
     ct_symmetric_eigen(s->value, s->H, n, n, s->work);
     memcpy(s->V, s->H, (size_t)n * (size_t)n * sizeof *s->V);
     for (int j = 0; j < n; j++)
-        ct_cholesky_back(s->V + (size_t)n * (size_t)j, W, n, n);
+        ct_cholesky_solve_transposed(s->V + (size_t)n * (size_t)j, W, n, n);
 }
 
 // Forces p along S, and the sizes of what they are the sum of: constraints, weights, and stiffness over one unit.

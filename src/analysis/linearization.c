@@ -103,7 +103,7 @@ bool ct_linear_close(struct ct_linear *l)
         return true;
     for (int i = 0; i < MOST_NEWTON; i++) {
         ct_evaluator_constraint(m);
-        const double left = ct_vector_size(m->phi, m->nrow);
+        const double left = ct_vector_max_norm(m->phi, m->nrow);
         if (!isfinite(left) || (left >= before / 2 && before > 1e-9))
             return false;
         if (left <= closed || left >= before / 2)
@@ -113,9 +113,9 @@ bool ct_linear_close(struct ct_linear *l)
         ct_evaluator_retract(m, l->y, l->r);
         enter(l);
     }
-    if (!(ct_vector_size(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
+    if (!(ct_vector_max_norm(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
         return false;
-    if (ct_vector_size(m->v, m->nrow) == 0)
+    if (ct_vector_max_norm(m->v, m->nrow) == 0)
         return true;
     shortest(l, l->r, m->v);
     for (int k = 0; k < l->nu; k++)
@@ -312,7 +312,7 @@ static void reduce(struct ct_linear *l)
         memcpy(l->Mr, l->M, ff * sizeof *l->Mr);
         memcpy(l->Cr, l->C, ff * sizeof *l->Cr);
         memcpy(l->Kr, l->K, ff * sizeof *l->Kr);
-        l->is_moving = ct_vector_size(l->G, ff) > 0;
+        l->is_moving = ct_vector_max_norm(l->G, ff) > 0;
         return;
     }
     double *const all[] = {l->Mr, l->Cr, l->Kr};
@@ -327,8 +327,8 @@ static void reduce(struct ct_linear *l)
     for (size_t i = 0; i < nf; i++)
         l->X2[i] += l->A[i];
     add_reduced(l, l->Kr, l->M, l->X2);
-    l->is_moving = ct_vector_size(l->X, nf) > 0 || ct_vector_size(l->X2, nf) > 0
-                || ct_vector_size(l->G, ff) > 0;
+    l->is_moving = ct_vector_max_norm(l->X, nf) > 0 || ct_vector_max_norm(l->X2, nf) > 0
+                || ct_vector_max_norm(l->G, ff) > 0;
 }
 
 // ---- balance ------------------------------------------------------------------------------------------------
@@ -389,7 +389,7 @@ static bool finish(struct ct_linear *l)
              l->lam); // lam is zero: what multipliers must bear, and what is left
     multipliers(l, l->r);
     ct_linear_project(l, l->force, l->r);
-    l->acceleration = ct_vector_size(l->a, (size_t)l->nu);
+    l->acceleration = ct_vector_max_norm(l->a, (size_t)l->nu);
     if (!slopes(l))
         return false;
     reduce(l);

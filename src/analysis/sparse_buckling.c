@@ -111,7 +111,7 @@ static bool step(struct search *s, double c, double *x, double *d)
         return false;
     memset(s->b, 0, s->n * sizeof *s->b);
     apply_change(s, s->b, x, c);
-    ct_sparse_solve_precisely(matrix, s->x, s->b);
+    ct_sparse_solve_extended(matrix, s->x, s->b);
     double *K1y = x; // no longer needed
     const double work = ct_vector_dot(s->x, s->b, s->nu);
     apply_change(s, K1y, s->x, c);

@@ -65,7 +65,7 @@ static bool solve(struct search *s, double shift)
         s->b[i] = -s->p->r[i];
     for (size_t i = 0; i < s->nrow; i++)
         s->b[s->nu + i] = -s->p->phi[i];
-    ct_sparse_solve_precisely(matrix, s->x, s->b);
+    ct_sparse_solve_extended(matrix, s->x, s->b);
     for (size_t i = 0; i < s->nu + s->nrow; i++)
         if (!isfinite(s->x[i]))
             return false;

@@ -69,7 +69,7 @@ static void solve(struct large *g, double *x, const double *r)
 {
     memcpy(g->b, r, g->nu * sizeof *r);
     memset(g->b + g->nu, 0, g->nrow * sizeof *g->b);
-    ct_sparse_solve_precisely(g->matrix, g->x, g->b);
+    ct_sparse_solve_extended(g->matrix, g->x, g->b);
     memcpy(x, g->x, g->nu * sizeof *x);
 }
 

@@ -12,31 +12,32 @@
 
 struct chunk {
     struct chunk *next;
-    size_t size, used; // bytes of payload
-    size_t clean;      // of the payload: bytes from here on have not been used, and are zero
-    size_t ready;      // of pages: bytes from the chunk's start that are there
-    bool is_pages;     // from pages.h; else from malloc
+    size_t size, used;  // bytes of payload
+    size_t zeroed_from; // of the payload: bytes from here on have not been used, and are zero
+    size_t ready;       // of pages: bytes from the chunk's start that are there
+    bool is_pages;      // from pages.h; else from malloc
     _Alignas(16) unsigned char data[];
 };
 
-struct ending {
-    struct ending *next;
+struct cleanup {
+    struct cleanup *next;
     void (*end)(void *data);
     void *data;
 };
 
 struct ct_arena {
     struct chunk *head;
-    struct chunk *spare;   // cleared, in the order in which they came
-    struct ending *ending; // in a chunk
-    struct ending *under;  // of the owner, for this arena; may be NULL
+    struct chunk *spare;     // cleared, in the order in which they came
+    struct cleanup *cleanup; // in a chunk
+    struct cleanup *under;   // of the owner, for this arena; may be NULL
     size_t total;
 };
 
-// With what precedes the payload.
+// Bytes of a chunk with its header: they double from one page to the size of two large pages.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Smaller chunks come from memory that has been used, and most of it in one piece: zeros are written as it is given out.
-static const size_t least_pages = 1 << 18;
+// Chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
+// malloc and are zeroed when memory is given out.
+static const size_t least_page_chunk = 1 << 18;
 
 // size: of all.
 static struct chunk *chunk_create(size_t size)
@@ -44,12 +45,12 @@ static struct chunk *chunk_create(size_t size)
     ct_guard_poll();
     if (ct_guard_must_fail())
         return NULL;
-    const bool is_pages = size >= least_pages;
+    const bool is_pages = size >= least_page_chunk;
     struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
     const size_t ready = c && is_pages ? ct_pages_extend(c, size, 0, sizeof *c) : 0;
     if (c)
         *c = (struct chunk){.size = size - sizeof *c,
-                            .clean = is_pages ? 0 : size - sizeof *c,
+                            .zeroed_from = is_pages ? 0 : size - sizeof *c,
                             .ready = ready,
                             .is_pages = is_pages};
     return c;
@@ -66,8 +67,8 @@ static void chunk_destroy(struct chunk *c)
 static void *chunk_take(struct chunk *c, size_t size)
 {
     void *p = c->data + c->used;
-    if (c->used < c->clean)
-        memset(p, 0, c->clean - c->used < size ? c->clean - c->used : size);
+    if (c->used < c->zeroed_from)
+        memset(p, 0, c->zeroed_from - c->used < size ? c->zeroed_from - c->used : size);
     c->used += size;
     if (c->is_pages && sizeof *c + c->used > c->ready)
         c->ready = ct_pages_extend(c, sizeof *c + c->size, c->ready, sizeof *c + c->used);
@@ -88,9 +89,9 @@ struct ct_arena *ct_arena_create(void)
     return a;
 }
 
-static void run_endings(const struct ct_arena *a)
+static void run_cleanups(const struct ct_arena *a)
 {
-    for (struct ending *e = a->ending; e; e = e->next)
+    for (struct cleanup *e = a->cleanup; e; e = e->next)
         e->end(e->data);
 }
 
@@ -100,7 +101,7 @@ void ct_arena_destroy(struct ct_arena *a)
         return;
     if (a->under)
         a->under->data = NULL;
-    run_endings(a);
+    run_cleanups(a);
     chunks_destroy(a->head);
     chunks_destroy(a->spare);
     free(a);
@@ -108,14 +109,14 @@ void ct_arena_destroy(struct ct_arena *a)
 
 void ct_arena_clear(struct ct_arena *a)
 {
-    run_endings(a);
-    a->ending = NULL;
+    run_cleanups(a);
+    a->cleanup = NULL;
     a->total = 0;
     struct chunk *spare = a->spare;
     for (struct chunk *c = a->head, *next; c; c = next) {
         next = c->next;
-        if (c->clean < c->used)
-            c->clean = c->used;
+        if (c->zeroed_from < c->used)
+            c->zeroed_from = c->used;
         c->used = 0;
         c->next = spare;
         spare = c;
@@ -124,25 +125,25 @@ void ct_arena_clear(struct ct_arena *a)
     a->spare = spare;
 }
 
-void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data)
+void ct_arena_on_destroy(struct ct_arena *a, void (*end)(void *data), void *data)
 {
-    struct ending *e = CT_NEW(a, struct ending);
-    *e = (struct ending){a->ending, end, data};
-    a->ending = e;
+    struct cleanup *e = CT_NEW(a, struct cleanup);
+    *e = (struct cleanup){a->cleanup, end, data};
+    a->cleanup = e;
 }
 
-static void end_under(void *arena)
+static void destroy_under(void *arena)
 {
     ct_arena_destroy(arena);
 }
 
 struct ct_arena *ct_arena_create_under(struct ct_arena *owner)
 {
-    ct_arena_at_end(owner, end_under, NULL); // first: it may run out of memory
+    ct_arena_on_destroy(owner, destroy_under, NULL); // first: it may run out of memory
     struct ct_arena *a = ct_arena_create();
     if (!a)
         ct_guard_raise();
-    a->under = owner->ending;
+    a->under = owner->cleanup;
     a->under->data = a;
     return a;
 }
@@ -160,17 +161,17 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     *last = *second;
     *second = from->head;
     chunks_destroy(from->spare);
-    struct ending **first = &from->ending;
+    struct cleanup **first = &from->cleanup;
     while (*first)
         first = &(*first)->next;
-    *first = into->ending;
-    into->ending = from->ending;
+    *first = into->cleanup;
+    into->cleanup = from->cleanup;
     free(from);
 }
 
-// Bytes before the next piece of this size. Longer ones start on a line of the caches: numbers of four lanes would lie across two
-// lines every other time, which takes a tenth more of a program in lanes.
-static size_t gap(const struct chunk *c, size_t size)
+// Padding before an allocation of this size. Arrays start on a cache line, so that SIMD loads of
+// four doubles do not cross lines.
+static size_t padding(const struct chunk *c, size_t size)
 {
     const size_t line = 64, least = 256;
     return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
@@ -178,19 +179,20 @@ static size_t gap(const struct chunk *c, size_t size)
 
 static bool has_room(const struct chunk *c, size_t size)
 {
-    return c && c->size - c->used >= size + gap(c, size);
+    return c && c->size - c->used >= size + padding(c, size);
 }
 
-// A chunk for this size becomes the newest: the next spare one with room, else a new one, twice as long as the last.
+// Make a chunk with room for this size the newest one: a spare one, else a new one of twice the
+// size of the last.
 static struct chunk *next_chunk(struct ct_arena *a, size_t size)
 {
-    const size_t most_gap = 64;
+    const size_t most_padding = 64;
     struct chunk *c = a->head;
     size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
     if (want > largest_chunk)
         want = largest_chunk;
-    if (want < size + most_gap + sizeof *c)
-        want = size + most_gap + sizeof *c;
+    if (want < size + most_padding + sizeof *c)
+        want = size + most_padding + sizeof *c;
     struct chunk **spare = &a->spare;
     while (*spare && !has_room(*spare, size))
         spare = &(*spare)->next;
@@ -215,7 +217,7 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
     if (!has_room(c, size))
         c = next_chunk(a, size);
     a->total += size;
-    c->used += gap(c, size);
+    c->used += padding(c, size);
     return chunk_take(c, size);
 }
 
@@ -226,7 +228,7 @@ void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
     return ct_arena_alloc(a, n * size);
 }
 
-void *ct_arena_line(struct ct_arena *a, size_t size)
+void *ct_arena_alloc_cache_line(struct ct_arena *a, size_t size)
 {
     enum { LINE = 64 };
     char *p = ct_arena_calloc(a, size + LINE, 1);
@@ -245,7 +247,8 @@ char *ct_arena_strdup(struct ct_arena *a, const char *s)
     return ct_arena_strndup(a, s, strlen(s));
 }
 
-// Texts put together, as most names are: the length where fmt has no conversion but %s, else -1. to: NULL to measure.
+// Fast path of printf for formats that only contain %s: copies into `to` (NULL: measure only).
+// Returns the length, -1 if there is another conversion.
 static long join(char *to, const char *fmt, va_list ap)
 {
     long n = 0;

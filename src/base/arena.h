@@ -1,4 +1,8 @@
-// Memory that is freed all at once.
+// Arena allocator: memory that is freed all at once.
+//
+// src/base holds what every stage needs and only libc gives: arenas, errors by one non-local exit
+// (guard.h), diagnostics (ctx.h), name maps, stable sorting and the shortest decimal text of a
+// double. It knows nothing of models.
 //
 //     arena:  [ chunk 4 KiB ] -> [ chunk 8 KiB ] -> [ chunk 16 KiB ] ...
 //                                      ^ next free byte
@@ -20,27 +24,29 @@ struct ct_arena;
 struct ct_arena *ct_arena_create(void);
 void ct_arena_destroy(struct ct_arena *a);
 
-/// An arena for a while, destroyed with its owner at the latest: nothing leaks when memory runs out.
+/// An arena that is destroyed with its owner at the latest, so that an out-of-memory jump leaks
+/// nothing.
 struct ct_arena *ct_arena_create_under(struct ct_arena *owner);
 
-/// Empty again, with its chunks for what is to come: the same requests get the same addresses, and ask the system for
-/// nothing. Endings run, arenas under it go. Cost: the chunks; zeros are written as memory is given out again.
+/// Empty the arena and keep its chunks for reuse. Cleanups run and child arenas are destroyed.
+/// The same sequence of requests then gets the same addresses without a system call.
+/// Cost: number of chunks. Reused memory is zeroed when it is allocated again.
 void ct_arena_clear(struct ct_arena *a);
 
-/// All that is in `from` lives as long as `into` from now on; `from` itself is gone. Cost: the chunks of `from`.
+/// Move all memory of `from` into `into` and destroy `from`. Cost: number of chunks of `from`.
 void ct_arena_merge(struct ct_arena *into, struct ct_arena *from);
 
-/// Call end(data) when the arena is destroyed, before its memory goes; the latest first. For what a
-/// library or the system allocates.
-void ct_arena_at_end(struct ct_arena *a, void (*end)(void *data), void *data);
+/// Register a cleanup end(data), called before the arena's memory is freed, the latest one first.
+/// For resources of libraries and of the system.
+void ct_arena_on_destroy(struct ct_arena *a, void (*end)(void *data), void *data);
 
 /// size bytes, zeroed, at a multiple of 16; longer ones at one of 64. Cost: O(size).
 void *ct_arena_alloc(struct ct_arena *a, size_t size);
 /// n elements of size bytes; an overflow of the product counts as out of memory.
 void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size);
-/// size bytes, zeroed, from the start of a line of the cache: what vectors of four numbers are read from that lie side by
-/// side, half of which would reach over two lines elsewhere.
-void *ct_arena_line(struct ct_arena *a, size_t size);
+/// size bytes, zeroed, aligned to a cache line (64 bytes), for arrays that are read in SIMD
+/// vectors.
+void *ct_arena_alloc_cache_line(struct ct_arena *a, size_t size);
 char *ct_arena_strdup(struct ct_arena *a, const char *s);
 char *ct_arena_strndup(struct ct_arena *a, const char *s, size_t n);
 char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)

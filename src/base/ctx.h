@@ -63,8 +63,8 @@ void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, cons
 void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     __attribute__((format(printf, 3, 4)));
 
-/// Print all diagnostics as FILE:LINE:COLUMN: error: MESSAGE [Exxx], each with its source line and a
-/// caret when the file can be read again.
+/// Print all diagnostics as FILE:LINE:COLUMN: error: MESSAGE [Exxx], each with its source line and
+/// a caret when the file can be read again.
 void ct_ctx_print(const struct ct_ctx *ctx, FILE *out);
 
 /// The name nearest to `name` by edit distance among n names, or NULL if none is close.

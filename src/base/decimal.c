@@ -4,9 +4,10 @@
 //     k = floor(log10(2^q))  so that 10^k <= 2^q: the interval holds one or more multiples of 10^k,
 //                          and at most one multiple of 10^(k+1)
 //
-// v 10^-k, four times over, is found from 128 bits of 10^-k in an integer whose last bit collects what lies
-// below ("rounded to odd"), which is enough to compare with the ends of the interval without error (section 9
-// of the source). The closest multiple of 10^(k+1) in the interval is the answer, else that of 10^k.
+// v 10^-k, four times over, is found from 128 bits of 10^-k in an integer whose last bit collects
+// what lies below ("rounded to odd"), which is enough to compare with the ends of the interval
+// without error (section 9 of the source). The closest multiple of 10^(k+1) in the interval is the
+// answer, else that of 10^k.
 #include "base/decimal.h"
 
 #include <math.h>
@@ -24,7 +25,8 @@ const uint64_t *ct_decimal_power(int k)
     return power[k - LEAST];
 }
 
-// floor(log10(2^e)), floor(log10(3/4 2^e)) and floor(log2(10^e)), exact for the exponents of doubles.
+// floor(log10(2^e)), floor(log10(3/4 2^e)) and floor(log2(10^e)), exact for the exponents of
+// doubles.
 static int log10_pow2(int e)
 {
     return (e * 1262611) >> 22;

@@ -2,8 +2,9 @@
 //
 //     0.1  ->  0.1        1/3  ->  0.3333333333333333        2^60  ->  1.152921504606847e+18
 //
-// What always holds: among the decimals of fewest digits that read back it is the one closest to the
-// number. The form is that of %.17g: an exponent where the number is below 1e-4 or from 1e17 on.
+// What always holds: among the decimals of fewest digits that read back it is the one closest to
+// the number. The form is that of %.17g: an exponent where the number is below 1e-4 or from 1e17
+// on.
 #ifndef CT_BASE_DECIMAL_H
 #define CT_BASE_DECIMAL_H
 
@@ -28,10 +29,12 @@ struct ct_decimal {
  */
 struct ct_decimal ct_decimal_shortest(double v);
 
-/// Write v to text; what is not finite becomes nan, inf or -inf. Returns the length, without the NUL.
+/// Write v to text; what is not finite becomes nan, inf or -inf. Returns the length, without the
+/// NUL.
 size_t ct_decimal_format(char text[CT_DECIMAL_SIZE], double v);
 
-/// 10^k = g 2^(floor(log2(10^k)) - 127), g rounded upwards to 128 bits, the high word first; k from -292 to 324.
+/// 10^k = g 2^(floor(log2(10^k)) - 127), g rounded upwards to 128 bits, the high word first; k
+/// from -292 to 324.
 const uint64_t *ct_decimal_power(int k);
 
 #endif

@@ -358,7 +358,7 @@ const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char 
     return text;
 }
 
-double ct_input_sampling(void)
+double ct_monotonic_time(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);

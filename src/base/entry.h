@@ -1,7 +1,7 @@
-// What public entry points share: a guard, contexts that objects own, diagnostics handed over, suggestions.
+// What public entry points share: guards, contexts of objects, diagnostics, suggestions, a clock.
 //
-// What always holds: an object that an entry point makes owns a context, so that its memory is its alone; what it says
-// is handed over to the caller's context, as copies, before the entry point returns.
+// What always holds: an object made by an entry point owns a context with its own arenas. Its
+// diagnostics are copied to the caller's context before the entry point returns.
 #ifndef CT_BASE_ENTRY_H
 #define CT_BASE_ENTRY_H
 
@@ -21,16 +21,18 @@ void ct_options_take(void *to, const void *from, size_t size);
 bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
 /// The same for what reads and prints nothing but diagnostics: the locale stays. Some ten nanoseconds.
 bool ct_enter_plainly(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
-/// The same, whatever is interrupted: to say and keep what there is.
+/// The same without interrupts, for reporting and saving after one.
 bool ct_enter_uninterrupted(struct ct_ctx *ctx, bool (*work)(void *task), void *task);
 /// Two arenas for a context that a system or a run owns. Raises the guard.
 void ct_own_init(struct ct_ctx *own);
 void ct_own_finish(struct ct_ctx *own);
 /// A new stage starts: nothing in the scratch arena is needed any more.
 void ct_own_next_stage(struct ct_ctx *own);
-/// Zeros for an object that owns a context; NULL, and E001 in ctx, where there is no memory. Freed with free.
+/// Zeroed memory for an object that owns a context, released by free. NULL, with E001 in ctx, when
+/// there is no memory.
 void *ct_own_alloc(struct ct_ctx *ctx, size_t size);
-/// Open the context of a new object, run work(task) with a guard, and hand over what it says: true if all went well.
+/// Initialise the context of a new object, run work(task) with a guard and copy its diagnostics to
+/// ctx. True if work succeeded.
 bool ct_own_enter(struct ct_ctx *ctx, struct ct_ctx *own, bool (*work)(void *task), void *task);
 /// Diagnostics of `from` go to `to`, as copies.
 void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from);
@@ -41,6 +43,6 @@ const char *ct_suggest(struct ct_arena *a, const char *name, const char *const *
 const char *ct_suggest_or_list(struct ct_arena *a, const char *name, const char *const *names,
                                size_t n);
 /// Monotonic time [s].
-double ct_input_sampling(void);
+double ct_monotonic_time(void);
 
 #endif

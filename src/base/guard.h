@@ -3,8 +3,8 @@
 // A public entry point that allocates opens a guard; arenas jump to it when the system refuses
 // memory. Guards nest; each thread has its own. Only arena.c and guard.c know longjmp.
 //
-// A guard also knows whom to ask whether the work is still wanted. Arenas ask when they need more memory from the
-// system, iterations each time round; what writes rows asks at accepted steps and stops without a jump.
+// A guard also holds the caller's interrupt callback. It is polled when arenas grow and once per
+// iteration of long loops. Writers of results poll at accepted steps and stop without a jump.
 #ifndef CT_BASE_GUARD_H
 #define CT_BASE_GUARD_H
 

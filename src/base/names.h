@@ -1,7 +1,7 @@
 // A map from names to indices, in an arena.
 //
-// What always holds: a name is found in constant time; names are not copied and must outlive the map.
-// Nothing depends on the order of the table.
+// What always holds: a name is found in constant time; names are not copied and must outlive the
+// map. Nothing depends on the order of the table.
 #ifndef CT_BASE_NAMES_H
 #define CT_BASE_NAMES_H
 

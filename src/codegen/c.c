@@ -1,8 +1,8 @@
 // Printing a listing as a C function; see c.h.
 //
-// The results of the instructions are the statements, in the order of the listing; short ones that one statement reads
-// stand within it. Statement k belongs to part k / split. A value that a later part reads is stored in w[] by its own part; one part alone
-// needs no w[].
+// Statements are the results of the instructions in the order of the listing; short ones with one
+// reader are inlined. Statement k belongs to function k / split. A value that a later function
+// reads is stored in w[].
 #include "codegen/c.h"
 
 #include "expr/print.h"
@@ -191,7 +191,7 @@ static bool has_label(const struct writer *w, uint32_t v)
     return id < w->l->x->label_cap && w->l->x->label[id];
 }
 
-// Short sums and products that one statement of the part reads, once: written there, in parentheses.
+// Inline short sums and products with one reader in the same function.
 static bool stands_within(const struct writer *w, uint32_t v, const char *text)
 {
     enum { LONGEST = 40 };

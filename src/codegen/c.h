@@ -3,8 +3,9 @@
 //     void name(const double *in, double *out)        in[slot] of the symbols, out[nout]
 //
 // One statement per operation, `const double t12 = t3 * t7;`, in the order of the listing. Every
-// instruction of it is there with the same operands and nothing else, so the bits agree with tape and
-// native code if the compiler neither contracts nor reorders (-ffp-contract=off, no -ffast-math).
+// instruction of it is there with the same operands and nothing else, so the bits agree with tape
+// and native code if the compiler neither contracts nor reorders (-ffp-contract=off, no
+// -ffast-math).
 //
 // What always holds: the same expressions give the same text; C99 without warnings; no globals but
 // constant tables. Functions are kept under `split` statements, because compilers need more than

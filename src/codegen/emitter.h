@@ -1,4 +1,5 @@
-// Between the files that emit code: which value is in which register and where else; see x86.c, x86_angles.c, x86_loop.c.
+// State of the code emitter: register allocation, homes of values in memory, loops; see x86.c,
+// x86_angles.c, x86_loop.c.
 #ifndef CT_CODEGEN_EMITTER_H
 #define CT_CODEGEN_EMITTER_H
 
@@ -65,23 +66,23 @@ uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area);
 struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h);
 /// v in a register, pinned.
 int ct_emitter_load(struct ct_emitter *e, uint32_t v);
-/// Values that are not read again leave their registers.
+/// Free the registers of values without further use.
 void ct_emitter_release(struct ct_emitter *e, const uint32_t *v, uint32_t n);
 /// Pins come off, and values of an instruction that are not read again leave.
 void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i);
-/// All leave their registers, those that are read again for memory.
-void ct_emitter_forget(struct ct_emitter *e);
+/// Spill all live values and empty all registers.
+void ct_emitter_spill_all(struct ct_emitter *e);
 /// Reads of all values, none of them done.
 void ct_emitter_list_uses(struct ct_emitter *e);
 void ct_emitter_instruction(struct ct_emitter *e, uint32_t at);
 /// Reads of v before a place in the order are done.
-void ct_emitter_pass(struct ct_emitter *e, uint32_t v, uint32_t at);
-/// Places in the work array of values that are dead now.
-void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n);
+void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at);
+/// Free the slots in the work array of dead values.
+void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n);
 
 // ---- x86_angles.c -----------------------------------------------------------------------------
 
-/// The order of the body's instructions: what calls need early, what angles need earliest. Is there any call?
+/// Schedule the body: first what angles need, then what calls need, then the rest. Is there a call?
 bool ct_emitter_order(struct ct_emitter *e);
 /// One call for all angles.
 void ct_emitter_angles(struct ct_emitter *e);

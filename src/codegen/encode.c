@@ -1,4 +1,4 @@
-// See encode.h.
+// Encoding of x86-64 instructions; see encode.h.
 #include "codegen/encode.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 // Encoding of x86-64 instructions with AVX registers: bytes into a buffer that grows.
 //
-// Source: instruction encoding, Intel 64 and IA-32 Architectures Software Developer's Manual, vol. 2, sections 2.3 (VEX)
-// and 3-5.
+// Source: instruction encoding, Intel 64 and IA-32 Architectures Software Developer's Manual, vol.
+// 2, sections 2.3 (VEX) and 3-5.
 #ifndef CT_CODEGEN_ENCODE_H
 #define CT_CODEGEN_ENCODE_H
 

@@ -1,4 +1,4 @@
-// See export.h.
+// Equations of motion as C source; see export.h.
 #include "codegen/export.h"
 
 #include "codegen/c.h"
@@ -179,8 +179,8 @@ static void put_numbers(struct text *t, const double *v, size_t n)
     put(t, n ? "\n}" : "0}");
 }
 
-// [M -J'; J 0] [u'; lam] = [Q; -gam] by elimination with complete pivoting. What cannot be eliminated
-// are multipliers that redundant rows leave open; they are set to zero.
+// [M -J'; J 0] [u'; lam] = [Q; -gam] by elimination with complete pivoting. What cannot be
+// eliminated are multipliers that redundant rows leave open; they are set to zero.
 static const char solver[]
     = "int @_accelerations(const double *in, double *a, double *work)\n"
       "{\n"

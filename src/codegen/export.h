@@ -1,11 +1,10 @@
 // The equations of motion of a model as C source that stands alone.
 //
 //     NAME.h  NAME.c     motion and constraint programs, their layout, accelerations; C99 and libm
-//     NAME_test.c        a program that compares with values recorded here or integrates from the start, and so shows how
-//                        to call them
+//     NAME_test.c        compares with recorded values or integrates from the start; shows the calls
 //
-// What always holds: the same equations give the same text; no globals but constant tables; compiles
-// without warnings; functions are short enough for compilers (c.h).
+// What always holds: the same equations give the same text; no globals but constant tables;
+// compiles without warnings; functions are short enough for compilers (c.h).
 #ifndef CT_CODEGEN_EXPORT_H
 #define CT_CODEGEN_EXPORT_H
 
@@ -23,8 +22,8 @@ struct ct_export {
     const struct ct_equations *e;
     // outputs: M, Q, J, gam, q' and phi, v, J; inputs in one layout
     const struct ct_listing *motion, *constraint;
-    // u', q', then pivots that must be positive (nfree) and pivots whose sizes times scale must exceed the weakest
-    // (npivot): where they do not, accelerations are found from the motion program. NULL: everywhere
+    // u', q', nfree pivots that must be positive and npivot pivots with |pivot| scale > weakest.
+    // Where this fails, accelerations are found from the motion program. NULL: everywhere
     const struct ct_listing *solved;
     size_t nfree, npivot;
     const double *scale;

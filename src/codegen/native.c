@@ -1,4 +1,4 @@
-// See native.h.
+// Executable memory, prologue and calls of native code; see native.h.
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "codegen/native.h"
 #include "codegen/native_wide.h"
@@ -16,7 +16,8 @@
 #include <math.h>
 #include <string.h>
 
-// Shorter programs gain too little from fused operations to give up the bits of the tape.
+// Instructions from which products and sums are contracted to fused operations: shorter programs
+// keep the bits of the tape.
 static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);
@@ -30,8 +31,8 @@ struct ct_native {
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
-    struct ct_native *four;      // of eight lanes, which have no code of their own
-    const struct ct_simd2 *pair; // and their two halves
+    struct ct_native *four;            // of eight lanes, which have no code of their own
+    const struct ct_native_wide *pair; // and their two halves
 };
 
 // ---- functions that code calls ----------------------------------------------------------------
@@ -291,7 +292,7 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     f->nwork = code.nwork;
     f->ntable = code.ntable;
     f->table = copy_table(a, &code);
-    ct_arena_at_end(a, unmap, f); // first: it may run out of memory
+    ct_arena_on_destroy(a, unmap, f); // first: it may run out of memory
     const bool ok = map(f, code.byte, code.nbyte);
     ct_arena_destroy(scratch);
     return ok ? f : NULL;

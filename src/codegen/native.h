@@ -1,4 +1,4 @@
-// Machine code of the running processor: a listing as a function.
+// Native code: a listing compiled to a function of the running processor.
 //
 //     listing -> prologue, interpreted, at prepare    body, compiled, at every call
 //
@@ -6,9 +6,10 @@
 // that can be made executable. Memory is writable while code is written to it and executable
 // afterwards, never both.
 //
-// What always holds: results have the bits of the tape (tape.h) made from the same listing, lane by
-// lane, unless the listing leaves fusing to native code; evaluation allocates nothing; the function is constant, the work array belongs to the caller
-// and holds the prologue's results between calls.
+// What always holds: results have the bits of the tape (tape.h) made from the same listing, lane
+// by lane, unless the listing leaves fusing to native code. Evaluation allocates nothing. The
+// function is constant; the work array belongs to the caller and holds the prologue's results
+// between calls.
 #ifndef CT_CODEGEN_NATIVE_H
 #define CT_CODEGEN_NATIVE_H
 
@@ -18,8 +19,9 @@ struct ct_native;
 
 /// Can this processor run native code of 1, 4 or 8 lanes?
 bool ct_native_is_available(int lanes);
-/// Compile for 1, 4 or 8 lanes, eight as twice four (native_wide.h); l must live as long. NULL where native code is not available: use the
-/// tape. The code goes with the arena. Cost: instructions of l.
+/// Compile for 1, 4 or 8 SIMD lanes, eight as twice four (native_wide.h); l must outlive it. NULL
+/// where native code is not available: use the tape. The code goes with the arena. Cost:
+/// instructions of l.
 struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes);
 
 /// Number of doubles of the work array, all lanes together.

@@ -1,11 +1,12 @@
-// See native_wide.h. The work array has a part for each half, then the inputs and the outputs of four lanes.
+// Eight lanes as two halves of four; see native_wide.h. The work array has a part for each half,
+// then the inputs and outputs of four lanes.
 #include "codegen/native_wide.h"
 
 #include <string.h>
 
 enum { HALF = CT_NATIVE_WIDE_LANES / 2 };
 
-struct ct_simd2 {
+struct ct_native_wide {
     const struct ct_native *four;
     size_t nwork;         // of a half
     const uint32_t *slot; // inputs that are read  (nslot)
@@ -13,12 +14,12 @@ struct ct_simd2 {
     size_t nout;
 };
 
-struct ct_simd2 *ct_native_wide_create(struct ct_arena *a, const struct ct_native *four,
-                                       const struct ct_listing *l)
+struct ct_native_wide *ct_native_wide_create(struct ct_arena *a, const struct ct_native *four,
+                                             const struct ct_listing *l)
 {
-    struct ct_simd2 *p = CT_NEW(a, struct ct_simd2);
+    struct ct_native_wide *p = CT_NEW(a, struct ct_native_wide);
     uint32_t *slot = CT_NEWN(a, uint32_t, l->nvalue + 1);
-    *p = (struct ct_simd2){
+    *p = (struct ct_native_wide){
         .four = four, .nwork = ct_native_work(four), .slot = slot, .nout = l->nout};
     for (size_t v = 0; v < l->nvalue; v++)
         if (l->input[v] != CT_VALUE_NONE) {
@@ -29,13 +30,13 @@ struct ct_simd2 *ct_native_wide_create(struct ct_arena *a, const struct ct_nativ
     return p;
 }
 
-size_t ct_native_wide_work(const struct ct_simd2 *p)
+size_t ct_native_wide_work(const struct ct_native_wide *p)
 {
     return 2 * p->nwork + HALF * (p->ninput + p->nout);
 }
 
 // The inputs of a half, side by side.
-static double *take_half(const struct ct_simd2 *p, const double *input, size_t half,
+static double *take_half(const struct ct_native_wide *p, const double *input, size_t half,
                          double *work)
 {
     double *in = work + 2 * p->nwork;
@@ -46,13 +47,13 @@ static double *take_half(const struct ct_simd2 *p, const double *input, size_t h
     return in;
 }
 
-void ct_native_wide_prepare(const struct ct_simd2 *p, const double *input, double *work)
+void ct_native_wide_prepare(const struct ct_native_wide *p, const double *input, double *work)
 {
     for (size_t half = 0; half < 2; half++)
         ct_native_prepare(p->four, take_half(p, input, half, work), work + half * p->nwork);
 }
 
-void ct_native_wide_eval(const struct ct_simd2 *p, const double *input, double *out,
+void ct_native_wide_eval(const struct ct_native_wide *p, const double *input, double *out,
                          double *work)
 {
     double *four = work + 2 * p->nwork + HALF * p->ninput;

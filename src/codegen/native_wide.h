@@ -10,16 +10,16 @@
 
 enum { CT_NATIVE_WIDE_LANES = 8 };
 
-struct ct_simd2;
+struct ct_native_wide;
 
 /// Around the code of four lanes made from l, which must live as long.
-struct ct_simd2 *ct_native_wide_create(struct ct_arena *a, const struct ct_native *four,
-                                       const struct ct_listing *l);
+struct ct_native_wide *ct_native_wide_create(struct ct_arena *a, const struct ct_native *four,
+                                             const struct ct_listing *l);
 /// Number of doubles of the work array.
-size_t ct_native_wide_work(const struct ct_simd2 *p);
+size_t ct_native_wide_work(const struct ct_native_wide *p);
 /// As the functions of native.h, for eight lanes.
-void ct_native_wide_prepare(const struct ct_simd2 *p, const double *input, double *work);
-void ct_native_wide_eval(const struct ct_simd2 *p, const double *input, double *out,
+void ct_native_wide_prepare(const struct ct_native_wide *p, const double *input, double *work);
+void ct_native_wide_eval(const struct ct_native_wide *p, const double *input, double *out,
                          double *work);
 
 #endif

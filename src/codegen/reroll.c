@@ -1,4 +1,6 @@
-// See reroll.h. A repeat becomes a loop where its operands can be reached; else it is cut, or left as it was.
+// Loop rerolling: addresses of operands. A repetition becomes a loop if every operand is the row's
+// own, invariant, or affine in the row. Else end rows are dropped, or it stays straight. See
+// reroll.h.
 #include "codegen/reroll_layout.h"
 
 #include <string.h>
@@ -6,8 +8,8 @@
 static const uint32_t none = CT_VALUE_NONE;
 
 enum {
-    MOST_CUTS = 3, // see cut
-    MOST_LEFT = 8, // rows at an end, see leave_ends
+    MOST_CUTS = 3,     // see cut
+    MOST_END_ROWS = 8, // rows at an end, see leave_ends
 };
 
 // ---- how operands are reached -----------------------------------------------------------------
@@ -30,8 +32,8 @@ static bool use_stream(struct ct_repetition *r, int kind, uint32_t other, int32_
     return true;
 }
 
-// Those of the row itself, or the same in all: the most. Row by row, as they lie in memory.
-static void reach_alike(const struct ct_repetitions *p, const struct ct_repetition *r)
+// Operands from the same row and loop invariants.
+static void resolve_row_and_fixed(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     for (uint32_t i = 0; i < 3 * r->period; i++)
         r->reach[i] = (struct ct_source){.kind = CT_SOURCE_OPEN};
@@ -63,7 +65,7 @@ static uint32_t input_of(const struct ct_repetitions *p, uint32_t v)
     return p->l->rate[v] == CT_RATE_CALL && p->l->is_leaf[v] ? p->l->input[v] : none;
 }
 
-// Is v the input `rows` times stride behind `first`? There may be none there: what is no input has no place, either.
+// Is v the input at index first + rows * stride?
 static bool is_input_at(const struct ct_repetitions *p, uint32_t v, uint32_t first,
                         int32_t stride, int32_t rows)
 {
@@ -71,8 +73,8 @@ static bool is_input_at(const struct ct_repetitions *p, uint32_t v, uint32_t fir
     return at != none && (int64_t)at == (int64_t)first + (int64_t)rows * stride;
 }
 
-static bool reach_inputs(const struct ct_repetitions *p, struct ct_repetition *r,
-                         uint32_t operand, struct ct_source *out)
+static bool resolve_inputs(const struct ct_repetitions *p, struct ct_repetition *r,
+                           uint32_t operand, struct ct_source *out)
 {
     const uint32_t first = input_of(p, ct_repetition_argument(p, r, 0, operand)),
                    second = input_of(p, ct_repetition_argument(p, r, 1, operand));
@@ -87,7 +89,8 @@ static bool reach_inputs(const struct ct_repetitions *p, struct ct_repetition *r
     return use_stream(r, CT_SOURCE_INPUTS, 0, stride);
 }
 
-// v at a row of `other` that it does not have: true if that place is free or holds v. *is_new: it must be put there.
+// May v be stored as result of `other` at a row beyond its ends (peeled value)? *is_new: not there
+// yet.
 static bool is_edge_free(const struct ct_repetition *other, uint32_t slot, int32_t row,
                          uint32_t v, bool *is_new)
 {
@@ -119,9 +122,10 @@ static void add_edge(const struct ct_repetitions *p, const struct ct_repetition 
     make_room(other, row);
 }
 
-// Results of one instruction of a repeat, a row further every time; at the ends perhaps of what takes its place there.
-static bool reach_results(const struct ct_repetitions *p, struct ct_repetition *r,
-                          uint32_t operand, struct ct_source *out)
+// Results of one instruction of a repetition with constant row distance; at the ends, values
+// stored in their place.
+static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition *r,
+                            uint32_t operand, struct ct_source *out)
 {
     enum { MOST_EDGES = 8 };
     const uint32_t middle = r->count / 2;
@@ -174,9 +178,9 @@ static bool is_same_sequence(const struct ct_repetitions *p, const struct ct_rep
     return true;
 }
 
-// Copied, if everything is there before the loop.
-static bool reach_column(const struct ct_repetitions *p, struct ct_repetition *r,
-                         uint32_t operand, struct ct_source *out)
+// A column of values copied before the loop; all must be computed before it.
+static bool resolve_column(const struct ct_repetitions *p, struct ct_repetition *r,
+                           uint32_t operand, struct ct_source *out)
 {
     for (uint32_t row = 0; row < r->count; row++)
         if (!is_made_before(p, r, ct_repetition_argument(p, r, row, operand)))
@@ -194,7 +198,7 @@ static bool reach_column(const struct ct_repetitions *p, struct ct_repetition *r
 
 // ---- which loops there are --------------------------------------------------------------------
 
-// Columns that hold something else than constants and parameters. Row by row, as operands lie in memory.
+// Number of columns that change with each evaluation, and so are copied in each.
 static size_t count_copied(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     size_t n = 0;
@@ -212,7 +216,7 @@ static size_t count_copied(const struct ct_repetitions *p, const struct ct_repet
     return n;
 }
 
-// Is operand at a row what the middle row's is, so many rows further?
+// Does the operand at a row follow the same rule as at the middle row?
 static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition *r,
                      uint32_t operand, int kind, uint32_t row)
 {
@@ -242,7 +246,7 @@ static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition 
     }
 }
 
-// Rows around the middle that take an operand in one way, as many as possible.
+// The longest range of rows around the middle in which an operand follows one rule.
 static void regular_rows(const struct ct_repetitions *p, const struct ct_repetition *r,
                          uint32_t operand, uint32_t *first, uint32_t *behind)
 {
@@ -261,48 +265,48 @@ static void regular_rows(const struct ct_repetitions *p, const struct ct_repetit
     }
 }
 
-// An operand that must be copied, or cannot be: rows at the ends that do otherwise may be left out.
-static bool leave_ends(const struct ct_repetitions *p, struct ct_repetition *r,
-                       uint32_t operand)
+// Drop irregular rows at the ends for an operand that would be copied or has no address.
+static bool drop_end_rows(const struct ct_repetitions *p, struct ct_repetition *r,
+                          uint32_t operand)
 {
     uint32_t first, behind;
     regular_rows(p, r, operand, &first, &behind);
-    if (first > MOST_LEFT || behind + MOST_LEFT < r->count)
+    if (first > MOST_END_ROWS || behind + MOST_END_ROWS < r->count)
         return false;
     r->keep_first = first > r->keep_first ? first : r->keep_first;
     r->keep_behind = behind < r->keep_behind ? behind : r->keep_behind;
     return true;
 }
 
-static uint32_t rows_left_out(const struct ct_repetition *r)
+static uint32_t dropped_rows(const struct ct_repetition *r)
 {
     return r->count - (r->keep_behind - r->keep_first);
 }
 
-// Is it worth while to leave rows out? A copy of an operand costs as much as two instructions, straight code about one more
-// than that of a loop.
+// Do copies cost more than straight code for the end rows? A copy is a load and a store; straight
+// code costs about one instruction fetch more than code of a loop.
 static bool copies_cost_more(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     size_t nsaved = 0;
     for (size_t i = 0; i < r->ncolumn; i++)
-        nsaved += r->column[i].is_copied && leave_ends(p, r, r->column[i].operand);
-    return 2 * nsaved * r->count > rows_left_out(r) * r->period;
+        nsaved += r->column[i].is_copied && drop_end_rows(p, r, r->column[i].operand);
+    return 2 * nsaved * r->count > dropped_rows(r) * r->period;
 }
 
-static bool reach_operands(const struct ct_repetitions *p, struct ct_repetition *r)
+static bool resolve_operands(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     bool all = true;
     r->keep_first = 0;
     r->keep_behind = r->count;
-    reach_alike(p, r);
+    resolve_row_and_fixed(p, r);
     for (uint32_t slot = 0; slot < r->period; slot++)
         for (uint32_t k = 0; k < ct_repetition_instruction(p, r->first + slot)->narg; k++) {
             const uint32_t operand = 3 * slot + k;
             struct ct_source *out = &r->reach[operand];
-            if (out->kind != CT_SOURCE_OPEN || reach_inputs(p, r, operand, out)
-                || reach_results(p, r, operand, out) || reach_column(p, r, operand, out))
+            if (out->kind != CT_SOURCE_OPEN || resolve_inputs(p, r, operand, out)
+                || resolve_results(p, r, operand, out) || resolve_column(p, r, operand, out))
                 continue;
-            if (!leave_ends(p, r, operand))
+            if (!drop_end_rows(p, r, operand))
                 return false;
             all = false;
         }
@@ -315,7 +319,7 @@ static bool reach_operands(const struct ct_repetitions *p, struct ct_repetition 
         && use_stream(r, CT_SOURCE_RESULTS, (uint32_t)(r - p->repetition), 1);
 }
 
-static void clear(const struct ct_repetitions *p, struct ct_repetition *r)
+static void reset(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     if (!r->reach) {
         r->reach = CT_NEWN(p->scratch, struct ct_source, 3 * (size_t)r->period);
@@ -334,26 +338,26 @@ static void clear(const struct ct_repetitions *p, struct ct_repetition *r)
     r->before = r->behind = 0;
 }
 
-static void set_places(const struct ct_repetitions *p, const struct ct_repetition *r,
-                       uint32_t to)
+static void assign_range(const struct ct_repetitions *p, const struct ct_repetition *r,
+                         uint32_t to)
 {
     for (uint32_t k = 0; k < r->period * r->count; k++)
         p->repetition_of[r->first + k] = to;
 }
 
-// Some operand cannot be reached. The rows at the ends may do it on something else, as the first beam of a chain does that
-// nothing hangs on: without the first row, without the last one, without both; then none.
-static void cut(struct ct_repetitions *p, struct ct_repetition *r)
+// Some operand has no address. Try without irregular end rows, then without the first row, the last
+// one, both; then give up.
+static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
 {
     static const struct {
         unsigned first, less; // rows
     } without[MOST_CUTS] = {{1, 1}, {0, 1}, {1, 2}};
-    set_places(p, r, none);
-    const uint32_t left = rows_left_out(r);
+    assign_range(p, r, none);
+    const uint32_t left = dropped_rows(r);
     if (r->ncut == 0 && left && r->count >= left + CT_LEAST_ROWS) {
         r->first += r->keep_first * r->period;
         r->count -= left;
-        set_places(p, r, (uint32_t)(r - p->repetition));
+        assign_range(p, r, (uint32_t)(r - p->repetition));
         return;
     }
     if (r->ncut == 0) {
@@ -367,10 +371,10 @@ static void cut(struct ct_repetitions *p, struct ct_repetition *r)
     r->first = r->whole_first + without[r->ncut].first * r->period;
     r->count = r->whole_count - without[r->ncut].less;
     r->ncut++;
-    set_places(p, r, (uint32_t)(r - p->repetition));
+    assign_range(p, r, (uint32_t)(r - p->repetition));
 }
 
-// Edges of a repeat but for those that `asker` has put there last.
+// Remove the edges that `asker` has added last.
 static void remove_edges(struct ct_repetition *r, uint32_t asker)
 {
     size_t n = r->nedge;
@@ -394,17 +398,17 @@ static void withdraw_edges(struct ct_repetitions *p, const struct ct_repetition 
             remove_edges(&p->repetition[r->stream[i].other], (uint32_t)(r - p->repetition));
 }
 
-// Operands are made before they are read, so that a repeat relies on itself and those before it alone: when it is cut, these
-// stay as they are, but for the edges that it has put there.
-static void settle(struct ct_repetitions *p)
+// A repetition reads results of itself and of earlier ones only. When it is trimmed, earlier ones
+// change only by the edges that it has added to them.
+static void resolve_all(struct ct_repetitions *p)
 {
     for (size_t i = 0; i < p->nrepetition; i++) {
         struct ct_repetition *r = &p->repetition[i];
-        clear(p, r);
-        while (!r->is_dropped && !reach_operands(p, r)) {
+        reset(p, r);
+        while (!r->is_dropped && !resolve_operands(p, r)) {
             withdraw_edges(p, r);
-            cut(p, r);
-            clear(p, r);
+            trim_rows(p, r);
+            reset(p, r);
         }
     }
 }
@@ -428,7 +432,7 @@ struct ct_reroll ct_reroll_find(struct ct_arena *a, const struct ct_listing *l,
         for (uint32_t k = 0; k < ct_repetition_instruction(&p, i)->nres; k++)
             p.at[ct_repetition_instruction(&p, i)->res[k]] = i;
     ct_repetitions_find(&p, is_alone, rows);
-    settle(&p);
+    resolve_all(&p);
     ct_repetition_lay_out(&p, rows, lanes, &out);
     ct_arena_destroy(scratch);
     return out;

@@ -1,19 +1,20 @@
-// Loop rerolling, loops in a straight-line program: stretches that do the same on other operands again and again, as the elements of a
-// beam and the bodies of a chain make them.
+// Loop rerolling: straight-line code that repeats one sequence of operations (elements of a beam,
+// bodies of a chain) becomes a loop. An iteration is called a row.
 //
 //     order     ... | body, row 0 | body, row 1 | ... | body, row count - 1 | ...
 //     work      results of a row that something beyond it reads, row after row, `width` places each
 //
-// Rows that do not read each other's results can be done side by side: a loop is split into one of those instructions, whose
-// results stand instruction after instruction, the rows of each side by side, and one of the others, as running sums.
+// Loop distribution separates instructions without loop-carried dependences, which are vectorised
+// over rows (results of one instruction contiguous over rows), from the others, such as running
+// sums. Strip mining keeps results of a distributed loop in the cache.
 //
 // Operands of the body are results of the same row, values that are the same in all rows, or at
 //
 //     place + row * stride     of the inputs or of the work array.
 //
-// Where they are not, as at the first row of a running sum, they are copied to such places before the loop.
+// Operands that are not, as at the first row of a running sum, are copied there before the loop.
 //
-// What always holds: rolled or not, the same instructions are done on the same operands in the same order.
+// What always holds: with and without loops, the same operations act on the same operands.
 #ifndef CT_CODEGEN_REROLL_H
 #define CT_CODEGEN_REROLL_H
 
@@ -35,8 +36,9 @@ enum ct_reach {
 
 struct ct_operand {
     enum ct_reach reach;
-    // ROW: number of the loop's own instruction; FIXED: value; PLACE: of the work array, for all rows; NUMBER: one double
-    // for all lanes, counted in doubles of the work array; OUT: output; else the place at row 0, STRIP: of the strip
+    // ROW: number of the loop's own instruction; FIXED: value; PLACE: of the work array, for all
+    // rows; NUMBER: one double for all lanes, counted in doubles of the work array; OUT: output;
+    // else the place at row 0, STRIP: of the strip
     uint32_t at;
     int32_t stride;
 };
@@ -53,13 +55,14 @@ struct ct_copy {
 struct ct_loop {
     uint32_t first, period, count; // places in the order: the first one, of a row; rows
     uint32_t strip;                // rows of a strip; 0: all
-    bool is_side_by_side;          // rows may be done together
+    bool is_vectorized;            // rows may be done together
     uint32_t nslot, *slot;         // instructions of a row that are its own, ascending
     struct ct_operand *operand;    // (3 x nslot)
     struct ct_operand *result;     // (nslot) where it is kept; CT_REACH_ROW: nowhere
     struct ct_copy *copy;          // before the loop
     size_t ncopy, copy_cap;
-    // of the first loop of a stretch: places of the strip whose last nbefore rows stand before those of the next strip
+    // of the first loop of a stretch: places of the strip whose last nbefore rows stand before
+    // those of the next strip
     uint32_t *carried, ncarried, nbefore;
 };
 
@@ -75,8 +78,9 @@ struct ct_reroll {
     size_t nresult;   // of rows that are kept in memory
 };
 
-/// The loops of n instructions in the order of their execution. is_alone: by operator, not in loops. Places of the work
-/// array from nwork on are used, each of `lanes` numbers. rows: that can be done side by side; 1: none. Cost: about n.
+/// The loops of n instructions in the order of their execution. is_alone: by operator, not in
+/// loops. Places of the work array from nwork on are used, each of `lanes` numbers. rows: that can
+/// be done side by side; 1: none. Cost: about n.
 struct ct_reroll ct_reroll_find(struct ct_arena *a, const struct ct_listing *l,
                                 const uint32_t *order, uint32_t n,
                                 const bool is_alone[CT_NKIND], uint32_t nwork, uint32_t rows,

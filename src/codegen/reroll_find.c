@@ -1,11 +1,12 @@
-// See reroll_layout.h: repeats in the sequence of operators, together with how far back near operands are.
+// Detection of repetitions by a rolling hash of operators and distances to near operands; see
+// reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
 
 enum {
-    WINDOW = 16, // instructions that must repeat to be looked at
-    NEAR = 64,   // operands so close belong to what repeats
+    WINDOW = 16, // instructions of the rolling hash
+    NEAR = 64,   // distances to operands up to this are part of the hash
     MOST_PERIOD = 8192,
     MOST_TRIES = 64,
     LEAST_SAVED = 48, // instructions
@@ -37,7 +38,7 @@ static uint64_t mix(uint64_t h, uint64_t v)
     return h ^ h >> 29;
 }
 
-static void sign_places(struct ct_repetitions *p, const bool is_alone[CT_NKIND])
+static void hash_instructions(struct ct_repetitions *p, const bool is_alone[CT_NKIND])
 {
     for (uint32_t i = 0; i < p->n; i++) {
         const struct ct_instruction *ins = ct_repetition_instruction(p, i);
@@ -74,7 +75,7 @@ static void link_windows(struct ct_repetitions *p)
     }
 }
 
-// The repeat that starts at i and saves most.
+// The repetition at i that saves most instructions.
 static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t i,
                                         uint32_t *longest)
 {
@@ -102,16 +103,16 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
     return best;
 }
 
-// Rows fewer than before, side by side: are they nearly as many sets of lanes?
-static bool keeps_sets(uint32_t rows, uint32_t before, uint32_t lanes)
+// Are SIMD lanes filled nearly as well (7/8) with fewer rows as before?
+static bool fills_lanes(uint32_t rows, uint32_t before, uint32_t lanes)
 {
     return 8 * (rows / lanes) >= 7 * (before / lanes);
 }
 
-// Where rows begin is chosen so that the fewest results are read across that place. same: places that repeat what is a
-// row before them. Cost: two rows.
-static void turn_rows(const struct ct_repetitions *p, struct ct_repetition *r, uint32_t same,
-                      uint32_t lanes)
+// Choose the boundary between rows with the fewest live values across it. same: instructions that
+// repeat those one row before. Cost: two rows.
+static void choose_row_boundary(const struct ct_repetitions *p, struct ct_repetition *r,
+                                uint32_t same, uint32_t lanes)
 {
     const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
     uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
@@ -133,7 +134,7 @@ static void turn_rows(const struct ct_repetitions *p, struct ct_repetition *r, u
     uint32_t best = 0;
     for (uint32_t i = 1; i < n && i <= same; i++)
         if (across[i] + across[i + n] < across[best] + across[best + n]
-            && keeps_sets((same - i) / n + 1, r->count, lanes))
+            && fills_lanes((same - i) / n + 1, r->count, lanes))
             best = i;
     r->first += best;
     r->count = (same - best) / n + 1;
@@ -142,7 +143,7 @@ static void turn_rows(const struct ct_repetitions *p, struct ct_repetition *r, u
 void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND], uint32_t rows)
 {
     order_operands(p);
-    sign_places(p, is_alone);
+    hash_instructions(p, is_alone);
     link_windows(p);
     for (uint32_t i = 0; i < p->n; i++)
         p->repetition_of[i] = none;
@@ -154,7 +155,7 @@ void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND]
             continue;
         }
         if ((same - r.period) / r.period + 1 >= CT_LEAST_ROWS)
-            turn_rows(p, &r, same, rows);
+            choose_row_boundary(p, &r, same, rows);
         for (uint32_t k = 0; k < r.period * r.count; k++)
             p->repetition_of[r.first + k] = (uint32_t)p->nrepetition;
         i = r.first + r.period * r.count;

@@ -1,11 +1,12 @@
-// See reroll_layout.h.
+// Memory layout of rerolled loops: live-out results, loop distribution, strip mining, slots of the
+// work array; see reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
 
 #include <string.h>
 
-// ---- what leaves its row ------------------------------------------------------------------------
+// ---- live-out results ------------------------------------------------------------------------
 
 // Does row `row` of `reader` take the operand from where all rows take it?
 static bool is_taken_in_turn(const struct ct_repetitions *p, const struct ct_repetition *reader,
@@ -17,14 +18,14 @@ static bool is_taken_in_turn(const struct ct_repetitions *p, const struct ct_rep
         && from->at == slot && from->row + row * from->step == its;
 }
 
-static void mark_read(struct ct_repetition *r, uint32_t slot, int32_t row)
+static void mark_live_out(struct ct_repetition *r, uint32_t slot, int32_t row)
 {
     r->escapes[slot] = true;
     if ((uint32_t)row < r->least_row[slot])
         r->least_row[slot] = (uint32_t)row;
 }
 
-static void mark_escapes(const struct ct_repetitions *p)
+static void find_live_out(const struct ct_repetitions *p)
 {
     int32_t row;
     uint32_t slot;
@@ -47,17 +48,17 @@ static void mark_escapes(const struct ct_repetitions *p)
                                          (int32_t)(at / reader->period), r, slot, row))
                 r->escapes[slot] = r->escapes_far[slot] = true;
             else
-                mark_read(r, slot, row);
+                mark_live_out(r, slot, row);
         }
     }
     for (size_t k = 0; k < p->l->nout; k++) {
         struct ct_repetition *r = ct_repetition_of(p, p->l->out[k], &row, &slot);
         if (r)
-            mark_read(r, slot, row);
+            mark_live_out(r, slot, row);
     }
 }
 
-// ---- rows side by side --------------------------------------------------------------------------
+// ---- vectorisation over rows -------------------------------------------------------------------
 
 enum { MOST_PARTS = 6 }; // done side by side
 
@@ -84,9 +85,10 @@ static unsigned char part_of(const struct ct_repetitions *p, const struct ct_rep
     return part;
 }
 
-// What reads results of rows before goes into the next part. What so reads itself, as running sums do, rises until it
-// is among the late ones, and takes along what depends on it. Cost: instructions of a row times MOST_PARTS at most.
-static void part_rows(const struct ct_repetitions *p, struct ct_repetition *r)
+// Loop distribution: an instruction that reads results of earlier rows goes into a later part.
+// Recurrences, such as running sums, and what depends on them end in the last part, which is not
+// vectorised. Cost: at most MOST_PARTS passes over the instructions of a row.
+static void distribute_loop(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     for (bool changes = true; changes;) {
         changes = false;
@@ -113,7 +115,7 @@ static bool is_late(const struct ct_repetition *r, uint32_t slot)
     return r->part[slot] + 1u == r->npart;
 }
 
-// Reads whose rows are not side by side.
+// Operands that need a gather, as their rows are not contiguous.
 static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     uint32_t n = 0;
@@ -124,13 +126,13 @@ static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_r
             const struct ct_source *from = &r->reach[3 * slot + k];
             n += (from->kind == CT_SOURCE_INPUTS && from->step != 1)
               || (from->kind == CT_SOURCE_RESULTS && !reads_itself(p, r, from)
-                  && (!p->repetition[from->other].is_side_by_side || from->step != 1));
+                  && (!p->repetition[from->other].is_vectorized || from->step != 1));
         }
     return n;
 }
 
-// What parts of a row read of each other.
-static uint32_t hand_over(const struct ct_repetitions *p, struct ct_repetition *r)
+// Reads between the parts of a distributed loop.
+static uint32_t count_crossing_reads(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     uint32_t n = 0;
     for (uint32_t slot = 0; slot < r->period; slot++)
@@ -144,7 +146,7 @@ static uint32_t hand_over(const struct ct_repetitions *p, struct ct_repetition *
     return n;
 }
 
-// Rows of a strip: the last one has as many, or at least as many as are done together.
+// Rows of a strip, so that the last strip is full or fills the SIMD lanes.
 static uint32_t strip_of(uint32_t count, uint32_t lanes)
 {
     static const uint32_t wanted[] = {16, 12, 20, 8};
@@ -154,8 +156,8 @@ static uint32_t strip_of(uint32_t count, uint32_t lanes)
     return 0;
 }
 
-// Does it pay? A read that gathers four numbers costs about five instructions, a result of a late row that the others read
-// two.
+// Cost model of vectorisation in instructions: a gather of four doubles takes five (two pairs of
+// loads and a merge), a value handed between parts two (store and load).
 static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
 {
     enum { GATHER = 5, HAND_OVER = 2, LEAST = 16 };
@@ -163,13 +165,13 @@ static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
         struct ct_repetition *r = &p->repetition[i];
         if (r->is_dropped || r->count < lanes)
             continue;
-        part_rows(p, r);
+        distribute_loop(p, r);
         const uint32_t n = r->period - r->nlate;
         const uint32_t more = GATHER * count_gathered(p, r) + HAND_OVER * r->nlate;
-        r->is_side_by_side = (lanes - 1) * n > more && n >= LEAST;
-        if (!r->is_side_by_side)
+        r->is_vectorized = (lanes - 1) * n > more && n >= LEAST;
+        if (!r->is_vectorized)
             continue;
-        hand_over(p, r);
+        count_crossing_reads(p, r);
         r->strip = r->nstream < CT_REROLL_STREAMS ? strip_of(r->count, lanes) : 0;
     }
 }
@@ -201,7 +203,7 @@ static uint32_t rounded_up(uint32_t n, uint32_t to)
     return (n + to - 1) / to * to;
 }
 
-// An odd number of sets of lanes, so that places of different results fall into all sets of a cache.
+// Pad to an odd number of vectors, so that columns do not map to the same cache sets.
 static uint32_t odd_rows(uint32_t rows, uint32_t lanes)
 {
     return rows / lanes % 2 == 0 ? rows + lanes : rows;
@@ -306,7 +308,7 @@ static uint32_t number_columns(const struct ct_repetitions *p, struct ct_repetit
 
 static void choose_keep(const struct ct_repetitions *p, struct ct_repetition *r)
 {
-    if (r->is_side_by_side) {
+    if (r->is_vectorized) {
         find_strips(r);
     } else {
         find_passed(p, r);
@@ -326,10 +328,10 @@ static void place_rows(const struct ct_repetitions *p, struct ct_repetition *r, 
     const uint32_t width = r->nresult + ncolumn,
                    before = rounded_up((uint32_t)r->before, together);
     uint32_t rows = before + rounded_up(r->count + (uint32_t)r->behind, together);
-    if (r->is_side_by_side)
+    if (r->is_vectorized)
         rows = odd_rows(rows, together);
-    r->row_stride = r->is_side_by_side ? 1 : width;
-    r->slot_stride = r->is_side_by_side ? rows : 1;
+    r->row_stride = r->is_vectorized ? 1 : width;
+    r->slot_stride = r->is_vectorized ? rows : 1;
     *nwork = rounded_up(*nwork, together);
     r->origin = *nwork + before * r->row_stride;
     *nwork += rows * width;
@@ -421,7 +423,7 @@ static void fill_loop(const struct ct_repetitions *p, const struct ct_repetition
     loop->operand = CT_NEWN(p->arena, struct ct_operand, 3 * r->period);
     loop->result = CT_NEWN(p->arena, struct ct_operand, r->period);
     for (uint32_t slot = 0; slot < r->period; slot++) {
-        if (r->is_side_by_side && r->part[slot] != part)
+        if (r->is_vectorized && r->part[slot] != part)
             continue;
         const uint32_t i = number[slot] = loop->nslot++;
         loop->slot[i] = slot;
@@ -433,7 +435,7 @@ static void fill_loop(const struct ct_repetitions *p, const struct ct_repetition
             *o = operand_of(p, r, from);
             if (from->kind != CT_SOURCE_ROW)
                 continue;
-            if (r->is_side_by_side && r->part[from->at] != part)
+            if (r->is_vectorized && r->part[from->at] != part)
                 *o = result_of(r, from->at, 0, 1);
             else
                 o->at = number[from->at];
@@ -478,7 +480,7 @@ static void keep_places(const struct ct_repetitions *p, const struct ct_repetiti
 static void add_loops(const struct ct_repetitions *p, uint32_t which, struct ct_reroll *out)
 {
     const struct ct_repetition *r = &p->repetition[which];
-    const uint32_t npart = r->is_side_by_side ? r->npart : 1;
+    const uint32_t npart = r->is_vectorized ? r->npart : 1;
     const uint32_t first = (uint32_t)out->nloop;
     for (uint32_t part = 0; part < npart; part++) {
         struct ct_loop *loop = &out->loop[out->nloop];
@@ -486,7 +488,7 @@ static void add_loops(const struct ct_repetitions *p, uint32_t which, struct ct_
                                  .period = r->period,
                                  .count = r->count,
                                  .strip = r->strip,
-                                 .is_side_by_side = r->is_side_by_side && part + 1 < npart};
+                                 .is_vectorized = r->is_vectorized && part + 1 < npart};
         fill_loop(p, r, part, loop);
         out->nloop += loop->nslot > 0;
     }
@@ -503,7 +505,7 @@ void ct_repetition_lay_out(struct ct_repetitions *p, uint32_t rows, uint32_t lan
     p->output = CT_NEWN(p->scratch, uint32_t, p->l->nvalue + 1);
     for (size_t k = p->l->nout; k-- > 0;)
         p->output[p->l->out[k]] = (uint32_t)k + 1;
-    mark_escapes(p);
+    find_live_out(p);
     choose_lanes(p, rows);
     for (size_t i = 0; i < p->nrepetition; i++)
         if (!p->repetition[i].is_dropped)

@@ -1,5 +1,5 @@
-// Stretches of a program that repeat, between the files that find them (reroll_find.c), that say how their
-// operands are reached (reroll.c) and where their results are (reroll_layout.c).
+// Repetitions in a program, shared by the files that detect them (reroll_find.c), find the
+// addresses of their operands (reroll.c) and lay out their results in memory (reroll_layout.c).
 #ifndef CT_CODEGEN_REROLL_LAYOUT_H
 #define CT_CODEGEN_REROLL_LAYOUT_H
 
@@ -53,8 +53,8 @@ struct ct_source {
         step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
 };
 
-// Where a result that leaves its row is kept: row by row; one strip of rows; one place for all rows, as the next row is
-// done with it before it has its own; in the output that it is, out_stride from row to row.
+// Storage of a live-out result: all rows; one strip of rows; one slot for all rows, where the next
+// row has read it before it writes its own; the output that it is, with out_stride between rows.
 enum ct_keep { CT_KEEP_ROWS, CT_KEEP_STRIP, CT_KEEP_PLACE, CT_KEEP_OUT };
 
 struct ct_repetition_stream {
@@ -82,7 +82,7 @@ struct ct_repetition {
     uint32_t keep_first, keep_behind; // see leave_ends
 
     // rows side by side, see choose_lanes
-    bool is_side_by_side;
+    bool is_vectorized;
     unsigned char *part; // (period) the loop that it is in; npart - 1: one row at a time
     uint32_t npart, nlate;
 
@@ -106,8 +106,8 @@ ct_repetition_instruction(const struct ct_repetitions *p, uint32_t place)
     return &p->l->ins[p->order[place]];
 }
 
-/// Operand k of what is at a place. The first two of sums and products are taken in an order of their own: the store sorts
-/// them by age, so that a constant that something else has made before comes first in one row and second in another.
+/// Operand k of an instruction. Commutative operands are put into a canonical order: in the
+/// expression store it depends on age, and may differ between rows.
 static inline uint32_t ct_repetition_operand(const struct ct_repetitions *p, uint32_t place,
                                              uint32_t k)
 {

@@ -1,4 +1,4 @@
-// See x86.h: the walk over the listing that decides in which register each value is.
+// Register allocation and instruction selection over a listing; see x86.h.
 #include "codegen/emitter.h"
 
 #include <assert.h>
@@ -54,7 +54,7 @@ static void leave_register(struct ct_emitter *e, uint32_t v)
 }
 
 // Reads of v before a place in the order are done.
-void ct_emitter_pass(struct ct_emitter *e, uint32_t v, uint32_t at)
+void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at)
 {
     while (next_use(e, v) < at)
         e->next[v]++;
@@ -137,7 +137,8 @@ static struct ct_rm operand(struct ct_emitter *e, uint32_t v)
     return ct_in_register(ct_emitter_load(e, v));
 }
 
-// Which of two exchangeable operands must be in a register: one that is, or the one read again first.
+// Which of two exchangeable operands must be in a register: one that is, or the one read again
+// first.
 static bool prefer_second(const struct ct_emitter *e, uint32_t a, uint32_t b)
 {
     const bool has_a = e->reg[a] >= 0, has_b = e->reg[b] >= 0;
@@ -161,8 +162,8 @@ void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i)
     ct_emitter_release(e, i->res, i->nres);
 }
 
-// The register of the result, which may be that of an operand: an operand read again is stored before
-// its register is given away, and instructions read before they write.
+// The register of the result, which may be that of an operand: an operand read again is stored
+// before its register is given away, and instructions read before they write.
 static int result(struct ct_emitter *e, const struct ct_instruction *i)
 {
     ct_emitter_unpin(e, i);
@@ -355,7 +356,7 @@ static void emit_operation(struct ct_emitter *e, const struct ct_instruction *i)
 }
 
 // Places in the work array of values that are dead now.
-void ct_emitter_give_up(struct ct_emitter *e, const uint32_t *v, uint32_t n)
+void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
         if (next_use(e, v[k]) == none && is_spilled(e, v[k])) {
@@ -391,7 +392,7 @@ void ct_emitter_instruction(struct ct_emitter *e, uint32_t at)
 {
     const struct ct_instruction *i = &e->l->ins[e->order[at]];
     for (uint32_t k = 0; k < i->narg; k++) {
-        ct_emitter_pass(e, i->arg[k], at + 1);
+        ct_emitter_advance_uses(e, i->arg[k], at + 1);
         if (e->reg[i->arg[k]] >= 0)
             e->pinned |= 1u << e->reg[i->arg[k]];
     }
@@ -403,11 +404,11 @@ void ct_emitter_instruction(struct ct_emitter *e, uint32_t at)
         keep_result(e, i->res[r]);
     }
     ct_emitter_unpin(e, i);
-    ct_emitter_give_up(e, i->arg, i->narg);
-    ct_emitter_give_up(e, i->res, i->nres);
+    ct_emitter_free_slots(e, i->arg, i->narg);
+    ct_emitter_free_slots(e, i->res, i->nres);
 }
 
-void ct_emitter_forget(struct ct_emitter *e)
+void ct_emitter_spill_all(struct ct_emitter *e)
 {
     for (int r = 0; r < CT_NREGISTER; r++) {
         const uint32_t v = e->content[r];
@@ -442,16 +443,16 @@ void ct_emitter_list_uses(struct ct_emitter *e)
         e->next[v] = e->start[v];
 }
 
-// Instructions from which on loops are sought: straight code of more is not held by the nearest cache of code, 32 KiB, and
-// fetching it takes longer than what it does.
-enum { LEAST_ROLLED = 4000 };
+// Instructions from which loops are searched: about 8 bytes each, as many fill the first-level
+// instruction cache of 32 KiB.
+enum { LEAST_REROLLED = 4000 };
 
 static void roll_up(struct ct_emitter *e)
 {
     bool is_alone[CT_NKIND];
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
-    if (e->norder < LEAST_ROLLED)
+    if (e->norder < LEAST_REROLLED)
         return;
     e->reroll
         = ct_reroll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
@@ -496,8 +497,9 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
 // Saved for loops; one of them twice, see below.
 static const int loop_register[] = {CT_R12, CT_R12, CT_R13, CT_R15};
 
-// The areas are pointed at by the arguments themselves, or by registers that calls leave alone. Three
-// pushes and the return address keep the stack aligned to 16, and so does an even number more.
+// The areas are pointed at by the arguments themselves, or by registers that calls leave alone.
+// Three pushes and the return address keep the stack aligned to 16, and so does an even number
+// more.
 static void emit_entry(struct ct_emitter *e, bool calls)
 {
     if (calls) {

@@ -1,20 +1,25 @@
-// Instruction listing -> x86-64 machine code with AVX registers.
+// Just-in-time compiler: instruction listing -> x86-64 machine code with AVX registers.
+//
+// src/codegen turns listings (expr/listing.h) into C source (c.h; export.h for a whole system) and
+// into machine code of the running processor: native.h is the entry, x86.h selects instructions
+// and allocates registers, reroll.h finds loops, encode.h writes bytes. All back ends execute the
+// same operations on the same operands.
 //
 //     void code(const double *input, double *out, double *work)          System V calling convention
 //
-// Straight-line code for the body of a listing, with loops where a long one repeats itself (reroll.h): three-operand VEX instructions on doubles, one a
-// register (xmm) or four (ymm, four lanes). Values live in 16 registers; when these run out, the one
-// whose next use is farthest goes to its home in memory: its input, its output, its place in the work
-// array, or a place there that is given to it then. Operands that are not worth a register are read
-// from memory by the instruction itself. Functions (sine, powers, tables) are calls from memory to
-// memory; they and what they need come first, while few values are alive. Sines and cosines of what needs no
-// other function, such as joint angles, are one call.
+// The body becomes straight-line code, with loops where a long one can be rerolled (reroll.h). VEX
+// instructions work on scalar doubles (xmm) or on four SIMD lanes (ymm). Local register allocation
+// spills the value with the farthest next use to its home in memory: its input, its output, or a
+// slot of the work array. Operands without further use are read from memory by the instruction.
+// Functions (sine, powers, tables) are calls from memory to memory. They and what they need are
+// scheduled first, while few values are live. Sines and cosines of all angles that need no other
+// function, such as joint angles, are one call.
 //
 // Nothing here executes or allocates executable memory: that is native.c.
 //
-// Source: instruction encoding, Intel 64 and IA-32 Architectures Software Developer's Manual, vol. 2,
-// sections 2.3 (VEX) and 3-5; calling convention, System V ABI AMD64, section 3.2; replacement by
-// farthest next use, Belady (1966), key belady1966.
+// Source: instruction encoding, Intel 64 and IA-32 Architectures Software Developer's Manual, vol.
+// 2, sections 2.3 (VEX) and 3-5; calling convention, System V ABI AMD64, section 3.2; replacement
+// by farthest next use, Belady (1966), key belady1966.
 #ifndef CT_CODEGEN_X86_H
 #define CT_CODEGEN_X86_H
 
@@ -25,8 +30,8 @@
 ///     one argument    f(res, arg)             two arguments   f(res, arg, arg2)
 ///     sincos          f(sin, arg, cos)        table           f(res, arg, table, order)
 ///
-/// Zero for operators that need none. sincos_many takes the angles that no other function leads to at once:
-/// f(sin, angle, cos, n) with n numbers each, lanes counted.
+/// Zero for operators that need none. sincos_many takes the angles that no other function leads to
+/// at once: f(sin, angle, cos, n) with n numbers each, lanes counted.
 struct ct_x86_calls {
     uintptr_t by_op[CT_NKIND];
     uintptr_t sincos_many;

@@ -1,5 +1,5 @@
-// Functions that code calls: they and what they need come first, while few values are alive; sines and cosines of what needs no
-// other function are one call.
+// Scheduling of calls: functions and what they need come first, while few values are live. Sines
+// and cosines of all angles that need no other function are one call.
 #include "codegen/emitter.h"
 
 #include <string.h>
@@ -16,7 +16,8 @@ static bool is_wave(const struct ct_instruction *i)
     return i->op >= CT_OP_ANGLE_SIN && i->op <= CT_OP_ANGLE_SINCOS;
 }
 
-// When an instruction comes: what angles need, their sines and cosines, other calls and what they need, the rest.
+// Scheduling priority: what angles need, their sines and cosines, other calls and their needs, the
+// rest.
 enum turn { FOR_ANGLES, ANGLES, FOR_CALLS, REST, NTURN };
 
 // Angles are those that no call leads to.
@@ -83,7 +84,7 @@ static const struct ct_instruction *wave(const struct ct_emitter *e, uint32_t k)
     return &e->l->ins[e->order[e->first_angle + k]];
 }
 
-// In the order of the places of their angles, so that inputs side by side can be read where they are.
+// Sort by address of the angles, so that contiguous inputs are read without a copy.
 static void sort_waves(struct ct_emitter *e)
 {
     uint32_t *order = e->order + e->first_angle;
@@ -118,7 +119,7 @@ static struct ct_home gather_angles(struct ct_emitter *e)
         const int r = ct_emitter_load(e, wave(e, k)->arg[0]);
         ct_put_store(&e->code,
                      ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, first.slot + k}), r);
-        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        ct_emitter_advance_uses(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
         ct_emitter_unpin(e, wave(e, k));
     }
     return first;
@@ -145,8 +146,8 @@ static void place_waves(struct ct_emitter *e, uint32_t sines, uint32_t cosines)
                              ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, o - 1}),
                              ct_emitter_load(e, i->res[r]));
         ct_emitter_unpin(e, i);
-        ct_emitter_give_up(e, i->arg, 1);
-        ct_emitter_give_up(e, i->res, i->nres);
+        ct_emitter_free_slots(e, i->arg, 1);
+        ct_emitter_free_slots(e, i->res, i->nres);
     }
 }
 
@@ -159,10 +160,10 @@ void ct_emitter_angles(struct ct_emitter *e)
     const bool copied = !are_side_by_side(e);
     const struct ct_home angles = copied ? gather_angles(e) : inputs;
     for (uint32_t k = 0; k < e->nangle; k++)
-        ct_emitter_pass(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
+        ct_emitter_advance_uses(e, wave(e, k)->arg[0], e->first_angle + e->nangle);
     const uint32_t sines = e->nwork, cosines = sines + e->nangle;
     e->nwork += 2 * e->nangle;
-    ct_emitter_forget(e);
+    ct_emitter_spill_all(e);
     ct_put_vzeroupper(c);
     ct_put_address(c, CT_RDI, ct_emitter_memory(e, (struct ct_home){CT_AREA_WORK, sines}));
     ct_put_address(c, CT_RSI, ct_emitter_memory(e, angles));

@@ -1,4 +1,5 @@
-// Loops of reroll.h as code: the body is emitted as a program of its own, whose operands are at registers that move on.
+// Machine code of rerolled loops: the body is emitted as a program of its own, whose operands are
+// addressed by registers that advance by a stride per row.
 #include "codegen/emitter.h"
 
 #include <assert.h>
@@ -9,7 +10,8 @@ static const uint32_t none = CT_VALUE_NONE;
 static const int stream_register[CT_REROLL_STREAMS]
     = {CT_RCX, CT_R8, CT_R9, CT_R10, CT_R11, CT_R13, CT_R15};
 
-// The body of a loop as a listing: values 0 ... period-1 are its results, further ones its operands from memory.
+// The body of a loop as a listing: values 0 ... period - 1 are its results, then operands in
+// memory.
 struct body {
     struct ct_emitter e;
     struct ct_listing l;
@@ -46,7 +48,7 @@ static bool is_same_operand(const struct ct_operand *a, const struct ct_operand 
     return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
 }
 
-// A constant or parameter four times side by side: copied once.
+// A constant or parameter broadcast to four doubles: copied once.
 static struct ct_home spread(struct ct_emitter *e, uint32_t value)
 {
     if (e->spread[value] == none) {
@@ -160,7 +162,7 @@ static void start_streams(struct body *b, const struct ct_loop *loop)
     }
 }
 
-// In lanes the results of a row are several lines of memory, which the row before has fetched.
+// In SIMD lanes the results of a row fill several cache lines, prefetched by the row before.
 static void fetch_next_row(struct body *b)
 {
     enum { LINE = 64 };
@@ -183,7 +185,7 @@ static void fetch_next_row(struct body *b)
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
 {
-    const int32_t together = loop->is_side_by_side ? CT_ROWS_TOGETHER : 1;
+    const int32_t together = loop->is_vectorized ? CT_ROWS_TOGETHER : 1;
     struct body b = {.e = *e, .together = together};
     b.e.l = &b.l;
     b.e.stream = b.stream;
@@ -213,7 +215,7 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
     e->reroll.table_cap = b.e.reroll.table_cap;
 }
 
-// Rows four at a time; the last four may begin among those that are done, which gives the same once more.
+// Four rows at a time; the last four may overlap rows already done, which are computed again.
 static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
 {
     const uint32_t times = rows / CT_ROWS_TOGETHER, left = rows % CT_ROWS_TOGETHER;
@@ -233,14 +235,14 @@ static void pass_loop(struct ct_emitter *e, const struct ct_loop *loop)
     for (uint32_t at = loop->first; at < end; at++) {
         const struct ct_instruction *i = &e->l->ins[e->order[at]];
         for (uint32_t k = 0; k < i->narg; k++)
-            ct_emitter_pass(e, i->arg[k], end);
-        ct_emitter_give_up(e, i->arg, i->narg);
+            ct_emitter_advance_uses(e, i->arg[k], end);
+        ct_emitter_free_slots(e, i->arg, i->narg);
     }
 }
 
 static void emit_part(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
 {
-    if (loop->is_side_by_side)
+    if (loop->is_vectorized)
         emit_side_by_side(e, loop, rows);
     else
         emit_rows(e, loop, rows, true, 0);
@@ -291,7 +293,7 @@ static void emit_copies(struct ct_emitter *e, const struct ct_loop *loop)
         e->pinned = 0;
         ct_emitter_release(e, &loop->copy[i].value, 1);
     }
-    ct_emitter_forget(e);
+    ct_emitter_spill_all(e);
 }
 
 // The loops of one stretch. Returns the one behind them.

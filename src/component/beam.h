@@ -4,17 +4,18 @@
 //     body frame                 u v w rx ry rz of each: displacements along the beam's axes, right-handed
 //                                rotations (ry = -dw/dx, rz = dv/dx)
 //
-// What always holds after ct_model_read: length > 0, end[] increases strictly and ends at `length`, the values
-// have the right dimension and sign; only the section's and the material's values contain the symbol x, and are smooth within
-// each element as far as switches are known. What a missing key leaves
-// open is 0 and not among `known`.
+// What always holds after ct_model_read: length > 0, end[] increases strictly and ends at
+// `length`, the values have the right dimension and sign. Only values of section and material
+// contain the symbol x; they are smooth within each element. A missing key leaves 0 and no bit in
+// `known`.
 #ifndef CT_COMPONENT_BEAM_H
 #define CT_COMPONENT_BEAM_H
 
 #include "expr/ex.h"
 
 enum ct_beam_theory { CT_BEAM_EULER_BERNOULLI, CT_BEAM_TIMOSHENKO };
-/// Where the integrals over an element are taken: REDUCED: stiffness at the middle; ONE_POINT: mass too.
+/// Where the integrals over an element are taken: REDUCED: stiffness at the middle; ONE_POINT:
+/// mass too.
 enum ct_beam_integration { CT_BEAM_FULL, CT_BEAM_REDUCED, CT_BEAM_ONE_POINT };
 enum ct_beam_formulation {
     CT_BEAM_AUTO,
@@ -23,7 +24,8 @@ enum ct_beam_formulation {
     CT_BEAM_FORCE_ONLY,
     CT_BEAM_STRETCH_LINEAR
 };
-/// What a beam may do; bits of ct_beam.deformation. BENDING_Y is that in the x-z plane (Iy, w and ry).
+/// What a beam may do; bits of ct_beam.deformation. BENDING_Y is that in the x-z plane (Iy, w and
+/// ry).
 enum ct_beam_deformation {
     CT_BEAM_AXIAL = 1,
     CT_BEAM_BENDING_Y = 2,
@@ -32,7 +34,8 @@ enum ct_beam_deformation {
     CT_BEAM_ALL = 15
 };
 
-/// A field along the axis: displacements u, v, w and twist. The first freedoms of a node have the same order.
+/// A field along the axis: displacements u, v, w and twist. The first freedoms of a node have the
+/// same order.
 enum ct_beam_field {
     CT_BEAM_FIELD_U,
     CT_BEAM_FIELD_V,
@@ -56,7 +59,7 @@ struct ct_beam {
     bool is_even;      // they are of one length
     const double *cut; // [m] where sections or material switch, ascending: elements end there
     int ncut;
-    bool is_cut;           // they are more than the file asks for
+    bool is_cut;           // cuts have added elements to those of the file
     ct_ex E, G;            // [Pa]; may contain x; G is 0 where neither G nor nu is given
     ct_ex area, Iy, Iz, J; // [m^2], [m^4]; may contain x
     ct_ex mass_per_length; // [kg/m]; may contain x
@@ -89,7 +92,8 @@ struct ct_beam {
     struct ct_mark formulation_mark, modes_mark, deformation_mark;
 };
 
-/// n equal elements; where the beam has cuts, between these as many equal ones each as make none longer than length/n.
+/// Divide into n equal elements; with cuts, into equal ones between cuts, none longer than
+/// length/n.
 void ct_beam_divide(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, long n,
                     double length);
 

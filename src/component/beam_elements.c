@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static const double roundoff = 1e-9; // of the length: places that are one
+static const double roundoff = 1e-9; // times the length: positions closer than this are one
 
 static void divide_evenly(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, long n)
 {

@@ -1,4 +1,4 @@
-// Keys that families share, and values by key.
+// Keys that families share, and values of instances by key; see class.h.
 #include "component/class.h"
 
 #include <assert.h>

@@ -15,6 +15,7 @@ struct ct_build; // the equations under construction, formulate/build.h
 struct ct_instance;
 
 enum ct_family { CT_FAMILY_BODY, CT_FAMILY_JOINT, CT_FAMILY_FORCE };
+enum ct_body_kind { CT_BODY_RIGID, CT_BODY_PARTICLE, CT_BODY_BEAM };
 
 enum ct_value_kind {
     CT_VALUE_SCALAR,  // one expression
@@ -37,7 +38,8 @@ enum ct_value_kind {
     CT_VALUE_ROTARY,   // true, false or three expressions
     CT_VALUE_RAYLEIGH, // {alpha: a, beta: b}: two expressions
     CT_VALUE_SHAPES,   // {u: [...], v: [...], ...}: expressions of x, each with its name
-    CT_VALUE_FIELDS, // `equilibrium` (count 1), or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
+    // `equilibrium` (count 1) or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
+    CT_VALUE_FIELDS,
     CT_VALUE_PLACES, // points; a place may be one number, the distance along the axis
     CT_VALUE_SOLIDS, // what a body is drawn with: a shape or a list of them (solid.h)
 };
@@ -85,7 +87,8 @@ struct ct_value {
 
 enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
 
-/// How a coordinate is measured from the relative motion of the frames, for a joint that is a chord.
+/// How a coordinate is measured from the relative motion of the frames, for a joint that is a
+/// chord.
 ///   length      q = along . d                        u = along . d'
 ///   angle       q = angle about `about` from v (axes of `from`) to R w (w in axes of `to`)
 ///               u = (from . w_rel) + (to . w_rel),   w_rel = angular velocity of `to` in `from`
@@ -123,8 +126,9 @@ struct ct_motion {
     ct_ex3 rot_from[3], rot_to[3];
 };
 
-/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored coordinate
-/// (beside `rotate` without the four of the quaternion), u one per speed; `~` leaves a hole.
+/// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored
+/// coordinate (beside `rotate` without the four of the quaternion), u one per speed; `~` leaves a
+/// hole.
 struct ct_initial {
     struct ct_value q, u;
     struct ct_value rotate; // turns; n = 0 when absent
@@ -151,6 +155,7 @@ enum ct_applied_load { CT_APPLIED_NONE, CT_APPLIED_FORCE, CT_APPLIED_TORQUE };
 struct ct_component_class {
     const char *name, *summary;
     enum ct_family family;
+    enum ct_body_kind body;   // bodies
     const struct ct_key *key; // keys of its own; those of the family come from class.c
     int nkey;
     const char *across, *through; // terminal equations, for `components` and `--show terminal`
@@ -175,19 +180,19 @@ struct ct_component_class {
 ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
                         int standard);
 /// One more rotation, about `axis` in the frame turned so far.
-void ct_motion_turn(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
+void ct_motion_add_rotation(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
 /// Three translational rows: the origins coincide.
-void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m);
+void ct_motion_lock_translation(struct ct_exs *x, struct ct_motion *m);
 /// Three rotational rows (y|z) (z|x) (x|y): the axes coincide.
-void ct_motion_hold_turn(struct ct_exs *x, struct ct_motion *m);
+void ct_motion_lock_rotation(struct ct_exs *x, struct ct_motion *m);
 /// The next coordinate is a length along a direction of `from`.
 void ct_motion_measure_length(struct ct_motion *m, ct_ex3 along);
 /// The next coordinate is the angle about n; across: a unit vector normal to n.
 void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across);
 
-/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n is one.
-/// value: of all symbols, decides which coordinate axis to start from.
-void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
+/// Two unit vectors that make a right-handed set with the unit vector n; coordinate axes where n
+/// is one. value: of all symbols, decides which coordinate axis to start from.
+void ct_axes_normal(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2);
 
 /// The choices of a WORD or WORDS key as n texts in arena a.
 const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, size_t *n);

@@ -1,4 +1,4 @@
-// Pieces from which the joint classes build their motion; see class.h.
+// Building blocks of joint kinematics: axes, rotations, constraint rows, measures; see class.h.
 #include "component/class.h"
 
 #include <math.h>
@@ -12,12 +12,12 @@ ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const 
     return v->given ? (ct_ex3){{v->e[0], v->e[1], v->e[2]}} : ct_ex3_const(x, e);
 }
 
-void ct_motion_turn(struct ct_motion *m, ct_ex3 axis, ct_ex angle)
+void ct_motion_add_rotation(struct ct_motion *m, ct_ex3 axis, ct_ex angle)
 {
     m->turn[m->nturn++] = (struct ct_turn){axis, angle};
 }
 
-void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m)
+void ct_motion_lock_translation(struct ct_exs *x, struct ct_motion *m)
 {
     for (int i = 0; i < 3; i++) {
         double e[3] = {0};
@@ -27,7 +27,7 @@ void ct_motion_hold_place(struct ct_exs *x, struct ct_motion *m)
     m->ntrans = 3;
 }
 
-void ct_motion_hold_turn(struct ct_exs *x, struct ct_motion *m)
+void ct_motion_lock_rotation(struct ct_exs *x, struct ct_motion *m)
 {
     for (int i = 0; i < 3; i++) {
         double s[3] = {0}, t[3] = {0};
@@ -52,7 +52,7 @@ void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across)
 
 // e1 = the coordinate axis most across n, made normal to n and of unit length; e2 = n x e1.
 // The search starts behind the axis most along n, so that z gives (x, y), x (y, z) and y (z, x).
-void ct_axes_across(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2)
+void ct_axes_normal(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2)
 {
     double v[3];
     int along = 0;

@@ -1,4 +1,4 @@
-// See model.h: what is looked up in a model that has been read.
+// Values and names in a model; see model.h.
 #include "component/model.h"
 
 #include <math.h>

@@ -1,12 +1,16 @@
 // The model as read: instances with marks, names resolved, nothing derived yet.
 //
+// src/component reads a YAML model into component instances: it declares all names, then reads
+// values as expressions in SI units, checked by the key tables of the component classes (class.h).
+// One file reads one section (read.h). Kinematics of joints are functions of the classes, in
+// components/.
+//
 //     frame 0 = ground ("ground"); each body owns the frame of its name; each point is one more
 //
 // What always holds after ct_model_read: every name is resolved, units are SI, every value has the
-// right dimension and count, a parameter's definition uses parameters before it only (the order of the
-// file where that is possible), nothing is cyclic.
-// Expressions live in model->x and may contain symbols of kind TIME, PARAM and SIGNAL only (LOCAL too
-// in custom joints).
+// right dimension and count, a parameter's definition uses parameters before it only (the order of
+// the file where that is possible), nothing is cyclic. Expressions live in model->x and may
+// contain symbols of kind TIME, PARAM and SIGNAL only (LOCAL too in custom joints).
 #ifndef CT_COMPONENT_MODEL_H
 #define CT_COMPONENT_MODEL_H
 
@@ -92,7 +96,7 @@ struct ct_model {
     struct ct_output *output;
     size_t noutput, output_cap;
     struct ct_simulation simulation;
-    unsigned char *decided; // by number of symbol: a count depends on it; NULL: none does
+    unsigned char *decided; // by symbol: a count depends on it (structural); NULL: none does
     double *value;          // by number of symbol: t (0) and the parameters
     struct ct_names parameter_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
@@ -103,20 +107,20 @@ struct ct_set {
     const char *text;
 };
 
-/// Read, check and resolve a model file. Reports every problem it can find in one pass, in the order of
-/// the file. Tables are sought beside the model.
-/// Errors: all E1xx, E002 for the file itself, E003 for overrides. Cost: linear in the file.
+/// Read, check and resolve a model file. Reports every problem it can find in one pass, in the
+/// order of the file. Tables are sought beside the model. Errors: all E1xx, E002 for the file
+/// itself, E003 for overrides. Cost: linear in the file.
 bool ct_model_read(struct ct_ctx *ctx, const char *path, const struct ct_set *set, size_t nset,
                    struct ct_model *m);
 /// The same for n bytes of text; `file` names it in marks and says where tables are sought.
 bool ct_model_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
                     const struct ct_set *set, size_t nset, struct ct_model *m);
-/// The same for text that has been parsed (io/yaml.h), which stays as it is and must live as long as the model.
+/// The same for a parsed document (io/yaml.h), which must outlive the model.
 bool ct_model_resolve(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
                       const struct ct_set *set, size_t nset, struct ct_model *m);
 
-/// Give all beams another number of equal elements (> 0) and another formulation (not NULL). False with an error if
-/// there is no such formulation, or no beam.  Errors: E003.
+/// Override the number of elements (> 0) and the formulation (not NULL) of all beams. False with an
+/// error if there is no such formulation, or no beam.  Errors: E003.
 bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements,
                            const char *formulation);
 

@@ -1,4 +1,4 @@
-// Beams with other elements and another formulation than the file's.
+// Overrides of the discretisation and formulation of beams from options.
 #include "base/names.h"
 #include "component/model.h"
 

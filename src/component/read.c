@@ -2,7 +2,6 @@
 // sections are declared before any value is read, so that order within the file does not matter.
 #include "component/read.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +9,7 @@ static const char *const top_keys[]
     = {"cotree", "name",   "description", "gravity", "parameters", "inputs",
        "bodies", "joints", "forces",      "outputs", "simulation"};
 
-// ---- diagnostics in the order of the file ------------------------------------------------------------------
+// ---- diagnostics in the order of the file ------------------------------------------------------
 
 struct group {
     const struct ct_finding *first; // an error or warning; its notes follow
@@ -57,11 +56,11 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
             ctx->diagnostic[k++] = group[g].first[i];
 }
 
-// ---- the top of the file ------------------------------------------------------------------------------------------
+// ---- the top of the file -----------------------------------------------------------------------
 
 static void check_version(struct ct_reader *r)
 {
-    const struct ct_simd2 *p = ct_node_find(r->root, "cotree");
+    const struct ct_node_pair *p = ct_node_find(r->root, "cotree");
     if (!p)
         ct_error(r->ctx, r->root->mark, CT_E_VERSION,
                  "the file must start with its version, 'cotree: 1'");

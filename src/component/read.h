@@ -1,5 +1,12 @@
-// What the parts of the reader share: read.c (the file), read_value.c (values by kind), read_expr.c (expressions) and one file per
-// section: read_parameter.c, read_body.c, read_joint.c, read_force.c, read_run.c; tables in read_table.c.
+// What the parts of the reader share. Each calls those below it only, but for tables in
+// expressions:
+//
+//     read.c                                                      the file
+//     read_parameter  read_body  read_joint  read_force  read_run   sections
+//     read_beam  read_point  read_component                       parts of components
+//     read_value  read_beam_value  read_field                     values by kind
+//     read_expr <-> read_table                                    expressions, names, tables
+//     read_node                                                   shapes, keys, words
 //
 // What always holds: a function that returns false has reported; reading then goes on with the next
 // value, so that one pass shows as many problems as it can.
@@ -38,7 +45,7 @@ struct ct_reader {
     size_t nbody_node, body_node_cap, njoint_node, joint_node_cap, nforce_node, force_node_cap;
 };
 
-// ---- keys and shapes ------------------------------------------------------------------------------
+// ---- keys and shapes ---------------------------------------------------------------------------
 
 /// node is a map and has keys of this list only. what: "joint 'a'", for messages.
 bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *what,
@@ -46,8 +53,8 @@ bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *w
 bool ct_read_shape(struct ct_reader *r, const struct ct_node *node, enum ct_node_kind kind,
                    const char *wanted);
 /// A list with least..most entries.
-bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
-                    const char *wanted);
+bool ct_read_list(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
+                  const char *wanted);
 /// One of n words; its index, or -1 after an error. what: "interpolation".
 int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *what,
                  const char *const *names, size_t n);
@@ -57,30 +64,31 @@ bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **
 /// An identifier that may name something of this sort ("body").
 bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort);
 /// A body, joint or force: its name must differ from all others.
-bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const char *sort);
-/// Suggestions cost a pass over all names each; after many errors nobody reads them.
-bool ct_read_suggests(const struct ct_reader *r);
+bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p,
+                            const char *sort);
+/// False after many errors: a suggestion costs a pass over all names.
+bool ct_read_wants_suggestions(const struct ct_reader *r);
 /// "; did you mean 'x'?" or "".
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
-                         size_t n);
+const char *ct_read_suggestion(struct ct_reader *r, const char *name, const char *const *names,
+                               size_t n);
 
-// ---- values ------------------------------------------------------------------------------------------
+// ---- values ------------------------------------------------------------------------------------
 
 /// One expression; flags are CT_KEY_TIME, _STATE, _LOCAL; unit as in ct_key.
 bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex *e);
 /// Its value, if it has one: false without error when it cannot be known (a parameter is wrong).
 bool ct_read_number(struct ct_reader *r, ct_ex e, double *value);
-/// Room for n expressions and their places, all zero.
-void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n);
+/// Allocate n expressions and their marks, all zero.
+void ct_read_alloc(struct ct_reader *r, struct ct_value *v, size_t n);
 /// The entries of a list as expressions, each with the key's flags and unit.
 bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *v);
 bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                   const char *unit, ct_ex3 *v, struct ct_mark at[3]);
 bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis);
-bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                   struct ct_turn **turn, size_t *nturn);
+bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                       struct ct_turn **turn, size_t *nturn);
 bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame);
 /// A value of any kind that does not depend on coordinate counts.
 bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
@@ -99,20 +107,21 @@ bool ct_fill_fields(struct ct_reader *r, const struct ct_instance *self, struct 
 bool ct_read_solids(struct ct_reader *r, struct ct_body *b, const struct ct_node *node);
 /// A file that the model names, sought beside the model.
 const char *ct_read_path_beside(struct ct_reader *r, const char *file);
-/// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL: any
+/// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL:
+/// any
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
                    ct_ex *e);
 /// [rad] Angles beyond it, written without a unit, are asked about: E152.
 extern const double ct_read_full_turn;
 
-// ---- components --------------------------------------------------------------------------------------
+// ---- components --------------------------------------------------------------------------------
 
 /// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_simd2 *p, const char *sort,
+                                               const struct ct_node_pair *p, const char *sort,
                                                const char *standard);
-/// Room for the values of all keys, none given.
-void ct_read_clear(struct ct_reader *r, struct ct_instance *self);
+/// Allocate the values of all keys, none given.
+void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's
 /// keys count.
 bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
@@ -121,7 +130,7 @@ bool ct_read_component_keys(struct ct_reader *r, const struct ct_instance *self,
 bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
                         const struct ct_node *node);
 
-// ---- sections: `declare` makes names known, `fill` reads values -----------------------------------------
+// ---- sections: `declare` makes names known, `fill` reads values --------------------------------
 
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset);
 void ct_read_bodies_declare(struct ct_reader *r);

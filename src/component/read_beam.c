@@ -8,67 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- values that only beams have ------------------------------------------------------------------------
-
-static bool read_elements(struct ct_reader *r, const struct ct_node *node,
-                          const struct ct_key *key, struct ct_value *v)
-{
-    enum { MOST = 10000 };
-    if (node->kind != CT_NODE_LIST)
-        return ct_read_count(r, node, key->name, 1, &v->count);
-    if (!ct_read_length(r, node, 1, MOST, "a list of the places where elements end"))
-        return false;
-    v->count = (long)node->n;
-    return ct_read_items(r, node, key, v);
-}
-
-static bool read_rotary(struct ct_reader *r, const struct ct_node *node,
-                        const struct ct_key *key, struct ct_value *v)
-{
-    static const char *const words[] = {"false", "true"};
-    if (node->kind != CT_NODE_LIST) {
-        v->count = ct_read_word(r, node, key->name, words, COUNT(words));
-        return v->count >= 0;
-    }
-    v->count = 3;
-    return ct_read_length(r, node, 3, 3, "true, false or a list of 3")
-        && ct_read_items(r, node, key, v);
-}
-
-static bool read_rayleigh(struct ct_reader *r, const struct ct_node *node,
-                          const struct ct_key *key, struct ct_value *v)
-{
-    static const char *const names[] = {"alpha", "beta"}, *const units[] = {"1/s", "s"};
-    if (!ct_read_shape(r, node, CT_NODE_MAP, "{alpha: a, beta: b}"))
-        return false;
-    bool ok = ct_read_keys(r, node, "'damping' of a beam", names, COUNT(names));
-    ct_read_room(r, v, COUNT(names));
-    for (size_t i = 0; i < COUNT(names); i++) {
-        const struct ct_node *item = ct_node_get(node, names[i]);
-        double value;
-        v->at[i] = item ? item->mark : node->mark;
-        if (!item)
-            continue;
-        ok &= ct_read_expr(r, item, key->flags, units[i], &v->e[i]);
-        if (ct_read_number(r, v->e[i], &value) && !(value >= 0))
-            ok = ct_error(r->ctx, item->mark, CT_E_RANGE, "'%s' is %g; it must be at least 0",
-                          names[i], value);
-    }
-    return ok;
-}
-
-bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
-                        const struct ct_key *key, struct ct_value *v)
-{
-    if (key->kind == CT_VALUE_ELEMENTS)
-        return read_elements(r, node, key, v);
-    if (key->kind == CT_VALUE_SHAPES || key->kind == CT_VALUE_FIELDS)
-        return ct_read_fields(r, node, key, v);
-    return key->kind == CT_VALUE_ROTARY ? read_rotary(r, node, key, v)
-                                        : read_rayleigh(r, node, key, v);
-}
-
-// ---- what is asked of single values ------------------------------------------------------------------------
+// ---- what is asked of single values ------------------------------------------------------------
 
 struct work {
     struct ct_reader *r;
@@ -165,7 +105,7 @@ static bool check_scalars(const struct work *w)
     return check_density(w) && ok;
 }
 
-// ---- which keys go together ---------------------------------------------------------------------------------
+// ---- which keys go together --------------------------------------------------------------------
 
 static unsigned find_known(const struct work *w)
 {
@@ -212,7 +152,8 @@ static bool check_theory(const struct work *w)
     return ok;
 }
 
-// What moves in the middle of an element by itself has no stiffness there and no mass at the ends.
+// Quadratic twist and stretch are internal freedoms of an element: reduced integration gives them
+// no stiffness, lumped mass no inertia.
 static bool check_quadratic(const struct work *w, const char *key)
 {
     const char *rule = get(w, "mass")->count ? "mass" : "integration";
@@ -224,7 +165,8 @@ static bool check_quadratic(const struct work *w, const char *key)
                     w->self->name, key, rule);
 }
 
-// With foreshortening the rates of the deflections draw the axis in: what is left of their forces would be of no model.
+// Foreshortening makes velocity-quadratic forces of the deflections; without them the model would
+// be inconsistent.
 static bool check_quadratic_velocity(const struct work *w)
 {
     if (!get(w, "quadratic_velocity")->count || get(w, "formulation")->count == CT_BEAM_LINEAR)
@@ -254,7 +196,7 @@ static bool check_deformation(const struct work *w, unsigned known)
         return has(w, "Iy") || has(w, "Iz")
             || needs(w, "'Iz' or 'Iy'", "second moment of the section for bending");
     for (size_t i = 0; i < COUNT(wanted); i++) {
-        const bool asked = // of a missing G a word has been said
+        const bool asked = // a missing G has been reported
             timoshenko
             && ((wanted[i].bit == CT_BEAM_BENDING_Y && has(w, "Iy"))
                 || (wanted[i].bit == CT_BEAM_BENDING_Z && has(w, "Iz")));
@@ -264,7 +206,7 @@ static bool check_deformation(const struct work *w, unsigned known)
     return ok;
 }
 
-// ---- elements -----------------------------------------------------------------------------------------------
+// ---- elements ----------------------------------------------------------------------------------
 
 static bool check_ends(const struct work *w, const struct ct_value *v, double length)
 {
@@ -327,10 +269,10 @@ static bool fill_elements(const struct work *w)
     return ok;
 }
 
-// ---- the section along the axis -------------------------------------------------------------------------------
+// ---- the section along the axis ----------------------------------------------------------------
 
-// Places inside an element at which the section is looked at: the ends themselves may be cusps or jumps.
-enum { NLOOK = 5 };
+// Sample points inside an element for checks of the section; its ends may be jumps or cusps.
+enum { NSAMPLE = 5 };
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
 {
@@ -349,21 +291,21 @@ static bool wrong_along(const struct work *w, const char *key, size_t i, double 
                     w->self->name, key, what, where, wanted);
 }
 
-// Value of a key's i-th expression must be positive (strict) or not negative all along the beam, and infinite nowhere.
+// The i-th expression of a key must be finite and positive (strict) or nonnegative along the beam.
 static bool check_along(const struct work *w, const char *key, size_t i, bool strict)
 {
     const struct ct_value *v = get(w, key);
     const char *wanted = strict ? "greater than 0" : "at least 0";
-    double point[NLOOK], weight[NLOOK];
+    double point[NSAMPLE], weight[NSAMPLE];
     if (!v->given || v->is_wrong || v->n <= i)
         return true;
     const bool varies = is_along(w, v, i);
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     double from = 0;
     for (int k = 0; k < (varies ? w->beam->nelement : 1); k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
         const double ends[] = {from, to};
-        for (int p = 0; p < (varies ? NLOOK : 1); p++) {
+        for (int p = 0; p < (varies ? NSAMPLE : 1); p++) {
             const double at = from + point[p] * (to - from), value = value_at(w, v, i, at);
             if (!(value > 0 || (!strict && value == 0)))
                 return wrong_along(w, key, i, at, value, wanted);
@@ -376,8 +318,7 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
     return true;
 }
 
-// What quadrature by element misses of the integral of a key's i-th value over the beam, against its size: by one fine enough for
-// what switches anywhere.
+// Relative error of element-wise quadrature of the key's i-th value, against a finer quadrature.
 static double quadrature_error(const struct work *w, const struct ct_value *v, size_t i)
 {
     enum {
@@ -455,28 +396,28 @@ static void cut_elements(const struct work *w)
     beam->is_cut = beam->nelement > before;
 }
 
-// Does nothing of the key's value resist anywhere in one of the elements?
+// Is the value of the key zero all along one of the elements?
 static bool vanishes(const struct work *w, const char *key)
 {
     const struct ct_value *v = get(w, key);
-    double point[NLOOK], weight[NLOOK];
+    double point[NSAMPLE], weight[NSAMPLE];
     if (!v->given || v->is_wrong)
         return false;
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     double from = 0;
     for (int k = 0; k < (is_along(w, v, 0) ? w->beam->nelement : 1); k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
         int nzero = 0;
-        for (int p = 0; p < NLOOK; p++)
+        for (int p = 0; p < NSAMPLE; p++)
             nzero += value_at(w, v, 0, from + point[p] * (to - from)) == 0;
-        if (nzero == NLOOK)
+        if (nzero == NSAMPLE)
             return true;
         from = to;
     }
     return false;
 }
 
-// A value of 0 is no more than none.
+// Deformations with stiffness; a value of 0 counts as not given.
 static unsigned find_stiff(const struct work *w)
 {
     return w->beam->known
@@ -488,13 +429,13 @@ static unsigned find_stiff(const struct work *w)
 static bool check_nu_along(const struct work *w)
 {
     const struct ct_value *v = get(w, "nu");
-    double point[NLOOK], weight[NLOOK], from = 0;
+    double point[NSAMPLE], weight[NSAMPLE], from = 0;
     if (!v->given || v->is_wrong || !is_along(w, v, 0))
         return true;
-    ct_gauss(NLOOK, point, weight);
+    ct_gauss(NSAMPLE, point, weight);
     for (int k = 0; k < w->beam->nelement; k++) {
         const double to = ct_model_number(w->r->m, w->beam->end[k]);
-        for (int p = 0; p < NLOOK; p++) {
+        for (int p = 0; p < NSAMPLE; p++) {
             const double at = from + point[p] * (to - from), nu = value_at(w, v, 0, at);
             if (!(nu > -1 && nu <= 0.5))
                 return wrong_along(w, "nu", 0, at, nu, "between -1 and 0.5");
@@ -529,7 +470,8 @@ static bool check_section(const struct work *w)
     return ok;
 }
 
-// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of elements.
+// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of
+// elements.
 static ct_ex integrate_mass(const struct work *w)
 {
     enum { POINTS = 8 };
@@ -549,7 +491,7 @@ static ct_ex integrate_mass(const struct work *w)
     return sum;
 }
 
-// ---- filling ----------------------------------------------------------------------------------------------------
+// ---- filling -----------------------------------------------------------------------------------
 
 static void fill_material(const struct work *w)
 {

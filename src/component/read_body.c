@@ -18,7 +18,7 @@ static void declare_points(struct ct_reader *r, int body, const struct ct_node *
 {
     const struct ct_node *points = ct_node_get(node, "points");
     for (size_t i = 0; points && points->kind == CT_NODE_MAP && i < points->n; i++) {
-        const struct ct_simd2 *p = &points->pair[i];
+        const struct ct_node_pair *p = &points->pair[i];
         if (!ct_read_name(r, p->key, p->mark, "point"))
             continue;
         const char *name
@@ -47,8 +47,8 @@ static int add_body(struct ct_reader *r, const char *name, struct ct_mark at)
 
 void ct_read_bodies_declare(struct ct_reader *r)
 {
-    const struct ct_simd2 *ground = NULL;
-    const struct ct_simd2 *section = ct_node_find(r->root, "bodies");
+    const struct ct_node_pair *ground = NULL;
+    const struct ct_node_pair *section = ct_node_find(r->root, "bodies");
     const struct ct_node *node = section ? section->value : NULL;
     if (node && ct_node_is_null(node))
         node = NULL;
@@ -61,86 +61,13 @@ void ct_read_bodies_declare(struct ct_reader *r)
         declare_points(r, 0, ground->value);
     }
     for (size_t i = 0; ok && i < node->n; i++) {
-        const struct ct_simd2 *p = &node->pair[i];
+        const struct ct_node_pair *p = &node->pair[i];
         if (p == ground || !ct_read_component_name(r, p, "body"))
             continue;
         const int body = add_body(r, p->key, p->mark);
         r->body_node[body] = p->value;
         declare_points(r, body, p->value);
     }
-}
-
-// ---- points ---------------------------------------------------------------------------------------------
-
-// A point of a beam turns with the section it sits on, which must be one of the beam's.
-static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct ct_mark at)
-{
-    const struct ct_value *length = ct_instance_value(r->beam, "length");
-    double x, l;
-    if (!length->n || !ct_read_number(r, length->e[0], &l) || !(l > 0)
-        || !ct_read_number(r, f->at.e[0], &x))
-        return true;                   // which has been reported
-    const double roundoff = 1e-12 * l; // as in 0.1 + 0.2
-    if (x >= -roundoff && x <= l + roundoff)
-        return true;
-    return ct_error(r->ctx, at, CT_E_RANGE,
-                    "point '%s' is at x = %g m, the beam reaches from 0 to %g m", f->name, x,
-                    l);
-}
-
-// [x, y, z]; on a beam also x alone
-static bool read_place(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
-{
-    if (!r->beam)
-        return ct_read_vec3(r, node, 0, "m", &f->at, NULL);
-    const struct ct_node *along = node->kind == CT_NODE_LIST && node->n ? node->item[0] : node;
-    const bool ok = node->kind == CT_NODE_LIST
-                      ? ct_read_vec3(r, node, CT_KEY_LENGTH, "m", &f->at, NULL)
-                      : ct_read_expr(r, node, CT_KEY_LENGTH, "m", &f->at.e[0]);
-    return ok && check_on_beam(r, f, along->mark);
-}
-
-static bool read_point(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
-{
-    static const char *const keys[] = {"at", "rotate"};
-    if (node->kind == CT_NODE_LIST
-        || (r->beam && node->kind == CT_NODE_SCALAR && !ct_node_is_null(node)))
-        return read_place(r, node, f);
-    const char *what = ct_arena_printf(r->ctx->scratch, "point '%s'", f->name);
-    if (!ct_read_shape(r, node, CT_NODE_MAP,
-                       r->beam ? "a place along the beam, [x, y, z] or {at: PLACE, rotate: "
-                                 "[axis, angle]}"
-                               : "[x, y, z] or {at: [x, y, z], rotate: [axis, angle]}"))
-        return false;
-    bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
-    const struct ct_node *at = ct_node_get(node, "at"), *rotate = ct_node_get(node, "rotate");
-    if (at)
-        ok &= read_place(r, at, f);
-    if (rotate) {
-        size_t n;
-        ok &= ct_read_turns(r, rotate, 0, &f->turn, &n);
-        f->nturn = (int)n;
-    }
-    if (!at && !rotate)
-        ok = ct_error(r->ctx, f->mark, CT_E_KEY_MISSING, "%s needs 'at'", what);
-    return ok;
-}
-
-bool ct_read_points(struct ct_reader *r, const struct ct_body *b, const struct ct_node *node)
-{
-    const struct ct_node *points = ct_node_get(node, "points");
-    if (!points || ct_node_is_null(points))
-        return true;
-    if (!ct_read_shape(r, points, CT_NODE_MAP, "a map of points"))
-        return false;
-    bool ok = true;
-    for (size_t i = 0; i < points->n; i++) {
-        const char *name
-            = ct_arena_printf(r->ctx->scratch, "%s.%s", b->instance.name, points->pair[i].key);
-        const int f = ct_model_find_frame(r->m, name);
-        ok &= f >= 0 && read_point(r, points->pair[i].value, &r->m->frame[f]);
-    }
-    return ok;
 }
 
 static bool read_ground(struct ct_reader *r, const struct ct_node *node)
@@ -159,7 +86,7 @@ static bool read_ground(struct ct_reader *r, const struct ct_node *node)
     return ct_read_points(r, &r->m->body[0], node) && ok;
 }
 
-// ---- mass and inertia -------------------------------------------------------------------------------------
+// ---- mass and inertia --------------------------------------------------------------------------
 
 static bool check_mass(struct ct_reader *r, const struct ct_body *b,
                        const struct ct_value *mass)
@@ -172,7 +99,7 @@ static bool check_mass(struct ct_reader *r, const struct ct_body *b,
 }
 
 // One rotation in the plane of i and j makes A_ij vanish.  (golub2013, 8.5)
-static void rotate_away(double A[3][3], int i, int j)
+static void jacobi_rotation(double A[3][3], int i, int j)
 {
     const int k = 3 - i - j;
     if (A[i][j] == 0)
@@ -194,14 +121,15 @@ static void order(double *a, double *b)
     *a = low;
 }
 
-// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where I is diagonal.
+// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where
+// I is diagonal.
 static void principal_moments(const double I[6], double lam[3])
 {
     enum { SWEEPS = 8 }; // they converge quadratically
     double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
     for (int n = 0; n < SWEEPS; n++)
         for (int k = 2; k >= 0; k--)
-            rotate_away(A, k == 0, k == 2 ? 1 : 2);
+            jacobi_rotation(A, k == 0, k == 2 ? 1 : 2);
     for (int i = 0; i < 3; i++)
         lam[i] = A[i][i];
     order(&lam[0], &lam[1]);
@@ -209,8 +137,8 @@ static void principal_moments(const double I[6], double lam[3])
     order(&lam[0], &lam[1]);
 }
 
-// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum of
-// the other two.
+// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum
+// of the other two.
 static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
                           const struct ct_value *given)
 {
@@ -260,13 +188,7 @@ static bool fill_rigid(struct ct_reader *r, struct ct_body *b)
     return fill_inertia(r, b, ct_instance_value(&b->instance, "inertia"));
 }
 
-// ---- a body ------------------------------------------------------------------------------------------------
-
-static bool is_particle_type(const struct ct_node *node)
-{
-    const struct ct_node *type = ct_node_get(node, "type");
-    return type && type->kind == CT_NODE_SCALAR && strcmp(type->text, "particle") == 0;
-}
+// ---- a body ------------------------------------------------------------------------------------
 
 // What a rigid body has and a particle has not deserves a better word than "unknown key".
 static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
@@ -275,7 +197,7 @@ static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
     static const char *const names[] = {"points", "inertia", "com"};
     bool ok = true;
     for (size_t i = 0; i < COUNT(names); i++) {
-        const struct ct_simd2 *p = ct_node_find(node, names[i]);
+        const struct ct_node_pair *p = ct_node_find(node, names[i]);
         if (p)
             ok = ct_error(r->ctx, p->mark, CT_E_PARTICLE,
                           "'%s' is a particle: it has a mass, but no '%s'", b->instance.name,
@@ -287,15 +209,15 @@ static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
 static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_node *node)
 {
     struct ct_instance *self = &b->instance;
-    const struct ct_simd2 p = {self->name, self->mark, node};
+    const struct ct_node_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
-    if (strcmp(self->cls->name, "beam") == 0)
+    ct_read_alloc_values(r, self);
+    if (self->cls->body == CT_BODY_BEAM)
         return ct_read_beam(r, b, node);
-    b->is_particle = is_particle_type(node);
-    if (b->is_particle ? !check_particle_keys(r, b, node) : false)
+    b->is_particle = self->cls->body == CT_BODY_PARTICLE;
+    if (b->is_particle && !check_particle_keys(r, b, node))
         return false;
     bool ok = ct_read_component_keys(r, self, node, "body", false);
     ok &= ct_read_own_values(r, self, node);

@@ -5,7 +5,7 @@
 
 // All components are edges of one linear graph and known by their names in signals, trees and
 // summaries: no two of them, of whatever sort, may share one.
-bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const char *sort)
+bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p, const char *sort)
 {
     static const char *const taken[] = {"ground", "system", "energy", "constraint"};
     if (!ct_read_name(r, p->key, p->mark, sort))
@@ -34,7 +34,7 @@ bool ct_read_component_name(struct ct_reader *r, const struct ct_simd2 *p, const
 }
 
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_simd2 *p, const char *sort,
+                                               const struct ct_node_pair *p, const char *sort,
                                                const char *standard)
 {
     if (!ct_read_shape(r, p->value, CT_NODE_MAP, "a map of keys"))
@@ -57,11 +57,11 @@ const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_fami
         if (ct_component_classes[i]->family == family)
             names[n++] = ct_component_classes[i]->name;
     ct_error(r->ctx, type->mark, CT_E_TYPE, "there is no %s of type '%s'%s", sort, type->text,
-             ct_read_near(r, type->text, names, n));
+             ct_read_suggestion(r, type->text, names, n));
     return NULL;
 }
 
-void ct_read_clear(struct ct_reader *r, struct ct_instance *self)
+void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self)
 {
     int nfamily;
     ct_family_keys(self->cls->family, &nfamily);
@@ -111,7 +111,8 @@ bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
 {
     int nfamily;
     ct_family_keys(self->cls->family, &nfamily);
-    struct ct_value *value = (struct ct_value *)(uintptr_t)self->value; // made by ct_read_clear
+    struct ct_value *value
+        = (struct ct_value *)(uintptr_t)self->value; // made by ct_read_alloc_values
     bool ok = true;
     for (int i = 0; i < self->cls->nkey; i++) {
         const struct ct_key *key = &self->cls->key[i];

@@ -7,16 +7,16 @@
 #include <math.h>
 #include <string.h>
 
-// ---- frames -------------------------------------------------------------------------------------------
+// ---- frames ------------------------------------------------------------------------------------
 
 static const char *nearest_frame(struct ct_reader *r, const char *name)
 {
-    if (!ct_read_suggests(r))
+    if (!ct_read_wants_suggestions(r))
         return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->m->nframe);
     for (size_t i = 0; i < r->m->nframe; i++)
         names[i] = r->m->frame[i].name;
-    return ct_read_near(r, name, names, r->m->nframe);
+    return ct_read_suggestion(r, name, names, r->m->nframe);
 }
 
 static bool check_frame(struct ct_reader *r, const char *name, struct ct_mark at)
@@ -43,7 +43,7 @@ bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame)
     return true;
 }
 
-// ---- expressions --------------------------------------------------------------------------------------
+// ---- expressions -------------------------------------------------------------------------------
 
 // The one symbol of a signal.
 static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark at)
@@ -58,10 +58,10 @@ static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark
     return e;
 }
 
-// Inside its own expressions a custom joint's coordinates go by their own names: in its motion they are
-// the arguments, in its efforts what J.q1 ... are elsewhere.
-static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
+// Inside its own expressions a custom joint's coordinates go by their own names: in its motion
+// they are the arguments, in its efforts what J.q1 ... are elsewhere.
+static bool find_joint_coordinate(struct ct_reader *r, const char *name, ct_ex *e,
+                                  const char **why, enum ct_name_result *result)
 {
     const struct ct_instance *custom = r->local_of;
     for (int i = 0; custom && i < custom->ncoord; i++) {
@@ -84,8 +84,8 @@ static bool find_local(struct ct_reader *r, const char *name, ct_ex *e, const ch
 
 // In its section and its points a beam knows its own length, in its section the place along it too;
 // there these names go before parameters.
-static bool find_along(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
-                       enum ct_name_result *result)
+static bool find_beam_name(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
+                           enum ct_name_result *result)
 {
     if (!r->beam)
         return false;
@@ -114,7 +114,8 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
 {
     struct ct_reader *r = user;
     enum ct_name_result result;
-    if (find_local(r, name, e, why, &result) || find_along(r, name, e, why, &result))
+    if (find_joint_coordinate(r, name, e, why, &result)
+        || find_beam_name(r, name, e, why, &result))
         return result;
     if (strcmp(name, "t") == 0) {
         *e = r->m->time;
@@ -140,7 +141,7 @@ static bool signal_exists(const struct ct_reader *r, const char *first)
 
 static const char *nearest_subject(struct ct_reader *r, const char *first)
 {
-    if (!ct_read_suggests(r))
+    if (!ct_read_wants_suggestions(r))
         return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
     size_t n = r->ncomponent;
@@ -151,10 +152,11 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
     names[n++] = "system";
     names[n++] = "energy";
     names[n++] = "constraint";
-    return ct_read_near(r, first, names, n);
+    return ct_read_suggestion(r, first, names, n);
 }
 
-// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two letters.
+// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two
+// letters.
 static bool point_exists(struct ct_reader *r, const char *text, struct ct_mark where)
 {
     const char *const dot = strchr(text, '.'), *const next = dot ? strchr(dot + 1, '.') : NULL;
@@ -210,7 +212,8 @@ static bool is_same_dimension(const char *a, const char *b)
         || ct_unit_parse(b, strlen(b), &v, &at) != CT_UNIT_OK || ct_unit_same(&u, &v);
 }
 
-// A parameter that stands alone, or with a minus, has the dimension it was given with; in expressions numbers are SI, and nothing is known.
+// A parameter alone, or with a minus sign, has the dimension it was given with. The dimension of
+// other expressions is not known.
 static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node,
                                  const char *unit, ct_ex e)
 {
@@ -237,8 +240,8 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
 
 const double ct_read_full_turn = 6.283185307179586;
 
-// An angle that can hardly be radians: a number without a unit beyond a turn, or a parameter that is such a whole number (which no
-// multiple of pi is).
+// Warn of angles that are probably degrees: a number beyond a full turn without a unit, or a
+// parameter that is such an integer, which no multiple of pi is.
 static void check_degrees(struct ct_reader *r, const struct ct_node *node, ct_ex e)
 {
     double value;
@@ -298,7 +301,7 @@ bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flag
                   const char *unit, ct_ex3 *v, struct ct_mark at[3])
 {
     *v = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
-    if (!ct_read_length(r, node, 3, 3, "a list of 3"))
+    if (!ct_read_list(r, node, 3, 3, "a list of 3"))
         return false;
     bool ok = true;
     for (int i = 0; i < 3; i++) {
@@ -307,4 +310,59 @@ bool ct_read_vec3(struct ct_reader *r, const struct ct_node *node, unsigned flag
             at[i] = node->item[i]->mark;
     }
     return ok;
+}
+
+void ct_read_alloc(struct ct_reader *r, struct ct_value *v, size_t n)
+{
+    v->n = n;
+    v->e = CT_NEWN(r->a, ct_ex, n);
+    v->at = CT_NEWN(r->a, struct ct_mark, n);
+    for (size_t i = 0; i < n; i++)
+        v->e[i] = CT_EX_ZERO;
+}
+
+bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
+                   struct ct_value *v)
+{
+    ct_read_alloc(r, v, node->n);
+    bool ok = true;
+    for (size_t i = 0; i < node->n; i++) {
+        v->at[i] = node->item[i]->mark;
+        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
+    }
+    return ok;
+}
+
+// A count decides about the equations: keep account of the parameters in it.
+static bool read_structural_number(struct ct_reader *r, ct_ex e, double *v)
+{
+    struct ct_model *m = r->m;
+    if (!m->decided) {
+        m->x->ndecided = m->x->nsym;
+        m->decided = CT_NEWN(r->a, unsigned char, m->x->nsym);
+    }
+    m->x->decided = m->decided;
+    const bool ok = ct_read_number(r, e, v);
+    m->x->decided = NULL;
+    return ok;
+}
+
+bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
+                   long least, long *count)
+{
+    enum { MOST = 10000 };
+    ct_ex e;
+    double v;
+    *count = least;
+    if (!ct_read_expr(r, node, 0, "", &e) || !read_structural_number(r, e, &v))
+        return false;
+    // an integer computed from parameters: n * eps of round-off
+    if (fabs(v - round(v)) > 1e-9 * fabs(v))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
+                        name, v);
+    if (!(v > (double)least - 0.5 && v <= MOST))
+        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be %ld to %d",
+                        name, v, least, MOST);
+    *count = lround(v);
+    return true;
 }

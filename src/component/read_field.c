@@ -10,7 +10,7 @@ static const char *const field_name[CT_BEAM_NFIELD] = {"u", "v", "w", "rx"};
 static const char *const rate_name[CT_BEAM_NFIELD] = {"u'", "v'", "w'", "rx'"};
 static const char *const unit[] = {"m", "rad", "m/s", "rad/s"};
 
-// ---- text ------------------------------------------------------------------------------------------------
+// ---- text --------------------------------------------------------------------------------------
 
 static void add(struct ct_value *v, const char **name, const char *own, struct ct_mark at,
                 ct_ex e)
@@ -61,7 +61,7 @@ static bool read_shapes(struct ct_reader *r, const struct ct_node *node,
     bool ok = ct_read_keys(r, node, "'shapes' of a beam", field_name, CT_BEAM_NFIELD);
     const size_t n = count_of(node);
     const char **name = CT_NEWN(r->a, const char *, n + 1);
-    ct_read_room(r, v, n);
+    ct_read_alloc(r, v, n);
     v->n = 0;
     v->name = name;
     ok &= read_entries(r, node, key->flags, true, false, v, name);
@@ -87,7 +87,7 @@ bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struc
     const char **name = CT_NEWN(r->a, const char *, 2 * CT_BEAM_NFIELD);
     const struct ct_node *rates = ct_node_get(node, "rates");
     bool ok = ct_read_keys(r, node, "'initial' of a beam", keys, COUNT(keys));
-    ct_read_room(r, v, 2 * CT_BEAM_NFIELD);
+    ct_read_alloc(r, v, 2 * CT_BEAM_NFIELD);
     v->n = 0;
     v->name = name;
     ok &= read_entries(r, node, key->flags, false, false, v, name);
@@ -98,7 +98,7 @@ bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struc
         && read_entries(r, rates, key->flags, false, true, v, name);
 }
 
-// ---- the frame ---------------------------------------------------------------------------------------------
+// ---- the frame ---------------------------------------------------------------------------------
 
 struct field_check {
     struct ct_reader *r;
@@ -158,7 +158,7 @@ static bool check_field(const struct field_check *c, enum ct_code code)
     return ok;
 }
 
-// ---- filling -----------------------------------------------------------------------------------------------
+// ---- filling -----------------------------------------------------------------------------------
 
 static const struct ct_beam_given *take(struct ct_reader *r, const struct ct_value *v, int *n)
 {

@@ -11,7 +11,7 @@ void ct_read_forces_declare(struct ct_reader *r)
         || !ct_read_shape(r, node, CT_NODE_MAP, "a map of forces"))
         return;
     for (size_t i = 0; i < node->n; i++) {
-        const struct ct_simd2 *p = &node->pair[i];
+        const struct ct_node_pair *p = &node->pair[i];
         if (!ct_read_component_name(r, p, "force"))
             continue;
         const struct ct_instance new = {.name = p->key, .mark = p->mark, .from = -1, .to = -1};
@@ -21,7 +21,8 @@ void ct_read_forces_declare(struct ct_reader *r)
     }
 }
 
-// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have (`at`, `on`).
+// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have
+// (`at`, `on`).
 static const char *name_of_end(const struct ct_component_class *cls)
 {
     const char *name = "to";
@@ -49,11 +50,11 @@ static int frame_under(const struct ct_instance *self, const char *name, struct 
 static bool read_force(struct ct_reader *r, struct ct_instance *self,
                        const struct ct_node *node)
 {
-    const struct ct_simd2 p = {self->name, self->mark, node};
+    const struct ct_node_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_FORCE, &p, "force", NULL);
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
+    ct_read_alloc_values(r, self);
     bool ok = ct_read_component_keys(r, self, node, "force", false);
     ok &= ct_read_own_values(r, self, node);
     struct ct_mark at = self->mark;

@@ -1,4 +1,5 @@
-// Joints: their frames and own keys first, then what belongs to the coordinates, which those decide.
+// Joints: their frames and own keys first, then what belongs to the coordinates, which those
+// decide.
 #include "component/read.h"
 
 #include <limits.h>
@@ -60,7 +61,7 @@ void ct_read_joints_declare(struct ct_reader *r)
         || !ct_read_shape(r, node, CT_NODE_MAP, "a map of joints"))
         return;
     for (size_t i = 0; i < node->n; i++) {
-        const struct ct_simd2 *p = &node->pair[i];
+        const struct ct_node_pair *p = &node->pair[i];
         if (!ct_read_component_name(r, p, "joint"))
             continue;
         const struct ct_instance new = {.name = p->key, .mark = p->mark, .from = -1, .to = -1};
@@ -70,7 +71,7 @@ void ct_read_joints_declare(struct ct_reader *r)
     }
 }
 
-// ---- counts ------------------------------------------------------------------------------------------------
+// ---- counts ------------------------------------------------------------------------------------
 
 static bool is_particle_frame(const struct ct_reader *r, int frame)
 {
@@ -132,7 +133,7 @@ static void count_coordinates(struct ct_reader *r, struct joint *j)
 }
 
 static bool check_has_coordinate(struct ct_reader *r, const struct joint *j,
-                                 const struct ct_simd2 *p)
+                                 const struct ct_node_pair *p)
 {
     const struct ct_instance *self = j->self;
     if (self->nfree > 0)
@@ -142,7 +143,7 @@ static bool check_has_coordinate(struct ct_reader *r, const struct joint *j,
                     self->cls->nfree != 0 ? " beside a particle" : "", p->key);
 }
 
-// ---- lists of coordinates ------------------------------------------------------------------------------------
+// ---- lists of coordinates ----------------------------------------------------------------------
 
 static bool hole_allowed(const char *key)
 {
@@ -172,7 +173,7 @@ static bool read_entries(struct ct_reader *r, const struct ct_node *node,
     if (alone && n != 1)
         return ct_error(r->ctx, node->mark, CT_E_LENGTH, "found %s where %s is wanted",
                         ct_node_what(node), wanted);
-    if (!alone && !ct_read_length(r, node, n, n, wanted))
+    if (!alone && !ct_read_list(r, node, n, n, wanted))
         return false;
     v->n = n;
     v->e = CT_NEWN(r->a, ct_ex, n);
@@ -201,7 +202,7 @@ static bool check_rotation_entries(struct ct_reader *r, const struct joint *j,
 }
 
 static bool read_coords(struct ct_reader *r, struct joint *j, const struct ct_key *key,
-                        const struct ct_simd2 *p)
+                        const struct ct_node_pair *p)
 {
     if (!check_has_coordinate(r, j, p))
         return false;
@@ -215,7 +216,7 @@ static bool read_coords(struct ct_reader *r, struct joint *j, const struct ct_ke
         && check_rotation_entries(r, j, key, v);
 }
 
-// ---- initial -------------------------------------------------------------------------------------------------
+// ---- initial -----------------------------------------------------------------------------------
 
 static bool check_quaternion(struct ct_reader *r, const struct joint *j,
                              const struct ct_value *q)
@@ -254,7 +255,7 @@ static bool read_initial_q(struct ct_reader *r, const struct joint *j,
 }
 
 static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
-                                const struct ct_simd2 *p, struct ct_value *v)
+                                const struct ct_node_pair *p, struct ct_value *v)
 {
     if (j->quaternion < 0)
         return ct_error(r->ctx, p->mark, CT_E_COORDINATE,
@@ -263,10 +264,10 @@ static bool read_initial_rotate(struct ct_reader *r, const struct joint *j,
     v->given = true;
     v->mark = p->value->mark;
     v->n = 1;
-    return ct_read_turns(r, p->value, 0, &v->turn, &v->nturn);
+    return ct_read_rotations(r, p->value, 0, &v->turn, &v->nturn);
 }
 
-static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_simd2 *p)
+static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_node_pair *p)
 {
     static const char *const keys[] = {"q", "u", "rotate", "guess"};
     static const struct ct_key u_key = {.name = "u"};
@@ -282,7 +283,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_s
         = ct_arena_printf(r->ctx->scratch, "'initial' of joint '%s'", j->self->name);
     bool ok = ct_read_keys(r, node, what, keys, COUNT(keys));
     const struct ct_node *q = ct_node_get(node, "q"), *u = ct_node_get(node, "u");
-    const struct ct_simd2 *rotate = ct_node_find(node, "rotate");
+    const struct ct_node_pair *rotate = ct_node_find(node, "rotate");
     if (rotate)
         ok &= read_initial_rotate(r, j, rotate, &initial->rotate);
     if (q)
@@ -298,7 +299,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_s
     return ok;
 }
 
-// ---- a driver and the start it contradicts -------------------------------------------------------------------------
+// ---- a driver and the start it contradicts -----------------------------------------------------
 
 // Value of an expression of t at t = 0; false if it has none.
 static bool value_at_start(struct ct_reader *r, ct_ex e, double *v)
@@ -342,7 +343,7 @@ static bool check_driven_start(struct ct_reader *r, const struct joint *j)
     return ok;
 }
 
-// ---- a joint ------------------------------------------------------------------------------------------------------
+// ---- a joint -----------------------------------------------------------------------------------
 
 // Ends on one rigid body never move against each other; on one beam they do.
 static bool check_two_bodies(struct ct_reader *r, const struct joint *j)
@@ -388,7 +389,7 @@ static bool read_common(struct ct_reader *r, struct joint *j)
     const struct ct_key *key = ct_family_keys(CT_FAMILY_JOINT, &n);
     bool ok = true;
     for (int i = 0; i < n; i++) {
-        const struct ct_simd2 *p = ct_node_find(j->node, key[i].name);
+        const struct ct_node_pair *p = ct_node_find(j->node, key[i].name);
         if (p && key[i].kind == CT_VALUE_COORDS)
             ok &= read_coords(r, j, &key[i], p);
         else if (p && key[i].kind == CT_VALUE_INITIAL)
@@ -400,11 +401,11 @@ static bool read_common(struct ct_reader *r, struct joint *j)
 static bool read_joint(struct ct_reader *r, struct ct_instance *self,
                        const struct ct_node *node)
 {
-    const struct ct_simd2 p = {self->name, self->mark, node};
+    const struct ct_node_pair p = {self->name, self->mark, node};
     self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint", NULL);
     if (!self->cls)
         return false;
-    ct_read_clear(r, self);
+    ct_read_alloc_values(r, self);
     struct joint j
         = {.self = self, .value = (struct ct_value *)(uintptr_t)self->value, .node = node};
     const bool framed = has_frames(self->cls);
@@ -422,7 +423,7 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
     return ok;
 }
 
-// ---- gears: they name joints, so all joints come first ---------------------------------------------------------------
+// ---- gears: they name joints, so all joints come first -----------------------------------------
 
 int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
 {
@@ -431,11 +432,11 @@ int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
     if (joint >= 0)
         return joint;
     const char *near = "";
-    if (ct_read_suggests(r)) {
+    if (ct_read_wants_suggestions(r)) {
         const char **names = CT_NEWN(r->ctx->scratch, const char *, m->njoint);
         for (size_t i = 0; i < m->njoint; i++)
             names[i] = m->joint[i].name;
-        near = ct_read_near(r, name, names, m->njoint);
+        near = ct_read_suggestion(r, name, names, m->njoint);
     }
     ct_error(r->ctx, at, CT_E_JOINT, "there is no joint '%s'%s", name, near);
     return -1;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum colour { WHITE, GREY, BLACK };
+enum dfs_state { UNVISITED, ON_PATH, DONE };
 
 // Parameters in the order of the file, before they are ordered for computing.
 struct work {
@@ -16,12 +16,12 @@ struct work {
     bool *is_wrong;              // has no value, which has been reported
     int **use;                   // parameters in the definition of each
     size_t *nuse;
-    enum colour *colour;
+    enum dfs_state *dfs_state;
     int *order; // of computing
     size_t norder;
 };
 
-static bool add_parameter(struct ct_reader *r, const struct ct_simd2 *p, bool is_input)
+static bool add_parameter(struct ct_reader *r, const struct ct_node_pair *p, bool is_input)
 {
     struct ct_model *m = r->m;
     const char *sort = is_input ? "input" : "parameter";
@@ -53,7 +53,7 @@ static bool add_parameter(struct ct_reader *r, const struct ct_simd2 *p, bool is
 static const char *const input_keys[] = {"value", "unit"};
 
 // The value of an input, `{value: V, unit: U}` or V itself: with the unit, where V has none of its own.
-static const struct ct_node *input_value(struct ct_reader *r, const struct ct_simd2 *p)
+static const struct ct_node *input_value(struct ct_reader *r, const struct ct_node_pair *p)
 {
     const struct ct_node *node = p->value;
     if (node->kind != CT_NODE_MAP)
@@ -80,7 +80,7 @@ static const struct ct_node *input_value(struct ct_reader *r, const struct ct_si
 }
 
 // The errors since `first` become errors of the command line.
-static void blame_command_line(struct ct_reader *r, size_t first, const char *text)
+static void move_errors_to_command_line(struct ct_reader *r, size_t first, const char *text)
 {
     for (size_t i = first; i < r->ctx->ndiagnostic; i++) {
         struct ct_finding *d = &r->ctx->diagnostic[i];
@@ -100,7 +100,7 @@ static bool parse_override(struct ct_reader *r, const char *text, struct work *w
     const int i = ct_names_get(&r->m->parameter_index, name);
     if (i < 0)
         return ct_error(r->ctx, none, CT_E_USAGE, "the model has no parameter '%s'%s", name,
-                        ct_read_near(r, name, r->known + 1, r->nknown - 1));
+                        ct_read_suggestion(r, name, r->known + 1, r->nknown - 1));
     const struct ct_node value
         = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
     w->node[i] = NULL;
@@ -117,7 +117,7 @@ static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_
     for (size_t k = 0; k < nset; k++) {
         const size_t first = r->ctx->ndiagnostic;
         ok &= parse_override(r, set[k].text, w);
-        blame_command_line(r, first, set[k].text);
+        move_errors_to_command_line(r, first, set[k].text);
     }
     return ok;
 }
@@ -152,23 +152,23 @@ static bool visit(struct ct_reader *r, struct work *w, int start, int *path, siz
     bool ok = true;
     size_t depth = 0;
     path[depth++] = start;
-    w->colour[start] = GREY;
+    w->dfs_state[start] = ON_PATH;
     while (depth) {
         const int i = path[depth - 1];
         if (next[i] == w->nuse[i]) {
-            w->colour[i] = BLACK;
+            w->dfs_state[i] = DONE;
             w->order[w->norder++] = i;
             depth--;
             continue;
         }
         const int j = w->use[i][next[i]++];
-        if (w->colour[j] == GREY) {
+        if (w->dfs_state[j] == ON_PATH) {
             size_t k = depth - 1;
             while (path[k] != j)
                 k--;
             ok = report_cycle(r, w, path + k, depth - k);
-        } else if (w->colour[j] == WHITE) {
-            w->colour[j] = GREY;
+        } else if (w->dfs_state[j] == UNVISITED) {
+            w->dfs_state[j] = ON_PATH;
             path[depth++] = j;
         }
     }
@@ -183,7 +183,7 @@ static bool order_parameters(struct ct_reader *r, struct work *w)
     for (size_t i = 0; i < w->n; i++)
         find_uses(r, i, w);
     for (size_t i = 0; i < w->n; i++)
-        if (w->colour[i] == WHITE)
+        if (w->dfs_state[i] == UNVISITED)
             ok &= visit(r, w, (int)i, path, next);
     return ok;
 }
@@ -259,7 +259,8 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     struct work w = {.node = CT_NEWN(scratch, const struct ct_node *, n)};
     for (size_t i = 0; i < n; i++) {
         const bool is_input = i >= nparameter;
-        const struct ct_simd2 *p = is_input ? &inputs->pair[i - nparameter] : &node->pair[i];
+        const struct ct_node_pair *p
+            = is_input ? &inputs->pair[i - nparameter] : &node->pair[i];
         if (add_parameter(r, p, is_input))
             w.node[w.n++] = is_input ? input_value(r, p) : p->value;
         else
@@ -267,7 +268,7 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     }
     w.use = CT_NEWN(scratch, int *, w.n);
     w.nuse = CT_NEWN(scratch, size_t, w.n);
-    w.colour = CT_NEWN(scratch, enum colour, w.n);
+    w.dfs_state = CT_NEWN(scratch, enum dfs_state, w.n);
     w.order = CT_NEWN(scratch, int, w.n);
     w.is_wrong = CT_NEWN(scratch, bool, w.n);
     r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);

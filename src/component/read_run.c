@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- outputs --------------------------------------------------------------------------------------------------
+// ---- outputs -----------------------------------------------------------------------------------
 
 static bool add_output(struct ct_reader *r, struct ct_output output, struct ct_names *names)
 {
@@ -80,7 +80,7 @@ void ct_read_outputs(struct ct_reader *r)
     }
 }
 
-// ---- simulation -------------------------------------------------------------------------------------------------
+// ---- simulation --------------------------------------------------------------------------------
 
 // The methods of the format; a unit test holds them against the registry of integrators.
 static const char *const methods[] = {"auto",
@@ -151,10 +151,10 @@ static bool read_interval(struct ct_reader *r, const struct ct_node *node,
 static bool read_sampling(struct ct_reader *r, const struct ct_node *node,
                           struct ct_simulation *s)
 {
-    const struct ct_simd2 *samples = ct_node_find(node, "samples"),
-                          *interval = ct_node_find(node, "interval");
+    const struct ct_node_pair *samples = ct_node_find(node, "samples"),
+                              *interval = ct_node_find(node, "interval");
     if (samples && interval) {
-        const struct ct_simd2 *second = samples > interval ? samples : interval;
+        const struct ct_node_pair *second = samples > interval ? samples : interval;
         return ct_error(r->ctx, second->mark, CT_E_CONFLICT,
                         "give 'samples' or 'interval', not both");
     }
@@ -171,7 +171,7 @@ static bool check_small(struct ct_reader *r, const char *name, struct ct_mark at
         return ct_read_joint_name(r, name, at) >= 0;
     const struct ct_component_class *cls = r->m->body[body].instance.cls;
     return (body > 0 && !cls)
-        || (cls && strcmp(cls->name, "beam") == 0) // one without class has been reported
+        || (cls && cls->body == CT_BODY_BEAM) // one without class has been reported
         || ct_error(r->ctx, at, CT_E_JOINT, "'%s' is no beam; 'small' lists joints and beams",
                     name);
 }
@@ -219,7 +219,7 @@ void ct_read_simulation(struct ct_reader *r)
     *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
     s->small.frame = -1;
     s->mark = (struct ct_mark){r->m->file, 0, 0};
-    const struct ct_simd2 *p = ct_node_find(r->root, "simulation");
+    const struct ct_node_pair *p = ct_node_find(r->root, "simulation");
     const struct ct_node *node = p && !ct_node_is_null(p->value) ? p->value : NULL;
     if (p)
         s->mark = p->mark;

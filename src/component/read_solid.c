@@ -50,7 +50,7 @@ static bool read_color(struct ct_reader *r, const struct ct_node *node, const ch
         *color = read_digits(r->a, node->text);
     if (*color)
         return true;
-    const char *near = ct_read_near(r, node->text, colour_names, COUNT(colour_names));
+    const char *near = ct_read_suggestion(r, node->text, colour_names, COUNT(colour_names));
     return ct_error(r->ctx, node->mark, CT_E_WORD, "unknown colour '%s'%s", node->text,
                     *near ? near : "; a name as in CSS, or \"#rrggbb\" in quotes, is wanted");
 }
@@ -76,7 +76,7 @@ static bool read_size(struct ct_reader *r, const struct ct_node *node, const cha
 static bool read_sizes(struct ct_reader *r, const struct ct_node *node, size_t n,
                        const char *wanted, const char *const *what, ct_ex *size)
 {
-    if (!ct_read_length(r, node, n, n, wanted))
+    if (!ct_read_list(r, node, n, n, wanted))
         return false;
     bool ok = true;
     for (size_t i = 0; i < n; i++)
@@ -87,7 +87,7 @@ static bool read_sizes(struct ct_reader *r, const struct ct_node *node, size_t n
 static bool read_lines(struct ct_reader *r, const struct ct_node *node, struct ct_solid *s)
 {
     enum { MOST = 100000 };
-    if (!ct_read_length(r, node, 2, MOST, "a list of at least two points [x, y, z]"))
+    if (!ct_read_list(r, node, 2, MOST, "a list of at least two points [x, y, z]"))
         return false;
     s->npoint = node->n;
     s->point = CT_NEWN(r->a, ct_ex3, node->n);
@@ -135,7 +135,7 @@ static bool read_kind(struct ct_reader *r, const struct ct_node *node, struct ct
 static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_wanted,
                       struct ct_solid *s)
 {
-    const struct ct_simd2 *found = NULL;
+    const struct ct_node_pair *found = NULL;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++)
         for (int k = 0; k < CT_NSOLID; k++) {
@@ -159,7 +159,7 @@ static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_w
 static bool check_belongs(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_solid *s, const char *key, enum ct_solid_kind kind)
 {
-    const struct ct_simd2 *p = ct_node_find(node, key);
+    const struct ct_node_pair *p = ct_node_find(node, key);
     if (!p || s->kind == kind)
         return true;
     return ct_error(r->ctx, p->mark, CT_E_CONFLICT, "'%s' is for a '%s', not for a '%s'", key,
@@ -195,7 +195,7 @@ static bool read_solid(struct ct_reader *r, const char *owner, const struct ct_n
     if (at)
         ok &= ct_read_vec3(r, at, 0, "m", &s->at, NULL);
     if (rotate)
-        ok &= ct_read_turns(r, rotate, 0, &s->turn, &s->nturn);
+        ok &= ct_read_rotations(r, rotate, 0, &s->turn, &s->nturn);
     if (color)
         ok &= read_color(r, color, &s->color);
     return ok && is_known;

@@ -1,8 +1,9 @@
 // Functions of time from files: {table: FILE.csv, column: NAME, interpolate: cubic|linear}.
 //
-// The file is CSV with a header; one column is `t`, strictly increasing. `cubic` is the natural spline:
-// twice continuously differentiable, second derivative 0 at both ends. A head may end with the unit of its column,
-// `angle [deg]`; `unit` says it where the head does not, and `scale` is a factor besides.
+// The file is CSV with a header; one column is `t`, strictly increasing. `cubic` is the natural
+// spline: twice continuously differentiable, second derivative 0 at both ends. A head may end with
+// the unit of its column, `angle [deg]`; `unit` says it where the head does not, and `scale` is a
+// factor besides.
 #include "component/read.h"
 
 #include "expr/quantity.h"
@@ -89,7 +90,7 @@ static bool find_column(struct ct_reader *r, const struct ct_node *node,
     }
     return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' has no column '%s'%s",
                     csv->file, name,
-                    ct_read_near(r, name, names, csv->nrow ? csv->ncolumn : 0));
+                    ct_read_suggestion(r, name, names, csv->nrow ? csv->ncolumn : 0));
 }
 
 // A number with blanks around it and nothing else.
@@ -138,8 +139,8 @@ static bool check_start(struct ct_reader *r, const struct ct_sheet *csv, size_t 
                     x[0] > 0 ? "begins" : "ends", x[row - 1]);
 }
 
-// Slopes m (n, out) of the natural spline through (x, y), n >= 2: the second derivative is continuous at
-// inner points and 0 at the ends. Rows h_i = x_i+1 - x_i, d_i = (y_i+1 - y_i)/h_i:
+// Slopes m (n, out) of the natural spline through (x, y), n >= 2: the second derivative is
+// continuous at inner points and 0 at the ends. Rows h_i = x_i+1 - x_i, d_i = (y_i+1 - y_i)/h_i:
 //   2 m_0 + m_1 = 3 d_0
 //   m_i-1/h_i-1 + 2 m_i (1/h_i-1 + 1/h_i) + m_i+1/h_i = 3 (d_i-1/h_i-1 + d_i/h_i)
 //   m_n-2 + 2 m_n-1 = 3 d_n-2
@@ -174,7 +175,8 @@ static bool is_no_name(const void *user, const char *word)
     return false;
 }
 
-// factor (out): one of the unit in SI units. what: the column; wanted: a unit of its dimension, NULL: any.
+// factor (out): one of the unit in SI units. what: the column; wanted: a unit of its dimension,
+// NULL: any.
 static bool read_unit(struct ct_reader *r, const char *what, const char *unit,
                       struct ct_mark mark, const char *wanted, double *factor)
 {

@@ -7,102 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- keys and shapes ------------------------------------------------------------------------------
-
-bool ct_read_suggests(const struct ct_reader *r)
-{
-    enum { MOST = 200 };
-    return r->ctx->nerror < MOST;
-}
-
-const char *ct_read_near(struct ct_reader *r, const char *name, const char *const *names,
-                         size_t n)
-{
-    const char *near = ct_read_suggests(r) ? ct_nearest(name, names, n) : NULL;
-    return near ? ct_arena_printf(r->ctx->scratch, "; did you mean '%s'?", near) : "";
-}
-
-bool ct_read_shape(struct ct_reader *r, const struct ct_node *node, enum ct_node_kind kind,
-                   const char *wanted)
-{
-    if (node->kind == kind && !(kind == CT_NODE_SCALAR && ct_node_is_null(node)))
-        return true;
-    return ct_error(r->ctx, node->mark, CT_E_SHAPE, "found %s where %s is wanted",
-                    ct_node_what(node), wanted);
-}
-
-bool ct_read_keys(struct ct_reader *r, const struct ct_node *node, const char *what,
-                  const char *const *names, size_t n)
-{
-    if (!ct_read_shape(r, node, CT_NODE_MAP, "a map of keys"))
-        return false;
-    bool ok = true;
-    for (size_t i = 0; i < node->n; i++) {
-        bool known = false;
-        for (size_t k = 0; k < n && !known; k++)
-            known = strcmp(node->pair[i].key, names[k]) == 0;
-        if (!known)
-            ok = ct_error(r->ctx, node->pair[i].mark, CT_E_KEY_UNKNOWN, "%s has no key '%s'%s",
-                          what, node->pair[i].key,
-                          ct_read_near(r, node->pair[i].key, names, n));
-    }
-    return ok;
-}
-
-bool ct_read_length(struct ct_reader *r, const struct ct_node *node, size_t least, size_t most,
-                    const char *wanted)
-{
-    if (!ct_read_shape(r, node, CT_NODE_LIST, wanted))
-        return false;
-    if (node->n >= least && node->n <= most)
-        return true;
-    return ct_error(r->ctx, node->mark, CT_E_LENGTH, "the list has %zu value%s; %s is wanted",
-                    node->n, node->n == 1 ? "" : "s", wanted);
-}
-
-int ct_read_word(struct ct_reader *r, const struct ct_node *node, const char *what,
-                 const char *const *names, size_t n)
-{
-    const char *wanted = ct_arena_printf(r->ctx->scratch, "a word (%s, ...)", names[0]);
-    if (!ct_read_shape(r, node, CT_NODE_SCALAR, wanted))
-        return -1;
-    for (size_t i = 0; i < n; i++)
-        if (strcmp(names[i], node->text) == 0)
-            return (int)i;
-    const char *list = names[0];
-    for (size_t i = 1; i < n; i++)
-        list = ct_arena_printf(r->ctx->scratch, "%s, %s", list, names[i]);
-    ct_error(r->ctx, node->mark, CT_E_WORD, "unknown %s '%s'%s (known: %s)", what, node->text,
-             ct_read_near(r, node->text, names, n), list);
-    return -1;
-}
-
-bool ct_read_boolean(struct ct_reader *r, const struct ct_node *node, bool *value)
-{
-    static const char *const names[] = {"false", "true"};
-    const int i = ct_read_word(r, node, "truth value", names, COUNT(names));
-    *value = i == 1;
-    return i >= 0;
-}
-
-bool ct_read_text(struct ct_reader *r, const struct ct_node *node, const char **text)
-{
-    if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a text"))
-        return false;
-    *text = node->text;
-    return true;
-}
-
-bool ct_read_name(struct ct_reader *r, const char *name, struct ct_mark at, const char *sort)
-{
-    if (ct_is_identifier(name))
-        return true;
-    return ct_error(r->ctx, at, CT_E_NAME,
-                    "'%s' cannot name a %s: names are letters, digits and _, not first a digit",
-                    name, sort);
-}
-
-// ---- directions and rotations -------------------------------------------------------------------------
+// ---- directions and rotations ------------------------------------------------------------------
 
 static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
 {
@@ -144,7 +49,7 @@ bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
             axis->e[i] = CT_EX_ONE;
         return i >= 0;
     }
-    if (!ct_read_length(r, node, 3, 3, "x, y, z or a list of 3"))
+    if (!ct_read_list(r, node, 3, 3, "x, y, z or a list of 3"))
         return false;
     return ct_read_vec3(r, node, 0, NULL, axis, NULL) && normalise(r, node, axis);
 }
@@ -152,7 +57,7 @@ bool ct_read_axis(struct ct_reader *r, const struct ct_node *node, ct_ex3 *axis)
 static bool read_turn(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                       struct ct_turn *turn)
 {
-    if (!ct_read_length(r, node, 2, 2, "[axis, angle]"))
+    if (!ct_read_list(r, node, 2, 2, "[axis, angle]"))
         return false;
     const bool ok = ct_read_axis(r, node->item[0], &turn->axis);
     return ct_read_expr(r, node->item[1], flags, "rad", &turn->angle) && ok;
@@ -165,13 +70,13 @@ static bool is_one_turn(const struct ct_node *node)
         || (node->n == 2 && node->item[1]->kind != CT_NODE_LIST);
 }
 
-bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned flags,
-                   struct ct_turn **turn, size_t *nturn)
+bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned flags,
+                       struct ct_turn **turn, size_t *nturn)
 {
     enum { MOST = 1000 };
     *nturn = 0;
     *turn = NULL;
-    if (!ct_read_length(r, node, 1, MOST, "[axis, angle] or a list of such"))
+    if (!ct_read_list(r, node, 1, MOST, "[axis, angle] or a list of such"))
         return false;
     const bool one = is_one_turn(node);
     const size_t n = one ? 1 : node->n;
@@ -183,33 +88,12 @@ bool ct_read_turns(struct ct_reader *r, const struct ct_node *node, unsigned fla
     return ok;
 }
 
-// ---- a value of any kind ---------------------------------------------------------------------------------
-
-void ct_read_room(struct ct_reader *r, struct ct_value *v, size_t n)
-{
-    v->n = n;
-    v->e = CT_NEWN(r->a, ct_ex, n);
-    v->at = CT_NEWN(r->a, struct ct_mark, n);
-    for (size_t i = 0; i < n; i++)
-        v->e[i] = CT_EX_ZERO;
-}
-
-bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
-                   struct ct_value *v)
-{
-    ct_read_room(r, v, node->n);
-    bool ok = true;
-    for (size_t i = 0; i < node->n; i++) {
-        v->at[i] = node->item[i]->mark;
-        ok &= ct_read_expr(r, node->item[i], key->flags, key->unit, &v->e[i]);
-    }
-    return ok;
-}
+// ---- a value of any kind -----------------------------------------------------------------------
 
 static bool read_scalar(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_key *key, struct ct_value *v)
 {
-    ct_read_room(r, v, 1);
+    ct_read_alloc(r, v, 1);
     v->at[0] = node->mark;
     return ct_read_expr(r, node, key->flags, key->unit, &v->e[0]);
 }
@@ -223,7 +107,7 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
         = key->least == key->most
             ? ct_arena_printf(r->ctx->scratch, "a list of %d", key->most)
             : ct_arena_printf(r->ctx->scratch, "a list of %d to %d", key->least, key->most);
-    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+    if (!ct_read_list(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     return ct_read_items(r, node, key, v);
 }
@@ -245,8 +129,8 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
 static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
                       struct ct_value *v)
 {
-    ct_read_room(r, v, 3 * n);
-    if (n == 2 && !ct_read_length(r, node, 2, 2, "a list of two axes"))
+    ct_read_alloc(r, v, 3 * n);
+    if (n == 2 && !ct_read_list(r, node, 2, 2, "a list of two axes"))
         return false;
     bool ok = true;
     for (size_t k = 0; k < n; k++) {
@@ -264,10 +148,10 @@ static bool read_axes(struct ct_reader *r, const struct ct_node *node, size_t n,
 static bool read_texts(struct ct_reader *r, const struct ct_node *node,
                        const struct ct_key *key, const char *wanted, struct ct_value *v)
 {
-    if (!ct_read_length(r, node, (size_t)key->least, (size_t)key->most, wanted))
+    if (!ct_read_list(r, node, (size_t)key->least, (size_t)key->most, wanted))
         return false;
     const char **name = CT_NEWN(r->a, const char *, node->n);
-    ct_read_room(r, v, node->n);
+    ct_read_alloc(r, v, node->n);
     v->name = name;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
@@ -340,40 +224,6 @@ static bool read_choices(struct ct_reader *r, const struct ct_node *node,
     return ok;
 }
 
-// A count decides about the equations: keep account of the parameters in it.
-static bool read_deciding(struct ct_reader *r, ct_ex e, double *v)
-{
-    struct ct_model *m = r->m;
-    if (!m->decided) {
-        m->x->ndecided = m->x->nsym;
-        m->decided = CT_NEWN(r->a, unsigned char, m->x->nsym);
-    }
-    m->x->decided = m->decided;
-    const bool ok = ct_read_number(r, e, v);
-    m->x->decided = NULL;
-    return ok;
-}
-
-bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
-                   long least, long *count)
-{
-    enum { MOST = 10000 };
-    ct_ex e;
-    double v;
-    *count = least;
-    if (!ct_read_expr(r, node, 0, "", &e) || !read_deciding(r, e, &v))
-        return false;
-    // an integer computed from parameters: n * eps of round-off
-    if (fabs(v - round(v)) > 1e-9 * fabs(v))
-        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
-                        name, v);
-    if (!(v > (double)least - 0.5 && v <= MOST))
-        return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be %ld to %d",
-                        name, v, least, MOST);
-    *count = lround(v);
-    return true;
-}
-
 bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                    struct ct_value *v)
 {
@@ -384,7 +234,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
         return read_scalar(r, node, key, v);
     case CT_VALUE_VEC3: {
         ct_ex3 e;
-        ct_read_room(r, v, 3);
+        ct_read_alloc(r, v, 3);
         const bool ok = ct_read_vec3(r, node, key->flags, key->unit, &e, v->at);
         for (int i = 0; i < 3; i++)
             v->e[i] = e.e[i];
@@ -399,7 +249,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
     case CT_VALUE_TURNS:
         if (node->kind == CT_NODE_LIST && node->n == 0 && key->least == 0)
             return true;
-        return ct_read_turns(r, node, key->flags, &v->turn, &v->nturn);
+        return ct_read_rotations(r, node, key->flags, &v->turn, &v->nturn);
     case CT_VALUE_FRAME:
         return ct_read_frame(r, node, &v->frame);
     case CT_VALUE_NAMES:

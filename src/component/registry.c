@@ -1,5 +1,4 @@
-// The list of all component classes. Only readers of models and reports need it: what derives
-// equations meets classes through instances.
+// All component classes, by family and name; see class.h.
 #include "component/class.h"
 
 #include <string.h>

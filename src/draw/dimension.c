@@ -169,7 +169,7 @@ static const char *unit_of(const struct ct_build *b, ct_ex e, int depth)
     case CT_OP_POW:
     case CT_OP_SQRT:
     case CT_OP_TABLE:
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return NULL;

@@ -217,7 +217,8 @@ static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_e
     return linear;
 }
 
-// By derivatives: where the polynomial is too long to be expanded. False: not linear, nothing is set.
+// By derivatives: where the polynomial is too long to be expanded. False: not linear, nothing is
+// set.
 static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                                   ct_ex *coefficient, ct_ex *rest,
                                   const struct ct_collect_options *options)

@@ -1,7 +1,7 @@
 // What the steps of collecting share: expand.c, identity.c, regroup.c; see collect.h.
 //
-// What always holds: an angle is a polynomial whose leading coefficient is positive; its sine and its
-// cosine are atoms, sine(-a) and cosine(-a) are written with them.
+// What always holds: an angle is a polynomial whose leading coefficient is positive; its sine and
+// its cosine are atoms, sine(-a) and cosine(-a) are written with them.
 #ifndef CT_EXPR_COLLECTOR_H
 #define CT_EXPR_COLLECTOR_H
 

@@ -1,7 +1,8 @@
 // Walks over the graph: derivatives, substitution, copies between stores.
 //
-// Each walk lists the nodes below its roots once, children before parents, and computes one result a
-// node. The lists live in the store's workspace; explicit stacks, as expressions may be deep.
+// Derivatives are forward mode by one symbol or direction, and reverse mode (gradient). Each walk
+// lists the nodes below its roots in topological order and computes one result per node. Stacks are
+// explicit, as expressions may be deep.
 #include "expr/ex.h"
 
 #include <assert.h>
@@ -133,7 +134,7 @@ ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
     case CT_OP_GT:
     case CT_OP_GE:
     case CT_OP_EQ:
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return CT_EX_ZERO;

@@ -1,10 +1,11 @@
-// Derivatives as numbers, at a point: one walk, each node with its value and the list of its derivatives.
+// Sparse forward-mode automatic differentiation at a point (dual numbers): one walk, each node with
+// its value and the list of its nonzero derivatives.
 //
 //     node  ->  value,  [ (direction, derivative), ... ]      ascending directions, zeros left out
 //
-// The walk of jacobian.c without new nodes. Derivatives that vanish at the point are left out with all that would follow
-// from them, and a list is given up with the last node that reads it, so that memory follows what is alive and not
-// the length of the walk.  Source: Griewank and Walther (2008), 3.1 and 7.1, key griewank2008.
+// The walk of jacobian.c with numbers. Derivatives that vanish at the point are not propagated. A
+// list is freed after its last reader, so that memory is that of the live nodes. Source: Griewank
+// and Walther (2008), 3.1 and 7.1, key griewank2008.
 #include "expr/seed.h"
 
 #include <math.h>
@@ -36,7 +37,7 @@ struct walk {
     size_t nmerged, cap;
 };
 
-// ---- lists --------------------------------------------------------------------------------------------
+// ---- lists -------------------------------------------------------------------------------------
 
 static void keep_merged(struct walk *w, struct list *l)
 {
@@ -70,7 +71,7 @@ static void push(struct walk *w, uint32_t direction, double value)
         CT_PUSH(w->scratch, w->merged, w->nmerged, w->cap, t);
 }
 
-// ---- nodes ----------------------------------------------------------------------------------------------
+// ---- nodes -------------------------------------------------------------------------------------
 
 static void seed_symbol(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
 {
@@ -136,7 +137,7 @@ double ct_op_partial(enum ct_op op, int i, double a, double b, double v)
     case CT_OP_GT:
     case CT_OP_GE:
     case CT_OP_EQ:
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return 0;
@@ -216,7 +217,7 @@ static void visit(struct walk *w, uint32_t id, uint32_t k, const struct ct_seed 
         read_once(w, arg[i]);
 }
 
-// ---- the walk ---------------------------------------------------------------------------------------------
+// ---- the walk ----------------------------------------------------------------------------------
 
 static void count_readers(struct walk *w, const uint32_t *id, size_t n, const ct_ex *f,
                           size_t nf)

@@ -15,7 +15,7 @@ double ct_op_apply(enum ct_op op, double a, double b, double c)
 #undef OP
 #undef NO_VALUE
 #undef FN
-    case CT_NOP:
+    case CT_OP_COUNT:
         break;
     }
     return NAN;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-const struct ct_op_info ct_op_info[CT_NOP] = {
+const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 #define OP(op, narg, name, value) {name, narg},
 #include "expr/ops.def"
 #undef OP
@@ -13,9 +13,9 @@ const struct ct_op_info ct_op_info[CT_NOP] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-// Room in a copy, which is made to grow, for the equations of a small model: growing step by step copies.
+// Initial capacities of an empty store and of a copy, which is made to grow; both double when full.
 enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
-// Nodes with one newest operand that are listed; further ones are in the table.
+// Longest list of nodes with one newest operand; further ones are in the hash table.
 enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
 
 static bool is_node(const struct ct_exnode *m, const struct ct_exnode *n)
@@ -104,8 +104,8 @@ static ct_ex intern_in_table(struct ct_exs *x, const struct ct_exnode *n)
     return e;
 }
 
-// The node's id; made if it does not exist. It is listed with its newest operand: seldom has one more than a few, and
-// the next node mostly asks for what was made just before, so that a large store is used a few cache lines at a time.
+// Hash consing: the id of an equal node, or of a new one. Lists by newest operand are short and
+// local in memory; a hash table takes what exceeds them.
 static ct_ex intern(struct ct_exs *x, uint32_t op, uint32_t a, uint32_t b, uint32_t c)
 {
     const struct ct_exnode n = {op, a, b, c};
@@ -293,8 +293,8 @@ ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
     return ct_ex_sub(x, a, ct_ex_mul(x, b, c));
 }
 
-// c * b with a constant c: signs outwards, constants merged, the constant is the first operand. k: its node, 0 where it
-// is not at hand.
+// c * b with a constant c: signs outwards, constants merged, the constant first. k: node of c, or
+// 0.
 static ct_ex scaled(struct ct_exs *x, double c, ct_ex k, ct_ex b)
 {
     if (c < 0)

@@ -1,4 +1,17 @@
-// The expression graph: one hash-consed store of nodes.
+// The expression graph: one hash-consed store of nodes (value numbering: common subexpressions are
+// one node).
+//
+// src/expr builds, differentiates, simplifies and evaluates expressions:
+//
+//     text -> graph      parse, unit, quantity
+//     derivatives        diff (symbolic forward, reverse gradient), jacobian (sparse,
+//                        symbolic), dual (sparse, numeric), pattern (sparsity), scarcity (vertex elimination)
+//     for reading        collect, expand, identity, regroup; fraction; share (names for common
+//                        subexpressions); print, term, notation
+//     for evaluation     listing (linear intermediate code), tape (interpreter), sincos
+//     along a symbol     quadrature, switches (jumps and kinks)
+//
+// It knows no mechanics: a symbol is a name, a kind and an index.
 //
 //     id   0    1     2      3        4          5
 //          0    1    theta  sin(2)   m        mul(4,3)      children have smaller ids than parents
@@ -8,9 +21,9 @@
 // downwards. Constants are told apart by bit pattern, -0 and 0 are the same node; a NaN is never
 // stored as a constant except as the value of an explicit NaN operation at run time.
 //
-// Local rules applied on construction: constants are folded, 0 and 1 vanish, signs are pulled out of
-// products and quotients, commutative operands are ordered by id, x - x = 0, x + x = 2 x,
-// c (d x) = (c d) x, sin(-x) = -sin(x), cos(-x) = cos(x), x - (-y) = x + y. Nothing is expanded.
+// Local rules applied on construction: constants are folded, 0 and 1 vanish, signs are pulled out
+// of products and quotients, commutative operands are ordered by id, x - x = 0, x + x = 2 x, c (d
+// x) = (c d) x, sin(-x) = -sin(x), cos(-x) = cos(x), x - (-y) = x + y. Nothing is expanded.
 #ifndef CT_EXPR_EX_H
 #define CT_EXPR_EX_H
 
@@ -34,13 +47,13 @@ enum ct_op {
 #define OP(op, narg, name, value) op,
 #include "expr/ops.def"
 #undef OP
-    CT_NOP
+    CT_OP_COUNT
 };
 
 extern const struct ct_op_info {
     const char *name;
     int narg;
-} ct_op_info[CT_NOP];
+} ct_op_info[CT_OP_COUNT];
 
 /// What a symbol stands for. The kind decides who gives its value at run time.
 enum ct_sym_kind {
@@ -71,8 +84,8 @@ struct ct_exnode {
     uint32_t op, a, b, c;
 };
 
-/// Nodes by their newest operand: the last one of which a node is the newest operand, and the one before that with the
-/// same newest operand; 0: none.
+/// Linked lists of the nodes that share their newest operand (the one with the largest id), for
+/// hash consing. first: head of this node's list; next: the node before in its own list; 0: none.
 struct ct_exlink {
     uint32_t first, next;
 };
@@ -100,10 +113,8 @@ struct ct_exs {
     size_t hash_size, nhash;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
-    unsigned char
-        *decided; // by symbol: its value has been asked for by ct_ex_value; NULL: not kept
-    size_t
-        ndecided; // symbols that were there when the account was opened; of later ones none is kept
+    unsigned char *decided; // by symbol: ct_ex_value has read its value; NULL: not recorded
+    size_t ndecided; // number of symbols when recording began; later ones are not recorded
     // workspace of walks over the graph: a generation stamp and a result per node, a stack
     uint32_t *stamp, generation;
     ct_ex *memo;
@@ -176,14 +187,15 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
-/// out[i] = da/ds[i] for all of n symbols in one walk from a down. Cost: nodes below a, however many symbols.
+/// Gradient out[i] = da/ds[i] by n symbols in reverse mode. Cost: nodes below a, whatever n.
 void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
                     size_t n, ct_ex *out);
 /// Derivative of node id by its i-th argument, as an expression of the node and its arguments.
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i);
 
-/// d(symbol)/d(direction) = value. A symbol may have several directions. In place of a symbol also a node of another kind: what lies
-/// above it then sees these directions alone, and as a row of f it has the derivatives that follow from its arguments.
+/// Seed of forward differentiation: d(symbol)/d(direction) = value. A symbol may have several. An
+/// inner node may be seeded too: nodes above it then see these directions only, and as a row of f
+/// it has the derivatives that follow from its arguments.
 struct ct_seed {
     ct_ex symbol;
     uint32_t direction;
@@ -194,12 +206,12 @@ struct ct_slope {
     uint32_t row, direction;
     ct_ex value;
 };
-/// Derivatives of f (nf) in all directions of the seeds at once, zeros left out, by row and then by direction.
+/// Sparse Jacobian of f (nf) in all directions of the seeds, nonzeros only, by row, then direction.
 /// *out lives in a. Cost: nodes below f times the directions each depends on.
 size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out);
-/// Where that Jacobian may have entries (values 0, *out lives in a), and about how many operations it would take.
+/// Sparsity pattern of that Jacobian (values 0, *out lives in a) and an estimate of its operations.
 /// Directions count from 0 to ndirection. Cost: nodes below f for every 64 directions.
 size_t ct_ex_pattern(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                      const ct_ex *f, size_t nf, const struct ct_seed *seed, size_t nseed,
@@ -210,8 +222,8 @@ struct ct_number {
     uint32_t row, direction;
     double value;
 };
-/// The same as numbers, without new nodes: with value[k] for symbol k, fvalue (nf, out) and the derivatives that are not
-/// zero there, by row and then by direction. *out lives in a.
+/// The Jacobian as numbers at value[k] for symbol k, without new nodes: fvalue (nf, out) and the
+/// nonzero derivatives, by row, then direction. *out lives in a.
 size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                          const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                          const double *value, double *fvalue, struct ct_number **out);
@@ -238,7 +250,7 @@ double ct_op_partial(enum ct_op op, int i, double a, double b, double v);
 /// Value of the order-th derivative of a table at x; NaN outside its range.
 double ct_table_value(const struct ct_table *t, uint32_t order, double x);
 
-// ---- three components ----------------------------------------------------------------------------
+// ---- three components --------------------------------------------------------------------------
 
 ct_ex3 ct_ex3_add(struct ct_exs *x, ct_ex3 a, ct_ex3 b);
 ct_ex3 ct_ex3_sub(struct ct_exs *x, ct_ex3 a, ct_ex3 b);

@@ -1,18 +1,18 @@
 // Expressions -> polynomials over atoms, upwards over the nodes; see collect.h.
 //
-// Products distribute over sums and whole powers multiply out. Sums that would outgrow the limit are
-// bundled: simplified, regrouped and from then on one atom.
+// Products distribute over sums and whole powers multiply out. Sums that would outgrow the limit
+// are bundled: simplified, regrouped and from then on one atom.
 //
-// Identities can be applied at the end or early, to each sum on the way up. Early, the components of
-// a rotation about parallel axes become cos(a + b) before they are squared, and polynomials stay
-// short; at the end, everything that cancels is there in one form. Neither is always shorter.
+// Identities can be applied at the end or early, to each sum on the way up. Early, the components
+// of a rotation about parallel axes become cos(a + b) before they are squared, and polynomials
+// stay short; at the end, everything that cancels is there in one form. Neither is always shorter.
 #include "expr/collector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Terms made before sums are no longer multiplied out: some 100 ms and some 50 MB.
+// Terms made before expansion stops: bounds time and memory; beyond, sums stay as they are.
 static const size_t budget = 1000000;
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,

@@ -6,11 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// So few fractions that a number made in another way is hardly ever near one by chance: between v and 2 v there are at
-// most 0.3 largest_product of them, among 4.5e15 doubles. Elements of foreshortened beams have divisors up to 138600.
+// Bounds on numerator and denominator: [v, 2 v] has at most 0.3 largest_product such fractions
+// among 4.5e15 doubles, so a match by chance is unlikely (1e-7). Beam elements have divisors up to
+// 138600.
 static const double largest_divisor = 1e6, largest_number = 1e9, largest_product = 1e9;
-static const double few_roundings = 8 * DBL_EPSILON;
-static const double many_roundings = 64 * DBL_EPSILON; // of an integral over an element
+static const double few_roundoffs = 8 * DBL_EPSILON;
+static const double many_roundoffs = 64 * DBL_EPSILON; // of an integral over an element
 static const double pi = 3.14159265358979323846;
 
 static bool is_short(double v)
@@ -67,13 +68,13 @@ static double without_noise(double v)
     char s[32];
     snprintf(s, sizeof s, "%.13g", v);
     const double rounded = strtod(s, NULL);
-    return fabs(rounded - v) <= few_roundings / 2 * fabs(v) ? rounded : v;
+    return fabs(rounded - v) <= few_roundoffs / 2 * fabs(v) ? rounded : v;
 }
 
 double ct_fraction_snap(double v)
 {
     double n, d;
-    return !is_short(v) && nearest(v, few_roundings, &n, &d) ? n / d : v;
+    return !is_short(v) && nearest(v, few_roundoffs, &n, &d) ? n / d : v;
 }
 
 double ct_fraction_tidy(double v)
@@ -81,7 +82,7 @@ double ct_fraction_tidy(double v)
     double n, d;
     if (is_short(v))
         return v;
-    return nearest(v, many_roundings, &n, &d) ? n / d : without_noise(v);
+    return nearest(v, many_roundoffs, &n, &d) ? n / d : without_noise(v);
 }
 
 int ct_fraction_of_pi(double v, double *n, double *d)

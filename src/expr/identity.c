@@ -5,9 +5,9 @@
 //
 //     merged     cos^2 a + sin^2 a = 1, cos a cos b + sin a sin b = cos(a - b) and relatives,
 //                on pairs of terms, until none is left
-//     expanded   sums inside sines and cosines first multiplied out, then merged: finds what cancels
-//                between products and functions of sums
-//     waves      products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
+//     expanded   sums inside sines and cosines first multiplied out, then merged: finds what
+//                cancels between products and functions of sums
+//     harmonics  products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
 //                which everything that cancels does; pairs 1 + cos 2a become squares again
 #include "expr/collector.h"
 
@@ -26,7 +26,7 @@ static const struct ct_atom *atom_at(const struct ct_collector *c, uint32_t mono
 // What a reader has to read: terms, coefficients, factors, powers, and sums inside functions.
 static size_t length_of_term(const struct ct_collector *c, const struct ct_term *t)
 {
-    // a fraction is a sign of waves, which are only wanted where they are much shorter
+    // fractions come from product-to-sum formulas, wanted only where the result is much shorter
     size_t n = 2 + !ct_same_number(fabs(t->c), 1) + 2 * (t->c != floor(t->c));
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_atom *atom = atom_at(c, t->mono, k);
@@ -52,7 +52,7 @@ static struct ct_poly shorter(const struct ct_collector *c, struct ct_poly a, st
     return length(c, b) < length(c, a) ? b : a;
 }
 
-// ---- parts of polynomials -------------------------------------------------------------------------
+// ---- parts of polynomials ----------------------------------------------------------------------
 
 // Terms in the order of a key; those with one key are treated together.
 struct keyed {
@@ -197,7 +197,7 @@ static struct ct_poly squares(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// ---- sums and differences of angles -----------------------------------------------------------------
+// ---- sums and differences of angles ------------------------------------------------------------
 
 // The atom of the other function of the same angle.
 static uint32_t turned(const struct ct_collector *c, uint32_t atom)
@@ -224,10 +224,10 @@ static bool merge_factors(struct ct_collector *c, struct ct_poly p, const struct
     const struct ct_poly a = c->angle[c->atom[f].angle - 1].argument;
     const struct ct_poly b = c->angle[c->atom[g].angle - 1].argument;
     const struct ct_poly arg = ct_poly_add(&c->ps, a, same == sine ? 1 : -1, b);
-    const struct ct_poly wave = ct_collector_trig(c, sine ? CT_OP_SIN : CT_OP_COS, arg);
+    const struct ct_poly harmonic = ct_collector_trig(c, sine ? CT_OP_SIN : CT_OP_COS, arg);
     const struct ct_term scale = {t->c, fmax(t->size, (*partner)->size), rest};
     struct ct_term room = scale;
-    *merged = ct_poly_mul(&c->ps, (struct ct_poly){&room, 1}, wave);
+    *merged = ct_poly_mul(&c->ps, (struct ct_poly){&room, 1}, harmonic);
     return true;
 }
 
@@ -282,7 +282,7 @@ static struct ct_poly merge(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// ---- sums inside functions, multiplied out ----------------------------------------------------------
+// ---- sums inside functions, multiplied out -----------------------------------------------------
 
 struct turn {
     struct ct_poly sine, cosine;
@@ -364,32 +364,32 @@ static struct ct_poly expand_angles(struct ct_collector *c, struct ct_poly p)
     return any ? sum : p;
 }
 
-// ---- products as sums of waves ------------------------------------------------------------------
+// ---- products as sums of harmonics -------------------------------------------------------------
 
-struct wave {
+struct harmonic {
     double c;
     bool is_sine;
     struct ct_poly argument;
 };
 
-// w times sine or cosine of `by`: two waves of half the height.
-static void split_wave(struct ct_polys *ps, struct wave w, const struct ct_atom *f,
-                       struct ct_poly by, struct wave out[2])
+// w times sine or cosine of `by`: two harmonics of half the amplitude.
+static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_atom *f,
+                       struct ct_poly by, struct harmonic out[2])
 {
     const bool sine = w.is_sine != f->is_sine;
     const double half = w.c / 2;
-    out[0] = (struct wave){half, sine, ct_poly_add(ps, w.argument, 1, by)};
-    out[1] = (struct wave){half, sine, ct_poly_add(ps, w.argument, -1, by)};
+    out[0] = (struct harmonic){half, sine, ct_poly_add(ps, w.argument, 1, by)};
+    out[1] = (struct harmonic){half, sine, ct_poly_add(ps, w.argument, -1, by)};
     if (w.is_sine && f->is_sine) // sin a sin b = (cos(a - b) - cos(a + b)) / 2
         out[0].c = -half;
     else if (f->is_sine) // cos a sin b = (sin(a + b) - sin(a - b)) / 2
         out[1].c = -half;
 }
 
-// Products of more factors give more waves than anyone reads.
+// Bounds on the factors of a product and on the harmonics of a polynomial, for readable results.
 enum { LARGEST_DEGREE = 6, LARGEST_WAVES = 256 };
 
-// Degree in sines and cosines, or LARGEST_DEGREE + 1 where waves do not apply.
+// Degree in sines and cosines, or LARGEST_DEGREE + 1 where the product-to-sum form does not apply.
 static int degree(const struct ct_collector *c, uint32_t mono)
 {
     int n = 0;
@@ -404,9 +404,9 @@ static int degree(const struct ct_collector *c, uint32_t mono)
 
 static struct ct_poly waves_of_term(struct ct_collector *c, const struct ct_term *t)
 {
-    struct wave w[2 << LARGEST_DEGREE], split[2];
+    struct harmonic w[2 << LARGEST_DEGREE], split[2];
     size_t n = 1;
-    w[0] = (struct wave){t->c, false, {NULL, 0}};
+    w[0] = (struct harmonic){t->c, false, {NULL, 0}};
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_power power = ct_mono_power(&c->ps, t->mono, k);
         const struct ct_atom f = c->atom[power.atom];
@@ -426,7 +426,7 @@ static struct ct_poly waves_of_term(struct ct_collector *c, const struct ct_term
 }
 
 // p itself if it has too many.
-static struct ct_poly waves(struct ct_collector *c, struct ct_poly p)
+static struct ct_poly harmonics(struct ct_collector *c, struct ct_poly p)
 {
     size_t n = 0;
     for (size_t k = 0; k < p.n; k++) {
@@ -441,7 +441,7 @@ static struct ct_poly waves(struct ct_collector *c, struct ct_poly p)
     return sum;
 }
 
-// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: waves leave such pairs.
+// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: the form leaves such pairs.
 static struct ct_poly halve(struct ct_collector *c, struct ct_poly p, const struct ct_term *t)
 {
     for (size_t i = 0; i < ct_mono_length(&c->ps, t->mono); i++) {
@@ -493,9 +493,9 @@ static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum eff
     const struct ct_poly expanded = expand_angles(c, p);
     if (expanded.t != p.t)
         best = shorter(c, best, merge(c, expanded));
-    // waves of what is merged: fewer terms, often within the limit where p is not
-    best = shorter(c, best, halves(c, waves(c, p)));
-    return shorter(c, best, halves(c, waves(c, best)));
+    // harmonics of the merged form: fewer terms, often within the limit where p is not
+    best = shorter(c, best, halves(c, harmonics(c, p)));
+    return shorter(c, best, halves(c, harmonics(c, best)));
 }
 
 // The terms carry their common factor; it is taken out and put back.

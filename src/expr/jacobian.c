@@ -1,10 +1,10 @@
-// Sparse Jacobians by forward differentiation: one walk, each node with the list of its derivatives.
+// Sparse symbolic Jacobians in forward mode: one walk, each node with the list of its derivatives.
 //
 //     node  ->  [ (direction, derivative), ... ]      ascending directions, zeros left out
 //
-// A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as it has
-// directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one node of the store.
-// Source: Griewank and Walther (2008), 7.1, key griewank2008.
+// A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as
+// it has directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one
+// node of the store. Source: Griewank and Walther (2008), 7.1, key griewank2008.
 #include "expr/seed.h"
 
 #include <string.h>

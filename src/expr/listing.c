@@ -1,7 +1,8 @@
 // Expressions -> list of instructions; see listing.h.
 //
-// Passes, each linear in the live nodes: number the live nodes (values), turn them into instructions
-// (sin and cos of one argument become one), fuse products with sums if asked to, put the prologue first.
+// Passes, each linear in the live nodes: number the live nodes (values), turn them into
+// instructions (sin and cos of one argument become one), fuse products with sums if asked to, put
+// the prologue first.
 #include "expr/listing.h"
 #include "expr/sincos.h"
 
@@ -295,10 +296,10 @@ static void put_prologue_first(struct lister *s)
     memcpy(l->ins + n, body, nbody * sizeof *body);
 }
 
-// From so many on, all at once take less time than each by itself.
+// Number of angles from which the SIMD kernel is used: three of its four lanes are filled.
 static const size_t several_angles = 3;
 
-// Back ends read all arguments of several angles before they write results: the sine of a sine is left as it is.
+// Back ends read all angles of a call before they write results, so nested sines stay single calls.
 static bool *find_separate_angles(struct ct_arena *a, const struct ct_listing *l, size_t *n)
 {
     bool *is_wave = CT_NEWN(a, bool, l->nvalue + 1); // by value: a sine or a cosine

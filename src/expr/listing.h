@@ -1,11 +1,12 @@
-// Expressions as a straight-line list of instructions: what every back end translates.
+// Expressions as linear intermediate code (three-address, single assignment): what every back end
+// translates.
 //
 //     values        v0  v1  v2 ...      one per live node, in the order of ids
 //     instructions  [ prologue: parameters only | body: the rest ]     each in the order of ids
 //
-// The run-scheduled tape (tape.h), native code (codegen/native.h) and C source (codegen/c.h) come from
-// one listing. They execute the same instructions on the same operands, in an order of their own, so
-// they agree to the bit. sin and cos of one argument are one instruction with two results.
+// The run-scheduled tape (tape.h), native code (codegen/native.h) and C source (codegen/c.h) come
+// from one listing. They execute the same instructions on the same operands, in an order of their
+// own, so they agree to the bit. sin and cos of one argument are one instruction with two results.
 //
 // What always holds: an instruction's arguments are leaves or results of earlier instructions; only
 // what the outputs need is there; the same expressions give the same listing.
@@ -18,8 +19,9 @@
 
 /// Operators that no node has. `w[res]` are the results.
 enum {
-    CT_OP_SINCOS = CT_NOP, // res[0] = sin(a), res[1] = cos(a)
-    // the same where the body has several angles: by ct_sincos (sincos.h), for which back ends take many at once
+    CT_OP_SINCOS = CT_OP_COUNT, // res[0] = sin(a), res[1] = cos(a)
+    // by ct_sincos (sincos.h) where the body has several angles: back ends evaluate many in one
+    // call
     CT_OP_ANGLE_SIN,
     CT_OP_ANGLE_COS,
     CT_OP_ANGLE_SINCOS,
@@ -45,8 +47,8 @@ struct ct_tape_counts {
         functions; // of the body; functions: sin, cos, ...
 };
 
-/// Products used once, in a sum, become fused multiply-adds: never; in all back ends alike; in native code alone, where
-/// the processor has them and the program is long (native.h), so that its results are those of others to round-off.
+/// Contraction of products that are used once, in a sum, to fused multiply-adds: never; in all back
+/// ends, with equal bits; in native code only, where results then differ by round-off (native.h).
 enum ct_fuse { CT_FUSE_NO, CT_FUSE_YES, CT_FUSE_NATIVE };
 
 struct ct_listing {
@@ -66,8 +68,8 @@ struct ct_listing {
 };
 
 /// List what nout expressions need. Inputs: in[k] is a symbol whose value is read from the input
-/// vector at slot[k] (distinct). Symbols of kind PARAM among them feed the prologue. A symbol that is
-/// needed but not listed is a program error (asserted). Cost: the nodes below.
+/// vector at slot[k] (distinct). Symbols of kind PARAM among them feed the prologue. A symbol that
+/// is needed but not listed is a program error (asserted). Cost: the nodes below.
 const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_exs *x,
                                            const ct_ex *out, size_t nout, const ct_ex *in,
                                            const size_t *slot, size_t nin, enum ct_fuse fuse);
@@ -75,12 +77,12 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
 /// The same with the products of the body fused. Cost: instructions.
 const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_listing *l);
 
-/// The same with all sines and cosines by the kernel that takes several angles at once, which is worth while in lanes even
-/// for a single one. Results may differ from those of l in the last place.
+/// The same with all sines and cosines by the SIMD kernel, for evaluation in SIMD lanes. Results
+/// may differ from those of l in the last place.
 const struct ct_listing *ct_listing_for_lanes(struct ct_arena *a, const struct ct_listing *l);
 
-/// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it twice
-/// is twice in.
+/// use[start[v] ... start[v + 1]): instructions that read value v, ascending; one that reads it
+/// twice is twice in.
 struct ct_uses {
     uint32_t *start, *use;
 };

@@ -282,7 +282,7 @@ static bool parse_call(struct parser *s, const char *name, const char *start, ct
     return true;
 }
 
-// ---- the grammar ----------------------------------------------------------------------------------
+// ---- the grammar -------------------------------------------------------------------------------
 
 static bool parse_number(struct parser *s, ct_ex *e)
 {
@@ -370,8 +370,8 @@ static bool parse_unary(struct parser *s, ct_ex *e)
     return ok;
 }
 
-// What a row of operators gives. A row is cut into parts, so that the expression of n terms nests no deeper than
-// PART + n / PART where from left to right it would be n: walks over it recurse.
+// Result of a chain of operators. A chain of n terms is summed in parts of PART, so that it nests
+// no deeper than PART + n / PART instead of n: walks over it recurse.
 enum { PART = 16 };
 struct row {
     ct_ex whole, part; // whole: of the parts that are complete
@@ -477,7 +477,7 @@ static bool parse_comparison(struct parser *s, ct_ex *e)
     return true;
 }
 
-// ---- a whole text -----------------------------------------------------------------------------------
+// ---- a whole text ------------------------------------------------------------------------------
 
 // YAML's own words for what is not a number
 static bool is_infinite_word(const char *text)

@@ -39,8 +39,8 @@ struct ct_scope {
     /// A plain name; `t` comes here too.
     enum ct_name_result (*name)(void *user, const char *name, ct_ex *e, const char **why);
     /// A signal, text in normal form ("F.velocity.x in B"), its first part and the part after `in`
-    /// (NULL without): make or find its symbol. `where` gives the mark of the first part, `where_in` of
-    /// the other.
+    /// (NULL without): make or find its symbol. `where` gives the mark of the first part,
+    /// `where_in` of the other.
     enum ct_name_result (*signal)(void *user, const char *text, const char *first,
                                   const char *in, struct ct_mark where, struct ct_mark where_in,
                                   ct_ex *e, const char **why);

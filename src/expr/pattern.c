@@ -1,5 +1,4 @@
-// Which outputs depend on which directions: sixty-four directions at a time, one bit each, united from the arguments
-// of a node upwards.
+// Sparsity pattern of a Jacobian by propagation of bit sets, 64 directions at a time.
 //
 //     bits(node) = OR of bits(arguments)          a superset: what cancels is not seen
 //

@@ -127,7 +127,7 @@ uint32_t ct_mono_raise(struct ct_polys *ps, uint32_t a, int32_t k)
     return intern(ps, p, n);
 }
 
-// ---- polynomials ----------------------------------------------------------------------------------
+// ---- polynomials -------------------------------------------------------------------------------
 
 struct ct_poly ct_poly_term(struct ct_polys *ps, double c, uint32_t mono)
 {

@@ -3,10 +3,10 @@
 //     3 a^2 b - c^-1      terms   { 3, mono of a^2 b }, { -1, mono of c^-1 }
 //     monomial            powers  (a, 2), (b, 1)         sorted by atom, no exponent 0; interned
 //
-// What always holds: equal monomials have equal numbers, 0 is the monomial without powers; the terms
-// of a polynomial have distinct monomials, ascending, and no coefficient is round-off noise: each
-// carries the size of the largest contribution to it, and what cancelled to a few units in the last
-// place of that is dropped.
+// What always holds: equal monomials have equal numbers, 0 is the monomial without powers; the
+// terms of a polynomial have distinct monomials, ascending, and no coefficient is round-off noise:
+// each carries the size of the largest contribution to it, and what cancelled to a few units in
+// the last place of that is dropped.
 #ifndef CT_EXPR_POLYNOMIAL_H
 #define CT_EXPR_POLYNOMIAL_H
 
@@ -65,7 +65,7 @@ uint32_t ct_mono_times(struct ct_polys *ps, uint32_t a, uint32_t b);
 /// Each exponent times k.
 uint32_t ct_mono_raise(struct ct_polys *ps, uint32_t a, int32_t k);
 
-// ---- polynomials ----------------------------------------------------------------------------------
+// ---- polynomials -------------------------------------------------------------------------------
 
 struct ct_poly ct_poly_term(struct ct_polys *ps, double c, uint32_t mono);
 /// The sum of n terms in any order with any repetitions; t is used as work space and kept.

@@ -1,7 +1,7 @@
 // Printing expressions; see print.h.
 //
-// A sum is flattened to terms, a term to a number, factors with exponents and a denominator (term.h);
-// both lists are sorted and written. Everything else is written as it stands.
+// A sum is flattened to terms, a term to a number, factors with exponents and a denominator
+// (term.h); both lists are sorted and written. Everything else is written as it stands.
 #include "expr/print.h"
 
 #include "expr/fraction.h"
@@ -133,8 +133,8 @@ static bool is_wide(const char *s)
     return ct_latex_width(s, strlen(s)) + indent > CT_LATEX_LINE;
 }
 
-// A fraction in LaTeX; one with a part wider than a line as a product, which can be broken: the number over what fits,
-// times the factors.
+// A fraction in LaTeX. One with a part wider than a line is printed as a product, which can be
+// broken.
 static void emit_fraction(struct ct_printer *pr, const struct ct_term *t)
 {
     static const struct ct_factors none;
@@ -188,7 +188,7 @@ static void emit_sum(struct ct_printer *pr, ct_ex e, enum level level)
     close_group(pr, group);
 }
 
-// ---- everything else ------------------------------------------------------------------------------
+// ---- everything else ---------------------------------------------------------------------------
 
 // In LaTeX a symbol needs no parentheses after a function.
 static void emit_argument(struct ct_printer *pr, ct_ex e)

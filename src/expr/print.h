@@ -28,14 +28,15 @@ struct ct_print {
     /// Symbols of a product in ascending rank, then as created (masses before lengths, say).
     int (*rank)(void *data, const struct ct_sym *s);
     void *data;
-    /// Items (operators and operands) after which the rest is `...`; 0: 20000; 500 parentheses within
-    /// each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared nodes
-    /// first (share.h).
+    /// Items (operators and operands) after which the rest is `...`; 0: 20000; 500 parentheses
+    /// within each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared
+    /// nodes first (share.h).
     size_t limit;
-    /// Halves, quarters, eighths of parameters as fractions: m*l^2/4, not 0.25*m*l^2; a term without a parameter keeps its
-    /// decimal, as its number comes from data: 1.5*x'', not 3*x''/2. Of other numbers those that are exactly the double
-    /// nearest to a small fraction (fraction.h): 13*m/35. Reads back to the same value up to round-off, not to the same
-    /// nodes. Text and LaTeX.
+    /// Halves, quarters, eighths of parameters as fractions: m*l^2/4, not 0.25*m*l^2; a term
+    /// without a parameter keeps its decimal, as its number comes from data: 1.5*x'', not 3*x''/2.
+    /// Of other numbers those that are exactly the double nearest to a small fraction
+    /// (fraction.h): 13*m/35. Reads back to the same value up to round-off, not to the same nodes.
+    /// Text and LaTeX.
     bool fractions;
     /// No number comes from data: halves are fractions in every term.
     bool no_data;
@@ -53,14 +54,16 @@ const char *ct_number_text(struct ct_arena *a, double v);
 /// A C constant of type double with the same bits.
 const char *ct_number_c(struct ct_arena *a, double v);
 
-/// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass -> \mathrm{mass}
+/// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass ->
+/// \mathrm{mass}
 const char *ct_latex_name(struct ct_arena *a, const char *name);
 /// A name with a backslash before what LaTeX takes for itself.
 const char *ct_latex_quoted(struct ct_arena *a, const char *name);
-/// Width of LaTeX mathematics (length) on the page [pt], in Computer Modern of 10 pt, to a few per cent.
+/// Width of LaTeX mathematics (length) on the page [pt], in Computer Modern of 10 pt, to a few per
+/// cent.
 size_t ct_latex_width(const char *s, size_t length);
-/// Width of a line [pt]: that of the class article at 10 pt, 345 pt; a fraction with a part that is wider is printed
-/// as a product.
+/// Width of a line [pt]: that of the class article at 10 pt, 345 pt; a fraction with a part that
+/// is wider is printed as a product.
 enum { CT_LATEX_LINE = 345 };
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
 /// Different names can become the same identifier: telling them apart is the caller's.

@@ -14,8 +14,8 @@ struct ct_quantity {
     const void *user;
 };
 
-/// The number and the unit, which may turn out to be none; false if the text is something else, *unit then being where
-/// its number ends.
+/// Split a text into its number and its unit, which may turn out to be unknown. False if the text
+/// is no quantity; *unit is then where its number ends.
 bool ct_quantity_split(const char *text, double *value, const char **unit);
 /// value (in and out): the number, in SI units. Errors: E114, E118 to E120.
 bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_quantity *q, double *value);

@@ -1,7 +1,7 @@
 // Polynomials -> expressions for reading; see collect.h.
 //
-// What all terms share goes outside. Of the rest, the atom is chosen that saves most factors when it
-// is pulled out of the terms that contain it, and both parts are treated the same way.
+// What all terms share goes outside. Of the rest, the atom is chosen that saves most factors when
+// it is pulled out of the terms that contain it, and both parts are treated the same way.
 #include "expr/collector.h"
 #include "expr/fraction.h"
 
@@ -112,7 +112,7 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
     return ct_ex_div(c->x, ct_ex_scale(c->x, k, body), below);
 }
 
-// ---- choice of the atom to group by ---------------------------------------------------------------
+// ---- choice of the atom to group by ------------------------------------------------------------
 
 struct choice {
     bool worth; // at all

@@ -1,7 +1,7 @@
-// See scarcity.h.
+// Vertex elimination; see scarcity.h.
 //
-// Vertices are columns, nodes in ascending order, rows of f. An edge from each argument to the node; only nodes that depend on a
-// seed are there.
+// Vertices are columns, nodes in ascending order, rows of f. Edges go from each argument to its
+// node. Only nodes that depend on a seed have a vertex.
 #include "expr/scarcity.h"
 
 #include "expr/seed.h"
@@ -24,7 +24,7 @@ struct ct_scarcity {
     size_t nedge, edge_size; // a power of two
 };
 
-// ---- edges ------------------------------------------------------------------------------------------------
+// ---- edges -------------------------------------------------------------------------------------
 
 static size_t slot_of(const struct ct_scarcity *s, uint64_t key)
 {
@@ -70,7 +70,7 @@ static void add_edge(struct ct_scarcity *s, uint32_t from, uint32_t to)
         CT_PUSH(s->a, s->to[from].v, s->to[from].n, s->to[from].cap, to);
 }
 
-// ---- the graph ----------------------------------------------------------------------------------------------
+// ---- the graph ---------------------------------------------------------------------------------
 
 static bool has_slopes(uint32_t op)
 {
@@ -137,7 +137,7 @@ struct ct_scarcity *ct_scarcity_create(struct ct_exs *x, struct ct_arena *a, con
     return s;
 }
 
-// ---- elimination --------------------------------------------------------------------------------------------
+// ---- elimination -------------------------------------------------------------------------------
 
 // Those that are left.
 static void sweep_out(const struct ct_scarcity *s, struct side *side)
@@ -149,7 +149,7 @@ static void sweep_out(const struct ct_scarcity *s, struct side *side)
     side->n = n;
 }
 
-// Does the elimination of v make at most so many edges more than there were?
+// Does the elimination of v add at most this many edges?
 static bool adds_little(const struct ct_scarcity *s, uint32_t v, long most)
 {
     const struct side *from = &s->from[v], *to = &s->to[v];
@@ -181,7 +181,7 @@ void ct_scarcity_thin(struct ct_scarcity *s, long most)
     }
 }
 
-// ---- what is left -------------------------------------------------------------------------------------------
+// ---- what is left ------------------------------------------------------------------------------
 
 size_t ct_scarcity_nodes(const struct ct_scarcity *s, struct ct_arena *a, ct_ex **node)
 {

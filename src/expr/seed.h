@@ -1,4 +1,4 @@
-// Seeds of derivatives in the order of their symbols: what both kinds of Jacobians walk with.
+// Sorted seeds of forward differentiation, for symbolic and numeric Jacobians.
 #ifndef CT_EXPR_SEED_H
 #define CT_EXPR_SEED_H
 

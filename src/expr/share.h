@@ -1,12 +1,13 @@
-// Names for shared subexpressions, so that the print of a large graph fits a screen.
+// Common subexpressions for printing: shared subexpressions get names, so that a large graph fits a
+// screen.
 //
 //     t1 = l1*cos(q1) + l2*cos(q1 + q2)            definitions, each using earlier ones only
 //     t2 = t1^2 + m1*l2
 //     M11 = m2*t2 + I1                             the expressions
 //
-// The subexpression whose name saves most text is named first, then the next with that one in place,
-// until everything together is short enough or nothing worth a name is left. Symbols, constants,
-// their products with a number and functions of one symbol never get a name.
+// The subexpression whose name saves most text is named first, then the next with that one in
+// place, until everything together is short enough or nothing worth a name is left. Symbols,
+// constants, their products with a number and functions of one symbol never get a name.
 #ifndef CT_EXPR_SHARE_H
 #define CT_EXPR_SHARE_H
 

@@ -1,9 +1,10 @@
-// See sincos.h.
+// Sine and cosine by argument reduction and polynomials; see sincos.h.
 //
-// Reduction by multiples of pi/2 in three parts, the first two of 33 bits, so that their products with up to 2^20 are
-// exact; what is left is y = p - w. Then polynomials, interpolated at the zeros of Chebyshev's polynomial in
-// [0, (1.01 pi/4)^2] of y^2 (relative errors 2^-59), summed in short chains: the time is that of the longest one.
-// Sources: reduction, Cody and Waite (1980), key cody1980; products in two parts, Dekker (1971), key dekker1971.
+// Cody-Waite reduction by multiples of pi/2 in three parts, the first two of 33 bits, so that
+// their products with up to 2^20 are exact; the remainder is y = p + v. Polynomials in y^2,
+// interpolated at Chebyshev nodes of [0, (1.01 pi/4)^2] (relative error 2^-59), are summed by
+// Estrin's scheme. Sources: reduction, Cody and Waite (1980), key cody1980; products in two parts,
+// Dekker (1971), key dekker1971.
 #include "expr/sincos.h"
 
 #include <math.h>
@@ -11,12 +12,13 @@
 #include <stdint.h>
 #include <string.h>
 
-// Beyond this n has more bits than the parts of pi/2 leave free.
+// Beyond this n = 2 a/pi exceeds the 20 bits for which the reduction is exact.
 static const double largest = 1e6;
 
 // Adding 1.5 * 2^52 rounds to an integer, which the last bits of the sum then hold.
 //
-//     sin y = y - y^3/6 + y^5 (S1 + S2 y^2 + ...),   cos y = 1 - y^2/2 + y^4/24 + y^6 (C1 + C2 y^2 + ...)
+//     sin y = y - y^3/6 + y^5 (S1 + S2 y^2 + ...)
+//     cos y = 1 - y^2/2 + y^4/24 + y^6 (C1 + C2 y^2 + ...)
 #define EACH_CONSTANT(X)                                                                       \
     X(ONE, 1)                                                                                  \
     X(HALF, 0.5)                                                                               \
@@ -56,7 +58,8 @@ static inline double number_of(uint64_t bits)
     return v;
 }
 
-// a b - p for the rounded product p, without a fused operation (Dekker): both halves of a number have 26 bits.
+// a b - p for the rounded product p, without a fused operation (Dekker): both halves of a number
+// have 26 bits.
 static inline double lost(double a, double b, double p)
 {
     const double split = 0x1p27 + 1, x = split * a, y = split * b;
@@ -154,8 +157,8 @@ WIDE static inline bool has_large(four angle)
     return _mm256_movemask_pd((four)((angle <= largest) & (angle >= -largest))) != ALL;
 }
 
-// Lanes are gathered from single numbers: callers have just written them one by one, and a vector that is read before its
-// parts have left the store buffer has to wait for them.
+// Elementwise load: callers have just stored single doubles, from which a vector load cannot be
+// forwarded by the store buffer.
 WIDE static inline four gather(const double *a, size_t n)
 {
     return (four){a[0], a[n > 1 ? 1 : 0], a[n > 2 ? 2 : 0], a[n > 3 ? 3 : 0]};

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/// s = sin(a), c = cos(a), each within 0.8 units in the last place. a [rad]: any; beyond 1e6 those of the C library.
+/// s = sin(a), c = cos(a), each within 0.8 units in the last place. a [rad]: any; beyond 1e6 those
+/// of the C library.
 void ct_sincos(double a, double *s, double *c);
 /// The same for n angles, four at once where the processor can (AVX2). s, c and a must not overlap.
 void ct_sincos_many(const double *a, double *s, double *c, size_t n);

@@ -1,4 +1,4 @@
-// See switches.h.
+// Roots along a symbol by interval arithmetic; see switches.h.
 #include "expr/switches.h"
 #include "base/sort.h"
 #include "expr/quadrature.h"
@@ -17,7 +17,7 @@ struct interval {
 
 static const struct interval any = {-INFINITY, INFINITY};
 
-// ---- interval arithmetic ----------------------------------------------------------------------------
+// ---- interval arithmetic -----------------------------------------------------------------------
 
 static struct interval hull(struct interval a, struct interval b)
 {
@@ -121,7 +121,7 @@ static struct interval apply(enum ct_op op, struct interval a, struct interval b
     }
 }
 
-// ---- roots of one argument --------------------------------------------------------------------------
+// ---- roots of one argument ---------------------------------------------------------------------
 
 struct search {
     const struct ct_exs *x;
@@ -186,7 +186,7 @@ static bool find_roots(struct search *w, double low, double high)
     return find_roots(w, low, middle) && find_roots(w, middle, high);
 }
 
-// ---- all arguments -------------------------------------------------------------------------------------
+// ---- all arguments -----------------------------------------------------------------------------
 
 // What changes its sign where a node switches; zero: nothing does.
 static ct_ex argument(struct ct_exs *x, uint32_t id)

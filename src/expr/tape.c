@@ -4,10 +4,10 @@
 //
 //     [ constants | parameters | results the prologue keeps | body: inputs and temporaries ]
 //
-// Compiling is three passes, each linear in the instructions: put them into an order, give every value
-// a slot of the work array, write the code. The order is list scheduling: of all operators the
-// one with most ready instructions is emitted until none of its kind is ready, so runs are long; one
-// run is one loop without dispatch.
+// Compiling is three passes, each linear in the instructions: put them into an order, give every
+// value a slot of the work array, write the code. The order is list scheduling: of all operators
+// the one with most ready instructions is emitted until none of its kind is ready, so runs are
+// long; one run is one loop without dispatch.
 //
 // Code: run after run as uint32: operator, count, then `count` records
 //
@@ -205,8 +205,8 @@ static void emit(struct compiler *c, struct queue *q, uint32_t i, size_t to)
     }
 }
 
-// Order the instructions [from, to), the prologue or the body. Ties go to the smaller operator, within
-// an operator first come first served: nothing depends on addresses.
+// Order the instructions [from, to), the prologue or the body. Ties go to the smaller operator,
+// within an operator first come first served: nothing depends on addresses.
 static void schedule(struct compiler *c, size_t from, size_t to, enum ct_rate rate)
 {
     const struct ct_listing *l = c->l;

@@ -1,19 +1,19 @@
-// A straight-line program made from expressions: the form in which they are evaluated everywhere.
+// Straight-line program (tape) made from expressions, and its interpreter.
 //
 //     inputs (values of symbols)  ->  prologue (parameters only)  ->  body  ->  outputs
 //
-// The prologue is run when parameters change, the body at every call. Instructions are scheduled into
-// runs of equal operations, each run one tight loop, because a mixed stream costs several times more
-// in dispatch.
+// The prologue is run when parameters change, the body at every call. Instructions are scheduled
+// into runs of equal operations, each run one tight loop, because a mixed stream costs several
+// times more in dispatch.
 //
-// Several sets of inputs are evaluated side by side in lanes: 1, 4 or 8 numbers in the place of one,
+// Several sets of inputs are evaluated at once in SIMD lanes, 1, 4 or 8 numbers for each one,
 //
 //     input[lanes * slot + lane],   out[lanes * k + lane],   work: lanes * ct_tape_work
 //
 // and each lane has the bits it has alone.
 //
-// What always holds: evaluation allocates nothing; a tape is constant, the work array belongs to the
-// caller and holds the prologue's results between calls; same inputs, same bits.
+// What always holds: evaluation allocates nothing; a tape is constant, the work array belongs to
+// the caller and holds the prologue's results between calls; same inputs, same bits.
 #ifndef CT_EXPR_TAPE_H
 #define CT_EXPR_TAPE_H
 

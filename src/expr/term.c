@@ -13,7 +13,7 @@ const char *ct_printer_name(const struct ct_printer *pr, ct_ex e)
     return pr->p.node && e.id != pr->body ? pr->p.node(pr->p.data, e) : NULL;
 }
 
-// ---- the order of factors ------------------------------------------------------------------------
+// ---- the order of factors ----------------------------------------------------------------------
 
 static enum ct_factor_class class_of_symbol(enum ct_sym_kind kind)
 {
@@ -57,8 +57,8 @@ static int compare_symbols(const struct ct_printer *pr, uint32_t a, uint32_t b)
     return r ? r : compare_number(a, b);
 }
 
-// By structure, so that the order does not follow the accidents of construction; by id where nothing
-// near the top decides.
+// By structure, so that the order does not follow the accidents of construction; by id where
+// nothing near the top decides.
 static int compare_nodes(const struct ct_printer *pr, ct_ex a, ct_ex b, int depth)
 {
     const struct ct_exnode *m = ct_ex_node(pr->x, a), *n = ct_ex_node(pr->x, b);
@@ -212,7 +212,8 @@ static void split_fraction(struct ct_term *t)
     t->divisor *= divisor;
 }
 
-// Does a parameter stand in the term? Else its number comes from data, and keeps the digits of these.
+// Does a parameter stand in the term? Else its number comes from data, and keeps the digits of
+// these.
 static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
 {
     unsigned kinds = 0;

@@ -80,7 +80,8 @@ int ct_whole_exponent(const struct ct_exs *x, ct_ex e);
 /// The terms of e as they stand; one term where e is no sum. Each item met is taken off pr->left.
 struct ct_terms ct_terms_of_sum(struct ct_printer *pr, ct_ex e);
 
-/// 6.283185307179586 -> 2 pi: takes a power of pi out of the number; pi stays 0 where there is none.
+/// 6.283185307179586 -> 2 pi: takes a power of pi out of the number; pi stays 0 where there is
+/// none.
 void ct_term_split_pi(struct ct_term *t);
 
 #endif

@@ -1,9 +1,11 @@
 // Numbers and quantities as written: "152", "152 mm", "7e10 Pa", "0.4 N*m*s/rad".
 //
-//     quantity = number unit          unit = factor { (* | /) factor }       factor = name [^ integer] | 1
+//     quantity = number unit
+//     unit     = factor { (* | /) factor }
+//     factor   = name [^ integer] | 1
 //
-// What always holds: a parsed value is finite and in SI units; rad has dimension one, so N*m/rad and
-// N*m are the same. Locale plays no part.
+// What always holds: a parsed value is finite and in SI units; rad has dimension one, so N*m/rad
+// and N*m are the same. Locale plays no part.
 #ifndef CT_EXPR_UNIT_H
 #define CT_EXPR_UNIT_H
 

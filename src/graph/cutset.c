@@ -3,7 +3,8 @@
 // in its direction.
 #include "graph/graph.h"
 
-/// Entries in each column of A_f, counted into start[e + 1]: a chord has as many as its row of B_t, a branch has one.
+/// Entries in each column of A_f, counted into start[e + 1]: a chord has as many as its row of
+/// B_t, a branch has one.
 static void count_columns(const struct ct_tree *t, const struct ct_incidence *Bf, int *start)
 {
     for (int i = 0; i < t->nbranch; i++) {

@@ -9,16 +9,16 @@
 // tree can still come of it, so no work is spent on dead ends.
 #include "graph/graph.h"
 
-#include "graph/pieces.h"
+#include "graph/disjoint_sets.h"
 
 #include <math.h>
 
 /// Join the ends of forced edges; false if they close a circuit or one is banned too.
 static bool join_forced(const struct ct_graph *g, const bool *forced, const bool *banned,
-                        struct ct_pieces *p)
+                        struct ct_disjoint_sets *p)
 {
     for (int e = 0; forced && e < g->nedge; e++)
-        if (forced[e] && ((banned && banned[e]) || !ct_pieces_join(p, g->edge[e])))
+        if (forced[e] && ((banned && banned[e]) || !ct_disjoint_sets_union(p, g->edge[e])))
             return false;
     return true;
 }
@@ -26,11 +26,11 @@ static bool join_forced(const struct ct_graph *g, const bool *forced, const bool
 /// W (n x n, out, symmetric): number of free edges between each two pieces, numbered by
 /// place[].
 static void fill_conductances(double *W, const struct ct_graph *g, const bool *banned,
-                              struct ct_pieces *p, const int *place, int n)
+                              struct ct_disjoint_sets *p, const int *place, int n)
 {
     for (int e = 0; e < g->nedge; e++) {
-        const int i = place[ct_pieces_find(p, g->edge[e].tail)];
-        const int j = place[ct_pieces_find(p, g->edge[e].head)];
+        const int i = place[ct_disjoint_sets_find(p, g->edge[e].tail)];
+        const int j = place[ct_disjoint_sets_find(p, g->edge[e].head)];
         if (i == j || (banned && banned[e])) // forced edges lie within one piece
             continue;
         W[i + n * j] += 1;
@@ -60,15 +60,15 @@ static double eliminate_nodes(double *W, int n)
 double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
                      const bool *banned)
 {
-    struct ct_pieces p;
-    ct_pieces_init(scratch, g->nnode, &p);
+    struct ct_disjoint_sets p;
+    ct_disjoint_sets_init(scratch, g->nnode, &p);
     if (!join_forced(g, forced, banned, &p))
         return 0;
 
     int *place = CT_NEWN(scratch, int, g->nnode);
     const int n = p.npiece;
     for (int v = 0, i = 0; v < g->nnode; v++)
-        if (ct_pieces_find(&p, v) == v)
+        if (ct_disjoint_sets_find(&p, v) == v)
             place[v] = i++;
     double *W = CT_NEWN(scratch, double, (size_t)n *(size_t)n);
     fill_conductances(W, g, banned, &p, place, n);
@@ -77,10 +77,10 @@ double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const b
 
 struct enumeration {
     const struct ct_graph *g;
-    bool *is_branch;         // forced edges and those taken so far
-    bool *is_free;           // neither forced nor banned
-    int nmissing;            // branches a tree still needs
-    struct ct_pieces pieces; // workspace
+    bool *is_branch;                // forced edges and those taken so far
+    bool *is_free;                  // neither forced nor banned
+    int nmissing;                   // branches a tree still needs
+    struct ct_disjoint_sets pieces; // workspace
     bool (*visit)(void *data, const bool *is_branch);
     void *data;
 };
@@ -88,20 +88,20 @@ struct enumeration {
 /// Would e close a circuit with the branches taken?
 static bool closes_circuit(struct enumeration *s, int e)
 {
-    ct_pieces_reset(&s->pieces);
+    ct_disjoint_sets_reset(&s->pieces);
     for (int i = 0; i < s->g->nedge; i++)
         if (s->is_branch[i])
-            ct_pieces_join(&s->pieces, s->g->edge[i]);
-    return !ct_pieces_join(&s->pieces, s->g->edge[e]);
+            ct_disjoint_sets_union(&s->pieces, s->g->edge[i]);
+    return !ct_disjoint_sets_union(&s->pieces, s->g->edge[e]);
 }
 
 /// Do the branches taken and the free edges from `first` on reach every node?
 static bool can_span(struct enumeration *s, int first)
 {
-    ct_pieces_reset(&s->pieces);
+    ct_disjoint_sets_reset(&s->pieces);
     for (int i = 0; i < s->g->nedge; i++)
         if (s->is_branch[i] || (i >= first && s->is_free[i]))
-            ct_pieces_join(&s->pieces, s->g->edge[i]);
+            ct_disjoint_sets_union(&s->pieces, s->g->edge[i]);
     return s->pieces.npiece == 1;
 }
 
@@ -130,7 +130,7 @@ bool ct_tree_enumerate(struct ct_arena *scratch, const struct ct_graph *g, const
                        void *data)
 {
     struct enumeration s = {.g = g, .visit = visit, .data = data};
-    ct_pieces_init(scratch, g->nnode, &s.pieces);
+    ct_disjoint_sets_init(scratch, g->nnode, &s.pieces);
     if (!join_forced(g, forced, banned, &s.pieces))
         return true;
 

@@ -8,6 +8,7 @@
 
 enum { TRANS, ROT, NTREE };
 
+// Documented defaults of struct ct_search_options; tests/unit/test_exchange.c sets others.
 static const double default_limit = 500;
 static const int default_budget = 200, default_excess = 3;
 

@@ -1,5 +1,9 @@
 // Linear graphs: nodes, oriented edges, spanning trees, cutsets and circuits. Integers only.
 //
+// src/graph builds, counts and enumerates spanning trees, searches the cheapest pair of trees, and
+// derives fundamental cutset, circuit and incidence matrices as sparse matrices of -1, 0 and +1.
+// It prints graphs as text, Graphviz and JSON. It knows no mechanics and no expressions.
+//
 //     node 0 is ground (the datum); an edge goes from tail to head; incidence +1 at the head
 //
 // What always holds: a tree's arrays have one entry per node (parent edge, parent node, depth)
@@ -87,11 +91,13 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
 void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struct ct_tree *t,
                        struct ct_incidence *Af);
 
-/// Incidence matrix without ground, (nnode - 1) x nedge: row v - 1 is node v, 1 at the head of an edge, -1 at its tail.
+/// Reduced incidence matrix (without ground), (nnode - 1) x nedge: row v - 1 is node v, +1 at the
+/// head of an edge, -1 at its tail.
 void ct_incidence_derive(struct ct_arena *a, const struct ct_graph *g, struct ct_incidence *A);
 
-/// S without its entries; start (ncol + 1): how many column j has in start[j + 1], summed to starts. Returns the next
-/// free place of each column.
+/// Allocate S without its entries. start (ncol + 1): start[j + 1] is the number of entries of
+/// column j; they are summed to column starts. Returns the index of the next free entry of each
+/// column.
 int *ct_incidence_create(struct ct_arena *a, int nrow, int ncol, int *start,
                          struct ct_incidence *S);
 /// The transpose: compressed columns of S' are compressed rows of S, so that its equations can

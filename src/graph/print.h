@@ -38,8 +38,8 @@ void ct_graph_print(FILE *out, struct ct_arena *scratch, const struct ct_graph_v
 /// more than 12 nodes quiet edges lose their names and ground is drawn again where it is met.
 void ct_graph_print_dot(FILE *out, const struct ct_graph_view *view);
 
-/// One object: nodes (id 0: ground), edges (ids from 1), and for each tree its cutsets and circuits by edge
-/// id. Edges have the same numbers in all three formats.
+/// One object: nodes (id 0: ground), edges (ids from 1), and for each tree its cutsets and
+/// circuits by edge id. Edges have the same numbers in all three formats.
 void ct_graph_print_json(FILE *out, struct ct_arena *scratch, const struct ct_graph_view *view);
 
 #endif

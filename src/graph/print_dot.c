@@ -12,8 +12,8 @@
 static const int large_graph = 12; // nodes; a slider-crank with its arms has 8
 static const int deep_tree = 10;   // edges from ground; beyond, a row of nodes overflows a page
 
-// How an edge looks by the trees it is a branch of; a quiet or marked edge means what its kind says. The
-// colours are those of Okabe and Ito, which the colour-blind can tell apart.
+// How an edge looks by the trees it is a branch of; a quiet or marked edge means what its kind
+// says. The colours are those of Okabe and Ito, which the colour-blind can tell apart.
 struct look {
     const char *meaning, *color, *style, *penwidth;
 };

@@ -1,4 +1,4 @@
-// What can be reached from where, and how far it is.
+// Adjacency lists, propagation over edges, and shortest paths from ground.
 #ifndef CT_GRAPH_REACH_H
 #define CT_GRAPH_REACH_H
 
@@ -12,20 +12,20 @@ struct ct_ends {
 /// Of the edges with is_in only. Cost O(v + e).
 struct ct_ends ct_ends_list(struct ct_arena *a, const struct ct_graph *g, const bool *is_in);
 
-/// Edges over which known nodes spread, in the order of sweeps over all edges from the first to the last until nothing
-/// changes: an edge with one known end makes the other end known.
+/// Propagate `known` over edges: an edge with one known end makes its other end known. Edges are
+/// visited in sweeps from the first to the last until nothing changes.
 ///
 /// g         in      connected or not
 /// usable    in      per edge
 /// is_known  in/out  per node
 /// order     out     room for g->nnode edges; each end that becomes known stands for one
 ///
-/// Returns the number of edges. Cost O(v + e log e), where the sweeps may take O(v e).
+/// Returns the number of edges. Cost O(v + e log e): a heap replaces the sweeps, which cost O(v e).
 int ct_graph_spread(struct ct_arena *a, const struct ct_graph *g, const bool *usable,
                     bool *is_known, int *order);
 
-/// Shortest distance of each node (out) from ground over usable edges, whose length is at least 0; `unreached` where no way
-/// leads. Cost O(v + e) for equal lengths.
+/// Shortest distance of each node (out) from ground over usable edges of length >= 0; `unreached`
+/// where there is no path. Cost O(v + e) for equal lengths.
 void ct_graph_distances(struct ct_arena *a, const struct ct_graph *g, const bool *usable,
                         const int *length, int unreached, int *distance);
 

@@ -5,7 +5,7 @@
 // first.
 #include "graph/graph.h"
 
-#include "graph/pieces.h"
+#include "graph/disjoint_sets.h"
 #include "graph/reach.h"
 
 #include <assert.h>
@@ -39,11 +39,12 @@ static int sort_edges(const struct ct_graph *g, const int *weight, const int *ra
 }
 
 /// component[v] = 0 for ground's piece, then 1, 2, ... by smallest node.
-static void number_pieces(struct ct_pieces *p, int *component)
+static void number_pieces(struct ct_disjoint_sets *p, int *component)
 {
     int n = 0;
     for (int v = 0; v < p->nnode; v++) {
-        const int first = ct_pieces_find(p, v); // <= v, so numbered already unless it is v
+        const int first
+            = ct_disjoint_sets_find(p, v); // <= v, so numbered already unless it is v
         component[v] = first == v ? n++ : component[first];
     }
 }
@@ -54,10 +55,10 @@ bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *we
     struct key *key = CT_NEWN(a, struct key, g->nedge);
     const int n = sort_edges(g, weight, rank, key);
     bool *is_branch = CT_NEWN(a, bool, g->nedge);
-    struct ct_pieces p;
-    ct_pieces_init(a, g->nnode, &p);
+    struct ct_disjoint_sets p;
+    ct_disjoint_sets_init(a, g->nnode, &p);
     for (int i = 0; i < n; i++)
-        is_branch[key[i].e] = ct_pieces_join(&p, g->edge[key[i].e]);
+        is_branch[key[i].e] = ct_disjoint_sets_union(&p, g->edge[key[i].e]);
 
     if (component)
         number_pieces(&p, component);

@@ -1,4 +1,5 @@
-// CSV as in RFC 4180: rows of fields, quoted where they contain a comma, a quote or a line break.
+// CSV tables as in RFC 4180: rows of fields, quoted where they contain a comma, a quote or a line
+// break.
 #ifndef CT_IO_SHEET_H
 #define CT_IO_SHEET_H
 
@@ -11,9 +12,8 @@ struct ct_sheet {
     struct ct_mark *mark; // of each
 };
 
-/// Cut text (changed in place, NUL behind its n bytes) into fields; a byte order mark and empty lines at
-/// the end are skipped. All in arena a.
-/// Errors: E135 with a mark in the file.
+/// Cut text (changed in place, NUL behind its n bytes) into fields; a byte order mark and empty
+/// lines at the end are skipped. All in arena a. Errors: E135 with a mark in the file.
 bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text,
                     size_t n, struct ct_sheet *csv);
 

@@ -10,7 +10,8 @@
 #include <string.h>
 #include <yaml.h>
 
-// far above any model that makes sense, far below what hurts
+// Bounds on nesting, on values with aliases written out and on bytes. Later stages recurse over the
+// tree, so E103 replaces a stack overflow or exhausted memory. (tests/unit/test_yaml.c)
 enum { MAX_DEPTH = 64, MAX_WEIGHT = 2000000 };
 static const size_t max_bytes = (size_t)16 << 20;
 
@@ -179,7 +180,7 @@ static bool read_list(struct source *s, struct ct_node *node, size_t depth)
     return false;
 }
 
-static bool read_key(struct source *s, struct ct_simd2 *pair)
+static bool read_key(struct source *s, struct ct_node_pair *pair)
 {
     pair->mark = mark_of(s, s->event.start_mark);
     if (s->event.type != YAML_SCALAR_EVENT)
@@ -196,17 +197,18 @@ static bool read_key(struct source *s, struct ct_simd2 *pair)
 
 static int compare_keys(const void *a, const void *b)
 {
-    const struct ct_simd2 *const *p = a, *const *q = b;
+    const struct ct_node_pair *const *p = a, *const *q = b;
     const int c = strcmp((*p)->key, (*q)->key);
     return c ? c : (*p < *q ? -1 : 1); // both in one array: the file's order
 }
 
 // Equal keys stand side by side after sorting, the earlier one first.
-static bool check_distinct(struct source *s, const struct ct_simd2 *pair, size_t n)
+static bool check_distinct(struct source *s, const struct ct_node_pair *pair, size_t n)
 {
     if (n < 2)
         return true;
-    const struct ct_simd2 **sorted = CT_NEWN(s->ctx->scratch, const struct ct_simd2 *, n);
+    const struct ct_node_pair **sorted
+        = CT_NEWN(s->ctx->scratch, const struct ct_node_pair *, n);
     for (size_t i = 0; i < n; i++)
         sorted[i] = &pair[i];
     qsort(sorted, n, sizeof *sorted, compare_keys);
@@ -224,7 +226,7 @@ static bool read_map(struct source *s, struct ct_node *node, size_t depth)
 {
     if (!check_tag(s, s->event.data.mapping_start.tag, node->mark))
         return false;
-    struct ct_simd2 *pair = NULL;
+    struct ct_node_pair *pair = NULL;
     size_t cap = 0;
     while (next_event(s)) {
         if (s->event.type == YAML_MAPPING_END_EVENT) {
@@ -233,7 +235,7 @@ static bool read_map(struct source *s, struct ct_node *node, size_t depth)
             check_distinct(s, pair, node->n);
             return true;
         }
-        struct ct_simd2 p;
+        struct ct_node_pair p;
         if (!read_key(s, &p) || !next_event(s) || !read_node(s, depth + 1, &p.value)
             || !add_child(s, node, p.value, p.mark))
             return false;
@@ -370,7 +372,7 @@ bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **r
     return ct_yaml_parse(ctx, ct_arena_strdup(ctx->model, path), text, n, root);
 }
 
-const struct ct_simd2 *ct_node_find(const struct ct_node *node, const char *key)
+const struct ct_node_pair *ct_node_find(const struct ct_node *node, const char *key)
 {
     if (!node || node->kind != CT_NODE_MAP)
         return NULL;
@@ -382,7 +384,7 @@ const struct ct_simd2 *ct_node_find(const struct ct_node *node, const char *key)
 
 const struct ct_node *ct_node_get(const struct ct_node *node, const char *key)
 {
-    const struct ct_simd2 *p = ct_node_find(node, key);
+    const struct ct_node_pair *p = ct_node_find(node, key);
     return p ? p->value : NULL;
 }
 

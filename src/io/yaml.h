@@ -1,16 +1,19 @@
 // YAML text -> a tree of nodes with marks.
 //
+// src/io reads text files: whole files (text.h), CSV tables (sheet.h) and YAML. It checks syntax
+// and bounds sizes; what keys and values mean is for src/component.
+//
 //     map   { key (mark) -> node, ... }   in the order of the file
 //     list  [ node, ... ]
 //     scalar  text, quoted or not, mark
 //
-// What always holds for a tree that was read: keys are scalars and distinct within their map, depth and
-// size are bounded also through aliases, text is UTF-8 without NUL. Scalars stay text: what is a number
-// is for the caller to say. An alias is the anchored node itself (shared, with the anchored node's
-// marks: that is where a mistake is corrected).
+// What always holds for a tree that was read: keys are scalars and distinct within their map,
+// depth and size are bounded also through aliases, text is UTF-8 without NUL. Scalars stay text:
+// what is a number is for the caller to say. An alias is the anchored node itself (shared, with
+// the anchored node's marks: that is where a mistake is corrected).
 //
-// Not accepted, each with an error: several documents, merge keys `<<`, tags other than !!str, keys that are
-// not scalars, aliases inside their own anchor.
+// Not accepted, each with an error: several documents, merge keys `<<`, tags other than !!str,
+// keys that are not scalars, aliases inside their own anchor.
 #ifndef CT_IO_YAML_H
 #define CT_IO_YAML_H
 
@@ -20,7 +23,7 @@ enum ct_node_kind { CT_NODE_SCALAR, CT_NODE_LIST, CT_NODE_MAP };
 
 struct ct_node;
 
-struct ct_simd2 {
+struct ct_node_pair {
     const char *key;
     struct ct_mark mark; // of the key
     const struct ct_node *value;
@@ -37,14 +40,14 @@ struct ct_node {
     // lists and maps
     size_t n;
     const struct ct_node *const *item;
-    const struct ct_simd2 *pair;
+    const struct ct_node_pair *pair;
     // measures of the tree below, aliases counted as often as they are used
     size_t height, weight;
 };
 
-/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there is a
-/// tree and false is returned: the caller may look for more errors. Marks show a copy of path.
-/// Errors: E002, E101 to E104.
+/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there
+/// is a tree and false is returned: the caller may look for more errors. Marks show a copy of
+/// path. Errors: E002, E101 to E104.
 bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **root);
 
 /// The same for n bytes of text; `file` names it in marks.
@@ -52,7 +55,7 @@ bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_
                    const struct ct_node **root);
 
 /// The pair with this key, or NULL. node may be NULL or no map.
-const struct ct_simd2 *ct_node_find(const struct ct_node *node, const char *key);
+const struct ct_node_pair *ct_node_find(const struct ct_node *node, const char *key);
 /// The value of this key, or NULL.
 const struct ct_node *ct_node_get(const struct ct_node *node, const char *key);
 /// `~`, `null` or nothing at all.

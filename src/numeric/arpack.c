@@ -1,4 +1,5 @@
-// See arpack.h. Implicitly restarted Lanczos in shift-invert mode (3), driven by reverse communication.
+// See arpack.h. Implicitly restarted Lanczos in shift-invert mode (3), driven by reverse
+// communication.
 #include "numeric/arpack.h"
 
 #if CT_HAS_ARPACK
@@ -21,17 +22,17 @@ enum { FEWEST_VECTORS = 20, MOST_RESTARTS = 300 };
 
 struct run {
     const struct ct_operator *op;
-    int n, nknown;
-    const double *known; // n x nknown
-    double *Mknown;      // M known
+    int n, nconverged;
+    const double *converged; // n x nknown
+    double *Mconverged;      // M known
 };
 
 // x <- x - known known' M x
 static void deflate(const struct run *s, double *x)
 {
-    for (int j = 0; j < s->nknown; j++) {
-        const double *v = s->known + (size_t)s->n * (size_t)j,
-                     *Mv = s->Mknown + (size_t)s->n * (size_t)j;
+    for (int j = 0; j < s->nconverged; j++) {
+        const double *v = s->converged + (size_t)s->n * (size_t)j,
+                     *Mv = s->Mconverged + (size_t)s->n * (size_t)j;
         double along = 0;
         for (int i = 0; i < s->n; i++)
             along += Mv[i] * x[i];
@@ -47,7 +48,8 @@ static void apply(const struct run *s, double *y, const double *f)
     deflate(s, y);
 }
 
-static void answer(const struct run *s, int ido, const int *ipntr, double *workd, double *work)
+static void serve_request(const struct run *s, int ido, const int *ipntr, double *workd,
+                          double *work)
 {
     double *x = workd + ipntr[0] - 1, *y = workd + ipntr[1] - 1;
     if (ido == 2) {
@@ -61,10 +63,10 @@ static void answer(const struct run *s, int ido, const int *ipntr, double *workd
 }
 
 int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
-                      const double *known, int nknown, const double *start, double *theta,
-                      double *V)
+                      const double *converged, int nconverged, const double *start,
+                      double *theta, double *V)
 {
-    struct run s = {.op = op, .n = n, .nknown = nknown, .known = known};
+    struct run s = {.op = op, .n = n, .nconverged = nconverged, .converged = converged};
     const size_t size = (size_t)n;
     int ncv = 2 * nev + 1 > FEWEST_VECTORS ? 2 * nev + 1 : FEWEST_VECTORS;
     ncv = ncv < n ? ncv : n;
@@ -76,16 +78,16 @@ int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, i
            *workd = CT_NEWN(a, double, 3 * size), *workl = CT_NEWN(a, double, lworkl),
            *work = CT_NEWN(a, double, n), *d = CT_NEWN(a, double, nev + 1);
     int *select = CT_NEWN(a, int, ncv);
-    s.Mknown = CT_NEWN(a, double, size *(size_t)nknown + 1);
-    for (int j = 0; j < nknown; j++)
-        op->masses(op->data, s.Mknown + size * (size_t)j, known + size * (size_t)j);
+    s.Mconverged = CT_NEWN(a, double, size *(size_t)nconverged + 1);
+    for (int j = 0; j < nconverged; j++)
+        op->masses(op->data, s.Mconverged + size * (size_t)j, converged + size * (size_t)j);
     memcpy(resid, start, size * sizeof *resid);
     for (;;) {
         dsaupd_(&ido, "G", &n, "LM", &nev, &tolerance, resid, &ncv, basis, &n, iparam, ipntr,
                 workd, workl, &lworkl, &info, 1, 2);
         if (ido != -1 && ido != 1 && ido != 2)
             break;
-        answer(&s, ido, ipntr, workd, work);
+        serve_request(&s, ido, ipntr, workd, work);
     }
     if (info < 0)
         return -1;
@@ -103,10 +105,10 @@ int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, i
 #else
 
 int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
-                      const double *known, int nknown, const double *start, double *theta,
-                      double *V)
+                      const double *converged, int nconverged, const double *start,
+                      double *theta, double *V)
 {
-    (void)a, (void)op, (void)n, (void)nev, (void)known, (void)nknown, (void)start;
+    (void)a, (void)op, (void)n, (void)nev, (void)converged, (void)nconverged, (void)start;
     (void)theta, (void)V;
     return -1;
 }

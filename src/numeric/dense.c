@@ -6,9 +6,9 @@
 // a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) rather than
 // taken from dgelsy, so that its rank is decided exactly as ct_qr_pivot decides it.
 //
-// Cholesky and LU of real matrices are plain loops: these go through them at every
-// stage, small matrices cost less than a call, the result is the same with every BLAS and
-// number of threads, and a NaN is refused, which not every dpotrf does. So are LU of complex matrices of few rows.
+// Cholesky and LU of real matrices, and LU of small complex ones, are plain loops. They are called
+// at every stage of a step, small matrices cost less than a call of LAPACK, the result does not
+// depend on the BLAS or its threads, and a NaN is refused, which not every dpotrf does.
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -70,9 +70,9 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
-double ct_vector_size_of_many(const double *v, size_t n)
+double ct_vector_max_norm_many(const double *v, size_t n)
 {
-    return ct_vector_size_of_few(v, n);
+    return ct_vector_max_norm_few(v, n);
 }
 
 double ct_vector_dot(const double *x, const double *y, size_t n)
@@ -154,7 +154,7 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
     }
 }
 
-void ct_cholesky_back(double *x, const double *L, int n, int lda)
+void ct_cholesky_solve_transposed(double *x, const double *L, int n, int lda)
 {
     int info;
     const int one = 1, ldx = max_int(1, n);
@@ -219,7 +219,7 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
         for (int j = k + 1; j < n; j++) {
             double *restrict a = A + (size_t)lda * j;
             const double f = a[k];
-            if (f == 0) // loops far apart do not meet
+            if (f == 0) // rows of independent loops
                 continue;
             for (int i = k + 1; i < n; i++)
                 a[i] -= f * col[i];
@@ -228,8 +228,7 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
     return ok;
 }
 
-// Up to so many rows have code of their own, with all loops unrolled: an implicit step of a mechanism of one or two
-// freedoms is little else.
+// Systems of up to this many rows are solved by code with all loops unrolled.
 enum { FEW = 4 };
 
 static inline void substitute(double *x, const double *LU, const int *pivot, const int n,
@@ -522,7 +521,7 @@ size_t ct_symmetric_eigenvalues_work(int n)
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
     const double certain
-        = 1e-6; // the round-off errors of other entries then stay below 1e-9 of the largest
+        = 1e-6; // element growth of at most 1e6 leaves round-off of n 1e-10 of the largest entry
     double largest = 0;
     int count = 0;
     for (int k = 0; k < n; k++) {

@@ -1,5 +1,11 @@
 // Dense linear algebra on small matrices: thin, named wrappers of LAPACK.
 //
+// src/numeric holds kernels on arrays and sizes and is the only user of LAPACK, KLU and ARPACK:
+// dense factorisations, least squares and eigenvalues here, explicit inverses of small matrices
+// (inverse.h), sparse LU (sparse.h; factors.h for many matrices of one pattern), entries of a
+// sparse inverse (selected_inverse.h), shift-invert Lanczos (arpack.h), SIMD vectors (simd2.h,
+// simd4.h).
+//
 // Column-major with explicit leading dimension. Outputs first, then inputs, then sizes, then
 // workspace. Nothing allocates; each function says how much workspace it wants.
 #ifndef CT_NUMERIC_DENSE_H
@@ -15,14 +21,14 @@
 #define CMPLX(re, im) ((double)(re) + I * (double)(im))
 #endif
 
-/// Largest |v_i| of n; 0 where n is 0. What is no number is passed over.
+/// Largest |v_i| of n, 0 for n = 0. NaN entries are ignored.
 double ct_vector_largest(const double *v, size_t n);
-/// The same of n numbers that are many; what is no number is the largest.
-double ct_vector_size_of_many(const double *v, size_t n);
-/// The same one by one, as a few are: for them a vector takes longer to begin than to do its work.
-static inline double ct_vector_size_of_few(const double *v, size_t n)
+/// Max norm of n numbers; NaN if an entry is NaN. Out of line, vectorised.
+double ct_vector_max_norm_many(const double *v, size_t n);
+/// The same inline and scalar, for short vectors.
+static inline double ct_vector_max_norm_few(const double *v, size_t n)
 {
-    // without their sign, numbers are in the order of their bits; what is no number comes last
+    // without the sign bit, doubles compare as their bit patterns do, NaN last
     uint64_t most = 0;
     double size;
     for (size_t i = 0; i < n; i++) {
@@ -34,11 +40,11 @@ static inline double ct_vector_size_of_few(const double *v, size_t n)
     memcpy(&size, &most, sizeof size);
     return size;
 }
-/// The same of any number of them.
-static inline double ct_vector_size(const double *v, size_t n)
+/// Max norm of n numbers; NaN if an entry is NaN.
+static inline double ct_vector_max_norm(const double *v, size_t n)
 {
     enum { FEW = 4 };
-    return n > FEW ? ct_vector_size_of_many(v, n) : ct_vector_size_of_few(v, n);
+    return n > FEW ? ct_vector_max_norm_many(v, n) : ct_vector_max_norm_few(v, n);
 }
 
 /// x . y of n numbers
@@ -46,7 +52,7 @@ double ct_vector_dot(const double *x, const double *y, size_t n);
 
 /// y (n) += c x, n being large.
 void ct_vector_add_many(double *restrict y, double c, const double *restrict x, size_t n);
-/// y (n) += c x. A few numbers are read one by one: for them a vector takes longer to begin than to do its work.
+/// y (n) += c x. Short vectors are handled by scalar code.
 static inline void ct_vector_add(double *restrict y, double c, const double *restrict x,
                                  size_t n)
 {
@@ -75,10 +81,10 @@ void ct_cholesky_solve(double *x, const double *L, int n, int lda, int nrhs, int
 /// H (n x n, symmetric: lower) = L^-1 H L^-T with that factor.
 void ct_cholesky_congruence(double *H, const double *L, int n, int lda);
 /// x = L^-T x.
-void ct_cholesky_back(double *x, const double *L, int n, int lda);
+void ct_cholesky_solve_transposed(double *x, const double *L, int n, int lda);
 
-/// Cholesky of a banded matrix in place: A(i, j), j <= i <= j + band, at A[i - j + (band + 1) * j]. False if it is not
-/// positive definite.
+/// Cholesky of a banded matrix in place: A(i, j), j <= i <= j + band, at A[i - j + (band + 1) *
+/// j]. False if it is not positive definite.
 bool ct_band_cholesky(double *A, int n, int band);
 /// x (n, in: right-hand side, out: solution) with that factor.
 void ct_band_cholesky_solve(double *x, const double *L, int n, int band);
@@ -93,7 +99,7 @@ bool ct_lu_complex(double _Complex *A, int *pivot, int n, int lda);
 void ct_lu_complex_solve(double _Complex *x, const double _Complex *LU, const int *pivot, int n,
                          int lda, int nrhs, int ldx);
 
-/// QR with column pivoting, A P = Q R in place. column (n, out): original column at each place;
+/// QR with column pivoting, A P = Q R in place. column (n, out): original column of each new one;
 /// tau (min(m, n), out). Returns the rank: diagonal entries of R above tol * |R_00|.
 int ct_qr_pivot(double *A, int *column, double *tau, int m, int n, int lda, double tol,
                 double *work);
@@ -107,22 +113,24 @@ int ct_lstsq_of_rank(double *b, double *A, int m, int n, int lda, double tol, in
                      int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);
 
-/// Eigenvalues w (n, ascending) and vectors (in place of A, v' B v = 1) of A v = w B v, A symmetric, B symmetric
-/// positive definite (lower; destroyed). False if B is not, or the iteration fails.
+/// Eigenvalues w (n, ascending) and vectors (in place of A, v' B v = 1) of A v = w B v, A
+/// symmetric, B symmetric positive definite (lower; destroyed). False if B is not, or the
+/// iteration fails.
 bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work);
 size_t ct_pencil_eigen_work(int n);
 
 /// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
 size_t ct_symmetric_eigenvalues_work(int n);
-/// How many of them are below x, from the signs of the pivots of A - x 1 = L D L'; -1 where one of these is too small
-/// to be certain of. Cost n^3/3, a tenth of that of finding them.
+/// Number of eigenvalues below x by Sylvester's law of inertia: signs of the pivots of A - x 1 =
+/// L D L'. -1 where a pivot is too small for its sign to be certain. Cost n^3/3.
 int ct_symmetric_count_below(double *A, int n, int lda, double x);
 /// Eigenvalues with orthonormal eigenvectors, which take the place of A. Workspace as above.
 bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work);
 
-/// Eigenvalues re + i im (n) and right eigenvectors V (n x n, leading dimension n) of a square matrix, balanced
-/// first; A is destroyed. Of a complex pair the column with im > 0 comes first: real part, then imaginary part.
+/// Eigenvalues re + i im (n) and right eigenvectors V (n x n, leading dimension n) of a square
+/// matrix, balanced first; A is destroyed. Of a complex pair the column with im > 0 comes first:
+/// real part, then imaginary part.
 bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, double *work);
 size_t ct_eigen_work(int n);
 

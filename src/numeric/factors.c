@@ -1,4 +1,4 @@
-// See factors.h.
+// Sparse LU with one pattern; see factors.h.
 #include "numeric/factors.h"
 
 #include "numeric/klu_include.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// ---- the pattern ------------------------------------------------------------------------------------
+// ---- the pattern -------------------------------------------------------------------------------
 
 struct cell {
     int column, row, entry;
@@ -44,13 +44,14 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 
 #if CT_HAS_KLU
 
-// A diagonal entry is taken as a pivot from this part of the largest in its column, rows scaled by their largest.
+// Threshold partial pivoting: a diagonal entry is the pivot if it is at least this part of the
+// largest one in its column, rows scaled by their largest entry. 0.1 bounds growth by 11 a step.
 static const double diagonal_preference = 0.1;
-// Pivots are sound while entries of columns grow by no more than so many times what they did when the pivots were sought: as much is
-// lost of the digits.
-static const double most_growth = 1e3;
+// Pivots are kept while element growth is at most this many times that at the search for pivots.
+// Growth costs as many digits: three of sixteen are given up.
+static const double growth_limit = 1e3;
 
-// ---- orders -----------------------------------------------------------------------------------------
+// ---- orders ------------------------------------------------------------------------------------
 
 struct ct_pattern_order {
     klu_common common;
@@ -83,7 +84,7 @@ bool ct_pattern_minimum_degree(struct ct_pattern *graph, int *first)
 bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, int *first)
 {
     struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
-    ct_arena_at_end(a, release_order, o);
+    ct_arena_on_destroy(a, release_order, o);
     klu_defaults(&o->common);
     o->common.btf = 0; // equations of motion hang together
     o->common.tol = diagonal_preference;
@@ -103,7 +104,7 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     return true;
 }
 
-// ---- factors ----------------------------------------------------------------------------------------
+// ---- factors -----------------------------------------------------------------------------------
 
 struct ct_factors {
     const struct ct_pattern *p;
@@ -111,20 +112,20 @@ struct ct_factors {
     klu_common common;
     klu_numeric *numeric;
     bool is_complex;
-    long sought;
+    long npivoting;
     double growth; // one over it, when pivots were sought
     // for entries of the inverse
-    long extracted; // pivots were sought so often then
+    long extracted; // value of npivoting when they were last extracted
     struct ct_arena *arena;
-    struct ct_triangles t;
-    struct ct_selected *selected;
+    struct ct_lu_factors t;
+    struct ct_selected_inverse *selected;
     double *scale;     // of rows, by pivot  (n)
     int *row, *column; // of pivots  (n)
     int *place;        // of what belongs to each entry  (nz)
     int *scale_of;     // its pivot  (nz)
 };
 
-static void forget(void *factors)
+static void release_numeric(void *factors)
 {
     struct ct_factors *f = factors;
     if (f->is_complex)
@@ -141,13 +142,13 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
                              .symbolic = p->order->symbolic,
                              .common = p->order->common,
                              .is_complex = is_complex};
-    ct_arena_at_end(a, forget, f);
+    ct_arena_on_destroy(a, release_numeric, f);
     if (!is_complex)
         f->arena = ct_arena_create_under(a);
     return f;
 }
 
-// One over the growth of the largest entries of columns; 0 where it cannot be found.
+// Reciprocal pivot growth; 0 where it cannot be found.
 static double inverse_growth(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
@@ -158,24 +159,24 @@ static double inverse_growth(struct ct_factors *f, double *value)
     return ok ? c->rgrowth : 0;
 }
 
-// With the pivots of before; false if these are not sound.
-static bool make_again(struct ct_factors *f, double *value)
+// Factor with the same pivots; false if growth is too large.
+static bool refactor(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
     klu_common *c = &f->common;
     const bool ok = f->is_complex
                       ? klu_z_refactor(p->start, p->row, value, f->symbolic, f->numeric, c)
                       : klu_refactor(p->start, p->row, value, f->symbolic, f->numeric, c);
-    return ok && c->status == KLU_OK && inverse_growth(f, value) * most_growth >= f->growth;
+    return ok && c->status == KLU_OK && inverse_growth(f, value) * growth_limit >= f->growth;
 }
 
-bool ct_factors_make(struct ct_factors *f, double *value)
+bool ct_factors_compute(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
-    if (f->numeric && make_again(f, value))
+    if (f->numeric && refactor(f, value))
         return true;
-    forget(f);
-    f->sought++;
+    release_numeric(f);
+    f->npivoting++;
     f->numeric = f->is_complex ? klu_z_factor(p->start, p->row, value, f->symbolic, &f->common)
                                : klu_factor(p->start, p->row, value, f->symbolic, &f->common);
     if (!f->numeric || f->common.status != KLU_OK)
@@ -192,20 +193,20 @@ void ct_factors_solve(struct ct_factors *f, double *x)
         klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
 }
 
-// Room for the factors outside of the library, and the places of what is wanted of the inverse.
+// Copies of L and U outside of KLU, for the entries of the inverse.
 static void prepare_inverse(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;
     struct ct_arena *a = f->arena;
     const int n = p->n;
     ct_arena_clear(a);
-    f->t = (struct ct_triangles){n,
-                                 CT_NEWN(a, int, n + 1),
-                                 CT_NEWN(a, int, f->numeric->lnz + 1),
-                                 CT_NEWN(a, int, n + 1),
-                                 CT_NEWN(a, int, f->numeric->unz + 1),
-                                 CT_NEWN(a, double, f->numeric->lnz + 1),
-                                 CT_NEWN(a, double, f->numeric->unz + 1)};
+    f->t = (struct ct_lu_factors){n,
+                                  CT_NEWN(a, int, n + 1),
+                                  CT_NEWN(a, int, f->numeric->lnz + 1),
+                                  CT_NEWN(a, int, n + 1),
+                                  CT_NEWN(a, int, f->numeric->unz + 1),
+                                  CT_NEWN(a, double, f->numeric->lnz + 1),
+                                  CT_NEWN(a, double, f->numeric->unz + 1)};
     f->scale = CT_NEWN(a, double, n + 1);
     f->row = CT_NEWN(a, int, n + 1);
     f->column = CT_NEWN(a, int, n + 1);
@@ -214,13 +215,14 @@ static void prepare_inverse(struct ct_factors *f)
 
 static void extract(struct ct_factors *f)
 {
-    const struct ct_triangles *t = &f->t;
+    const struct ct_lu_factors *t = &f->t;
     klu_extract(f->numeric, f->symbolic, t->L_start, t->L_row, t->L, t->U_start, t->U_row, t->U,
                 NULL, NULL, NULL, f->row, f->column, f->scale, NULL, &f->common);
 }
 
-// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the factors' inverse.
-static void find_places(struct ct_factors *f)
+// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the
+// factors' inverse.
+static void map_inverse_entries(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;
     struct ct_arena *a = f->arena;
@@ -229,33 +231,34 @@ static void find_places(struct ct_factors *f)
         pivot_of_row[f->row[i]] = i;
         pivot_of_column[f->column[i]] = i;
     }
-    f->selected = ct_selected_create(a, &f->t);
+    f->selected = ct_selected_inverse_create(a, &f->t);
     f->place = CT_NEWN(a, int, p->nz + 1);
     f->scale_of = CT_NEWN(a, int, p->nz + 1);
     for (int j = 0; j < p->n; j++)
         for (int k = p->start[j]; k < p->start[j + 1]; k++) {
             f->scale_of[k] = pivot_of_row[p->row[k]];
-            f->place[k] = ct_selected_place(f->selected, pivot_of_column[j], f->scale_of[k]);
+            f->place[k]
+                = ct_selected_inverse_index(f->selected, pivot_of_column[j], f->scale_of[k]);
         }
 }
 
 void ct_factors_inverse(struct ct_factors *f, double *z)
 {
-    const bool is_new = f->extracted != f->sought;
+    const bool is_new = f->extracted != f->npivoting;
     if (is_new)
         prepare_inverse(f);
     extract(f);
     if (is_new)
-        find_places(f);
-    f->extracted = f->sought;
-    const double *Z = ct_selected_find(f->selected);
+        map_inverse_entries(f);
+    f->extracted = f->npivoting;
+    const double *Z = ct_selected_inverse_compute(f->selected);
     for (int k = 0; k < f->p->nz; k++)
         z[k] = Z[f->place[k]] / f->scale[f->scale_of[k]];
 }
 
-long ct_factors_sought(const struct ct_factors *f)
+long ct_factors_npivoting(const struct ct_factors *f)
 {
-    return f->sought;
+    return f->npivoting;
 }
 
 #else
@@ -281,7 +284,7 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
     return NULL;
 }
 
-bool ct_factors_make(struct ct_factors *f, double *value)
+bool ct_factors_compute(struct ct_factors *f, double *value)
 {
     (void)f, (void)value;
     return false;
@@ -297,7 +300,7 @@ void ct_factors_inverse(struct ct_factors *f, double *z)
     (void)f, (void)z;
 }
 
-long ct_factors_sought(const struct ct_factors *f)
+long ct_factors_npivoting(const struct ct_factors *f)
 {
     (void)f;
     return 0;

@@ -1,4 +1,4 @@
-// See inverse.h. Columns are handled by pairs of rows.
+// Gauss-Jordan elimination and matrix-vector products with SIMD vectors; see inverse.h.
 #include "numeric/inverse.h"
 
 #include "numeric/simd4.h"
@@ -9,8 +9,8 @@
 enum { FEW = 4, PAIR = CT_SIMD2 };
 
 // y + i z -= (c + i d) (r + i s)
-static inline void take_complex(double *y, double *z, double c, double d, const double *r,
-                                const double *s, int rows)
+static inline void subtract_multiple_complex(double *y, double *z, double c, double d,
+                                             const double *r, const double *s, int rows)
 {
     for (int i = 0; i < rows; i += PAIR) {
         const ct_simd2 re = ct_simd2_load(r + i), im = ct_simd2_load(s + i);
@@ -40,31 +40,33 @@ static inline void restore_columns(double *A, const int *pivot, int n, int rows)
             exchange(A + i + rows * k, A + i + rows * pivot[k]);
 }
 
-// column (rows, out) = that of A, where a unit column comes.
-static inline void take_out(double *column, double *own, int k, int rows, double one)
+// column (rows, out) = column k of A, which is replaced by a unit column.
+static inline void swap_unit_column(double *column, double *pivot_column, int k, int rows,
+                                    double one)
 {
     for (int i = 0; i < rows; i++) {
-        column[i] = own[i];
-        own[i] = 0;
+        column[i] = pivot_column[i];
+        pivot_column[i] = 0;
     }
-    own[k] = one;
+    pivot_column[k] = one;
 }
 
-// For each number of rows code of its own, whose inner loops are known to be so long.
+// Instantiated for each number of rows, so that inner loops have a constant length.
 static inline bool invert(double *restrict A, int *pivot, int n, const int rows)
 {
     double column[CT_MOST_INVERTED];
     bool ok = true;
     for (int k = 0; k < n; k++) {
-        double *own = A + rows * k;
+        double *pivot_column = A + rows * k;
         int p = k;
         for (int i = k + 1; i < n; i++)
-            p = fabs(own[i]) > fabs(own[p]) ? i : p;
+            p = fabs(pivot_column[i]) > fabs(pivot_column[p]) ? i : p;
         pivot[k] = p;
         exchange_rows(A, k, p, n, rows);
-        ok = ok && fabs(own[k]) > 0 && isfinite(own[k]); // so written, NaN is refused too
-        const double inverse = 1 / own[k];
-        take_out(column, own, k, rows, 1);
+        ok = ok && fabs(pivot_column[k]) > 0
+          && isfinite(pivot_column[k]); // so written, NaN is refused too
+        const double inverse = 1 / pivot_column[k];
+        swap_unit_column(column, pivot_column, k, rows, 1);
         for (int j = 0; j < n; j++) {
             double *a = A + rows * j;
             const double f = a[k] * inverse;
@@ -84,9 +86,9 @@ bool ct_inverse(double *A, int *pivot, int n)
                         : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
-// Eight rows and, at last, four: columns are read once for each, and their sums do not wait for each other.
-CT_SIMD4_INLINE void product(double *restrict x, const double *restrict A,
-                             const double *restrict b, int rows, int n)
+// Blocks of eight rows, then one of four: two independent sums per column hide the latency.
+CT_SIMD4_INLINE void matrix_vector(double *restrict x, const double *restrict A,
+                                   const double *restrict b, int rows, int n)
 {
     int i = 0;
     for (; i + 2 * FEW <= rows; i += 2 * FEW) {
@@ -111,35 +113,35 @@ CT_SIMD4_INLINE void product(double *restrict x, const double *restrict A,
     }
 }
 
-static void product_narrow(double *x, const double *A, const double *b, int rows, int n)
+static void matrix_vector_sse(double *x, const double *A, const double *b, int rows, int n)
 {
-    product(x, A, b, rows, n);
+    matrix_vector(x, A, b, rows, n);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx2"))) static void product_wide(double *x, const double *A,
-                                                         const double *b, int rows, int n)
+__attribute__((target("avx2"))) static void matrix_vector_avx2(double *x, const double *A,
+                                                               const double *b, int rows, int n)
 {
-    product(x, A, b, rows, n);
+    matrix_vector(x, A, b, rows, n);
 }
 
-void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
-                int rows, int n)
+void ct_matrix_vector(double *restrict x, const double *restrict A, const double *restrict b,
+                      int rows, int n)
 {
-    (__builtin_cpu_supports("avx2") ? product_wide : product_narrow)(x, A, b, rows, n);
+    (__builtin_cpu_supports("avx2") ? matrix_vector_avx2 : matrix_vector_sse)(x, A, b, rows, n);
 }
 #else
-void ct_product(double *restrict x, const double *restrict A, const double *restrict b,
-                int rows, int n)
+void ct_matrix_vector(double *restrict x, const double *restrict A, const double *restrict b,
+                      int rows, int n)
 {
-    product_narrow(x, A, b, rows, n);
+    matrix_vector_sse(x, A, b, rows, n);
 }
 #endif
 
 void ct_inverse_apply(double *restrict x, const double *restrict inverse,
                       const double *restrict b, int n)
 {
-    ct_product(x, inverse, b, ct_inverse_rows(n), n);
+    ct_matrix_vector(x, inverse, b, ct_inverse_rows(n), n);
 }
 
 bool ct_inverse_complex(double *A, int *pivot, int n)
@@ -159,12 +161,12 @@ bool ct_inverse_complex(double *A, int *pivot, int n)
         const double square = re[k] * re[k] + im[k] * im[k];
         ok = ok && square > 0 && isfinite(square);
         const double c = re[k] / square, d = -im[k] / square;
-        take_out(real, re, k, rows, 1);
-        take_out(imaginary, im, k, rows, 0);
+        swap_unit_column(real, re, k, rows, 1);
+        swap_unit_column(imaginary, im, k, rows, 0);
         for (int j = 0; j < n; j++) {
             double *a = A + rows * j, *b = B + rows * j;
             const double f = a[k] * c - b[k] * d, g = a[k] * d + b[k] * c;
-            take_complex(a, b, f, g, real, imaginary, rows);
+            subtract_multiple_complex(a, b, f, g, real, imaginary, rows);
             a[k] = f;
             b[k] = g;
         }
@@ -174,9 +176,9 @@ bool ct_inverse_complex(double *A, int *pivot, int n)
     return ok;
 }
 
-void ct_product_complex(double *restrict x, double *restrict y, const double *restrict re,
-                        const double *restrict im, const double *restrict a,
-                        const double *restrict b, int rows, int n)
+void ct_matrix_vector_complex(double *restrict x, double *restrict y, const double *restrict re,
+                              const double *restrict im, const double *restrict a,
+                              const double *restrict b, int rows, int n)
 {
     for (int i = 0; i < rows; i += PAIR) {
         const double *X = re + i, *Y = im + i;
@@ -197,5 +199,5 @@ void ct_inverse_apply_complex(double *restrict x, const double *restrict inverse
                               const double *restrict b, int n)
 {
     const int rows = ct_inverse_rows(n);
-    ct_product_complex(x, x + rows, inverse, inverse + rows * n, b, b + n, rows, n);
+    ct_matrix_vector_complex(x, x + rows, inverse, inverse + rows * n, b, b + n, rows, n);
 }

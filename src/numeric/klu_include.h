@@ -1,4 +1,4 @@
-// Where the library of sparse factors has its header, for sparse.c and factors.c, which wrap it.
+// The header of KLU, for sparse.c and factors.c, which wrap it.
 #ifndef CT_NUMERIC_KLU_INCLUDE_H
 #define CT_NUMERIC_KLU_INCLUDE_H
 

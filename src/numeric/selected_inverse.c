@@ -1,13 +1,14 @@
-// See selected_inverse.h.
+// Takahashi's recursion; see selected_inverse.h.
 //
-// Z(i, j) stands where L + U has (j, i): row i of Z beside column i of U, then of L. With l in row i of U and k in column i of L,
+// Z(i, j) is stored at the index of entry (j, i) of L + U. With l in row i of U and k in column i
+// of L,
 //
 //     Z(l, i) = - sum_k Z(l, k) L(k, i),   Z(i, k) = - sum_l U(i, l) Z(l, k) / U(i, i),
 //     Z(i, i) = (1 - sum_l U(i, l) Z(l, i)) / U(i, i)
 #include "numeric/selected_inverse.h"
 
-struct ct_selected {
-    const struct ct_triangles *t;
+struct ct_selected_inverse {
+    const struct ct_lu_factors *t;
     int *row_start, *in_row; // places of U's entries behind the diagonal, row by row
     int *column_of;          // of an entry of U
     int *factor;             // places of Z(l, k) for each i from the last on, each l and each k
@@ -28,16 +29,16 @@ static int find_place(const int *start, const int *rows, int row, int column)
     return low;
 }
 
-int ct_selected_place(const struct ct_selected *s, int i, int j)
+int ct_selected_inverse_index(const struct ct_selected_inverse *s, int i, int j)
 {
-    const struct ct_triangles *t = s->t;
+    const struct ct_lu_factors *t = s->t;
     return j <= i ? find_place(t->U_start, t->U_row, j, i)
                   : t->U_start[t->n] + find_place(t->L_start, t->L_row, j, i);
 }
 
-static void list_rows(struct ct_arena *a, struct ct_selected *s)
+static void list_rows(struct ct_arena *a, struct ct_selected_inverse *s)
 {
-    const struct ct_triangles *t = s->t;
+    const struct ct_lu_factors *t = s->t;
     const int n = t->n;
     s->row_start = CT_NEWN(a, int, n + 2);
     s->in_row = CT_NEWN(a, int, t->U_start[n] + 1);
@@ -54,9 +55,10 @@ static void list_rows(struct ct_arena *a, struct ct_selected *s)
         }
 }
 
-struct ct_selected *ct_selected_create(struct ct_arena *a, const struct ct_triangles *t)
+struct ct_selected_inverse *ct_selected_inverse_create(struct ct_arena *a,
+                                                       const struct ct_lu_factors *t)
 {
-    struct ct_selected *s = CT_NEW(a, struct ct_selected);
+    struct ct_selected_inverse *s = CT_NEW(a, struct ct_selected_inverse);
     const int n = t->n;
     size_t nfactor = 0, at = 0;
     s->t = t;
@@ -68,14 +70,15 @@ struct ct_selected *ct_selected_create(struct ct_arena *a, const struct ct_trian
     for (int i = n - 1; i >= 0; i--)
         for (int l = s->row_start[i]; l < s->row_start[i + 1]; l++)
             for (int k = t->L_start[i] + 1; k < t->L_start[i + 1]; k++)
-                s->factor[at++] = ct_selected_place(s, s->column_of[s->in_row[l]], t->L_row[k]);
+                s->factor[at++]
+                    = ct_selected_inverse_index(s, s->column_of[s->in_row[l]], t->L_row[k]);
     s->Z = CT_NEWN(a, double, t->U_start[n] + t->L_start[n] + 1);
     return s;
 }
 
-const double *ct_selected_find(struct ct_selected *s)
+const double *ct_selected_inverse_compute(struct ct_selected_inverse *s)
 {
-    const struct ct_triangles *t = s->t;
+    const struct ct_lu_factors *t = s->t;
     const int *place = s->factor;
     double *Z = s->Z, *of_L = Z + t->U_start[t->n];
     for (int i = t->n - 1; i >= 0; i--) {

@@ -1,28 +1,31 @@
-// Some entries of the inverse of a sparse matrix, for what it takes to factor it.
+// Selected entries of the inverse of a sparse matrix, at about the cost of its factorisation.
 //
 //     Z = (L U)^-1:   U Z = L^-1,   Z L = U^-1
 //
-// asks, from the last row and column on, for entries of Z at the places of (L + U)' alone, each a sum over those found before.
-// Source: Takahashi, Fagan and Chen (1973), key takahashi1973; which entries are enough, Erisman and Tinney (1975), key erisman1975.
+// give the entries of Z on the pattern of (L + U)' in a recursion from the last row and column on.
+// Source: Takahashi, Fagan and Chen (1973), key takahashi1973; that this pattern is closed under
+// the recursion, Erisman and Tinney (1975), key erisman1975.
 #ifndef CT_NUMERIC_SELECTED_INVERSE_H
 #define CT_NUMERIC_SELECTED_INVERSE_H
 
 #include "base/arena.h"
 
-/// Factors in compressed columns, rows sorted: L (of ones on the diagonal, which come first), U (its diagonal last).
-struct ct_triangles {
+/// LU factors in compressed columns, rows sorted: L with its unit diagonal first in each column, U
+/// with its diagonal last.
+struct ct_lu_factors {
     int n;
     int *L_start, *L_row, *U_start, *U_row;
     double *L, *U;
 };
 
-struct ct_selected;
+struct ct_selected_inverse;
 
-/// What is to be done for factors of this pattern; t must stay.
-struct ct_selected *ct_selected_create(struct ct_arena *a, const struct ct_triangles *t);
-/// Where Z(i, j) is among what ct_selected_find gives; an entry of L + U at (j, i) must be there.
-int ct_selected_place(const struct ct_selected *s, int i, int j);
-/// Entries of Z for the numbers that t has now. Allocates nothing.
-const double *ct_selected_find(struct ct_selected *s);
+/// Symbolic part for factors of this pattern; t must outlive it.
+struct ct_selected_inverse *ct_selected_inverse_create(struct ct_arena *a,
+                                                       const struct ct_lu_factors *t);
+/// Index of Z(i, j) in the result of ct_selected_inverse_compute; L + U must have the entry (j, i).
+int ct_selected_inverse_index(const struct ct_selected_inverse *s, int i, int j);
+/// Entries of Z for the present values of t. Allocates nothing.
+const double *ct_selected_inverse_compute(struct ct_selected_inverse *s);
 
 #endif

@@ -1,6 +1,6 @@
-// Two numbers handled at once.
+// SIMD vectors of two doubles.
 //
-// What always holds: each has the round-off errors of its own, as if it were alone.
+// What always holds: each element is rounded as in scalar code.
 #ifndef CT_NUMERIC_SIMD2_H
 #define CT_NUMERIC_SIMD2_H
 

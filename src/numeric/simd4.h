@@ -1,7 +1,7 @@
-// Four numbers handled at once.
+// SIMD vectors of four doubles.
 //
-// What always holds: each has the round-off errors of its own, as if it were alone. Only pointers are handed over, since how a four is handed
-// over depends on what processor code is for.
+// What always holds: each element is rounded as in scalar code. Vectors are passed by pointer,
+// since the calling convention of a 256-bit vector depends on the target processor.
 #ifndef CT_NUMERIC_SIMD4_H
 #define CT_NUMERIC_SIMD4_H
 

@@ -1,4 +1,4 @@
-// See sparse.h.
+// Sparse LU by KLU with iterative refinement; see sparse.h.
 #include "numeric/sparse.h"
 
 #include "numeric/dense.h"
@@ -10,12 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A diagonal entry is taken as a pivot from this part of the largest in its column.
+// Threshold partial pivoting: a diagonal entry is the pivot from this part of the largest in its
+// column. 0.1 bounds growth by 11 a step.
 static const double diagonal_preference = 0.1;
-// The same where the order was chosen for the numbers, too.
+// The same in an order that was chosen for the values too (KLU's own default).
 static const double order_preference = 1e-3;
-// A backward error above this asks for refinement.
-static const double rough = 1e-14;
+// Backward error above which a solution is refined: some tens of units of round-off.
+static const double refinement_limit = 1e-14;
 
 struct ct_sparse {
     int n, nz;
@@ -83,7 +84,7 @@ static struct ct_sparse *create(struct ct_arena *a, int n, const int *row, const
     klu_defaults(&s->common);
     s->common.tol = diagonal_preference;
     s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
-    ct_arena_at_end(a, release, s);
+    ct_arena_on_destroy(a, release, s);
     return s;
 }
 
@@ -118,7 +119,7 @@ static void gather(struct ct_sparse *s, const double *value)
         s->value[s->place[k]] += value[k];
 }
 
-bool ct_sparse_factor_anew(struct ct_sparse *s, const double *value)
+bool ct_sparse_factor_repivot(struct ct_sparse *s, const double *value)
 {
     gather(s, value);
     klu_free_numeric(&s->numeric, &s->common);
@@ -133,14 +134,13 @@ bool ct_sparse_factor_anew(struct ct_sparse *s, const double *value)
 bool ct_sparse_factor(struct ct_sparse *s, const double *value)
 {
     if (!s->numeric)
-        return ct_sparse_factor_anew(s, value);
+        return ct_sparse_factor_repivot(s, value);
     gather(s, value);
     return klu_refactor(s->start, s->row, s->value, s->symbolic, s->numeric, &s->common)
         && s->common.status == KLU_OK;
 }
 
-// r = b - A x; the largest of |r| / (|b| + most |A| most |x|) by rows. Rows whose terms are all round-off stand beside
-// the largest entries they could have.
+// r = b - A x. Returns the largest of |r_i| / (|b_i| + max_j |A_ij| max |x|) over the rows.
 static double backward_error(struct ct_sparse *s, const double *x, const double *b)
 {
     double worst = 0, most = 0;
@@ -166,7 +166,7 @@ double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is
     memcpy(x, b, (size_t)s->n * sizeof *x);
     klu_solve(s->symbolic, s->numeric, s->n, 1, x, &s->common);
     double error = backward_error(s, x, b);
-    *is_refined = *is_refined || error > rough;
+    *is_refined = *is_refined || error > refinement_limit;
     if (!*is_refined)
         return error;
     klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
@@ -176,7 +176,7 @@ double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is
 }
 
 // r = b - A x
-static void precise_residual(struct ct_sparse *s, const double *x, const double *b)
+static void residual_extended(struct ct_sparse *s, const double *x, const double *b)
 {
     long double *sum = s->sum;
     for (int i = 0; i < s->n; i++)
@@ -188,14 +188,14 @@ static void precise_residual(struct ct_sparse *s, const double *x, const double 
         s->r[i] = (double)sum[i];
 }
 
-void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
+void ct_sparse_solve_extended(struct ct_sparse *s, double *x, const double *b)
 {
     enum { MOST = 8 };
     double last = INFINITY;
     memcpy(x, b, (size_t)s->n * sizeof *x);
     klu_solve(s->symbolic, s->numeric, s->n, 1, x, &s->common);
     for (int i = 0; i < MOST; i++) {
-        precise_residual(s, x, b);
+        residual_extended(s, x, b);
         klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
         const double size = ct_vector_largest(s->r, (size_t)s->n);
         if (!(size < last / 2))
@@ -255,7 +255,7 @@ bool ct_sparse_factor(struct ct_sparse *s, const double *value)
     return false;
 }
 
-bool ct_sparse_factor_anew(struct ct_sparse *s, const double *value)
+bool ct_sparse_factor_repivot(struct ct_sparse *s, const double *value)
 {
     (void)s, (void)value;
     return false;
@@ -267,7 +267,7 @@ double ct_sparse_solve(struct ct_sparse *s, double *x, const double *b, bool *is
     return 0;
 }
 
-void ct_sparse_solve_precisely(struct ct_sparse *s, double *x, const double *b)
+void ct_sparse_solve_extended(struct ct_sparse *s, double *x, const double *b)
 {
     (void)s, (void)x, (void)b;
 }

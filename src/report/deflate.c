@@ -26,7 +26,7 @@ static void begin(struct ct_arena *a, z_stream *z, int window)
     if (deflateInit2(z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window, MEMORY, Z_DEFAULT_STRATEGY)
         != Z_OK)
         ct_guard_raise();
-    ct_arena_at_end(a, end_stream, z);
+    ct_arena_on_destroy(a, end_stream, z);
 }
 
 uint32_t ct_deflate_crc(const unsigned char *b, size_t n)

@@ -31,7 +31,7 @@ bool ct_sim_open_results(struct ct_sim *sim, const char *path)
     if (!ct_suffix_read(&sim->own, path, CT_SUFFIX_TABLE, &f->suffix))
         return false;
     f->is_by_row = f->suffix == CT_SUFFIX_CSV || f->suffix == CT_SUFFIX_CSV_GZ;
-    f->flushed = ct_input_sampling();
+    f->flushed = ct_monotonic_time();
     if (!f->is_by_row) {
         ct_columns_init(&f->columns, sim->own.model, "t", CT_COLUMN_NUMBER);
         for (size_t i = 1; i < n; i++)
@@ -49,7 +49,7 @@ bool ct_sim_open_results(struct ct_sim *sim, const char *path)
 static bool write_csv_row(struct ct_sim *sim, double t, const double *value)
 {
     struct ct_result_file *f = sim->file;
-    const double now = ct_input_sampling();
+    const double now = ct_monotonic_time();
     ct_csv_number(&f->csv, t);
     for (size_t i = 0; i + 1 < f->ncolumn; i++)
         ct_csv_number(&f->csv, value[i]);

@@ -243,7 +243,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     struct ct_system *s = sim->system;
     if (!ct_sim_resolve(sim, o))
         return false;
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations))
@@ -254,7 +254,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     if (!ct_sim_choose_solver(sim, o->solver) || !ct_run_begin(sim->run, &sim->start)
         || !ct_sim_has_solver(sim))
         return false;
-    sim->compile = ct_input_sampling() - start;
+    sim->compile = ct_monotonic_time() - start;
     if (!ct_sim_choose_backend(sim, o->backend))
         return false;
     sim->open.row = CT_NEWN(sim->own.model, bool, s->equations.nrow + 1);
@@ -318,21 +318,21 @@ void ct_sim_destroy(struct ct_sim *sim)
 static bool at_row(void *user, double t, const double *value, size_t n)
 {
     struct ct_sim *sim = user;
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     sim->time = t;
     if (sim->kept)
         memcpy(sim->kept + sim->nkept++ * n, value, n * sizeof *value);
     bool go_on = !sim->file || ct_sim_write_row(sim, t, value);
     if (go_on && sim->results->row)
         go_on = sim->results->row(sim->results->user, t, value, n);
-    sim->write += ct_input_sampling() - start;
+    sim->write += ct_monotonic_time() - start;
     return go_on;
 }
 
 // Past the deadline; or an eighth of the time is gone, and at the pace so far four times as much would not be enough.
 static bool is_hopeless(const struct ct_sim *sim, double t, double end)
 {
-    const double now = ct_input_sampling(), all = sim->deadline - sim->begun,
+    const double now = ct_monotonic_time(), all = sim->deadline - sim->begun,
                  gone = now - sim->begun;
     return now > sim->deadline || (gone > all / 8 && t / end < gone / all / 4);
 }
@@ -417,10 +417,10 @@ static bool integrate(struct ct_sim *sim)
     o->row = at_row;
     o->want_residual = want_residual;
     o->user = sim;
-    const double start = sim->begun = ct_input_sampling();
+    const double start = sim->begun = ct_monotonic_time();
     const bool ok = sim->is_followed ? ct_run_kinematic(sim->run, o, &sim->report)
                                      : ct_run_simulate(sim->run, o, &sim->report);
-    sim->integrate = ct_input_sampling() - start - sim->write;
+    sim->integrate = ct_monotonic_time() - start - sim->write;
     if (sim->progress)
         ct_progress_finish(sim->progress);
     sim->progress = NULL;
@@ -477,13 +477,13 @@ static bool run(struct ct_sim *sim)
     bool ok = integrate(sim) || (sim->own.nerror == 0 && !sim->is_interrupted);
     if (sim->is_interrupted)
         return false;
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     if (ok)
         ct_run_find_undetermined(sim->run, sim->time, sim->report.y, sim->open.row,
                                  sim->open.result);
     if (sim->file)
         ok = ct_sim_close_results(sim, ok);
-    sim->write += ct_input_sampling() - start;
+    sim->write += ct_monotonic_time() - start;
     if (ok) {
         ct_sim_warn_of_beams(sim);
         warn_of_positions(sim);

@@ -212,7 +212,7 @@ void ct_study_destroy(struct ct_study *s)
 static bool run_all(struct ct_study *s)
 {
     const struct ct_study_results *r = s->results;
-    const double start = ct_input_sampling();
+    const double start = ct_monotonic_time();
     if (s->has_run)
         return ct_error(&s->own, none, CT_E_USAGE, "the sweep is over already");
     s->has_run = true;
@@ -230,7 +230,7 @@ static bool run_all(struct ct_study *s)
     ct_progress_finish(&s->progress);
     if (ct_guard_is_interrupted() && s->written < s->plan.nmember)
         return false;
-    s->seconds = ct_input_sampling() - start;
+    s->seconds = ct_monotonic_time() - start;
     s->own.no_memory |= s->no_memory;
     return ct_study_close(s, !s->no_memory && !s->sink.has_failed
                                  && (s->written == s->plan.nmember || s->is_stopped));

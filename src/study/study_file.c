@@ -47,7 +47,7 @@ static bool write_row(struct ct_study *s, long member, const double *value)
     ct_csv_number(w, value ? 0 : 1);
     if (!ct_csv_end_row(&s->own, w))
         return false;
-    const double now = ct_input_sampling();
+    const double now = ct_monotonic_time();
     if (now - s->sink.flushed < seconds_between_flushes)
         return true;
     s->sink.flushed = now;

@@ -44,7 +44,7 @@ static inline ct_ex random_node(struct random *r, struct ct_exs *x, const ct_ex 
     // most nodes are products and sums, as in equations of motion
     static const enum ct_op often[] = {CT_OP_ADD, CT_OP_SUB, CT_OP_MUL, CT_OP_MUL, CT_OP_ADD};
     enum ct_op op = random_below(r, 2) ? often[random_below(r, COUNT(often))]
-                                       : (enum ct_op)random_below(r, CT_NOP);
+                                       : (enum ct_op)random_below(r, CT_OP_COUNT);
     if (op == CT_OP_CONST || op == CT_OP_SYM)
         return ct_ex_const(x, random_double(r));
     if (op == CT_OP_TABLE)

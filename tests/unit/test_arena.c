@@ -120,9 +120,9 @@ static void merged_arenas_end_together(void **state)
             struct ct_arena *into = ct_arena_create(), *from = ct_arena_create_under(into);
             char *a = ct_arena_alloc(into, size[i] + 1), *b = ct_arena_alloc(from, size[k] + 1);
             if (size[i])
-                ct_arena_at_end(into, count, &n);
+                ct_arena_on_destroy(into, count, &n);
             if (size[k])
-                ct_arena_at_end(from, count, &n);
+                ct_arena_on_destroy(from, count, &n);
             struct ct_arena *under = ct_arena_create_under(from);
             char *c = ct_arena_strdup(under, "deep");
             memset(a, 1, size[i] + 1);
@@ -188,8 +188,8 @@ static void clearing_ends_what_is_in_it_once(void **state)
     struct ct_arena *a = *state;
     int n = 0;
     ct_arena_clear(a); // nothing is in it
-    ct_arena_at_end(a, count, &n);
-    ct_arena_at_end(ct_arena_create_under(a), count, &n);
+    ct_arena_on_destroy(a, count, &n);
+    ct_arena_on_destroy(ct_arena_create_under(a), count, &n);
     ct_arena_clear(a);
     assert_int_equal(n, 2);
     ct_arena_clear(a);
@@ -302,7 +302,7 @@ static void endings_run_once_the_latest_first(void **state)
     for (char c = 'a'; c <= 'c'; c++) {
         struct note *n = CT_NEW(a, struct note); // still there when it is used
         *n = (struct note){&p, c};
-        ct_arena_at_end(a, note_letter, n);
+        ct_arena_on_destroy(a, note_letter, n);
     }
     assert_string_equal(text, "");
     ct_arena_destroy(a);

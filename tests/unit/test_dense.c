@@ -267,7 +267,7 @@ static void products_are_sums_in_order(void **unused)
     for (int rows = 4; rows <= ROWS; rows += 4)
         for (int n = 0; n <= COLUMNS; n++) {
             x[rows] = 1;
-            ct_product(x, A, b, rows, n);
+            ct_matrix_vector(x, A, b, rows, n);
             for (int i = 0; i < rows; i++) {
                 double sum = 0;
                 for (int j = 0; j < n; j++)

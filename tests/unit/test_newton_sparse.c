@@ -341,12 +341,12 @@ static void unsound_pivots_are_sought_anew(void **unused)
     struct ct_pattern *p = ct_pattern_create(a, 2, row, column, 4, place);
     assert_true(ct_pattern_order(a, p, sound, first));
     struct ct_factors *f = ct_factors_create(a, p, false);
-    assert_true(ct_factors_make(f, sound));
+    assert_true(ct_factors_compute(f, sound));
     sound[0] = 3;
-    assert_true(ct_factors_make(f, sound));
-    assert_int_equal(ct_factors_sought(f), 1);
-    assert_true(ct_factors_make(f, unsound));
-    assert_int_equal(ct_factors_sought(f), 2);
+    assert_true(ct_factors_compute(f, sound));
+    assert_int_equal(ct_factors_npivoting(f), 1);
+    assert_true(ct_factors_compute(f, unsound));
+    assert_int_equal(ct_factors_npivoting(f), 2);
     ct_factors_solve(f, x); // x + y = 2, 1e-14 x + y = 1
     assert_true(fabs(x[0] - 1) < 1e-13 && fabs(x[1] - 1) < 1e-13);
     ct_arena_destroy(a);
@@ -363,13 +363,13 @@ static void pivots_are_kept_while_three_digits_are_lost(void **unused)
     struct ct_pattern *p = ct_pattern_create(a, 2, row, column, 4, place);
     assert_true(ct_pattern_order(a, p, value, first));
     struct ct_factors *f = ct_factors_create(a, p, false);
-    assert_true(ct_factors_make(f, value));
+    assert_true(ct_factors_compute(f, value));
     value[0] = 1. / 300;
-    assert_true(ct_factors_make(f, value));
-    assert_int_equal(ct_factors_sought(f), 1);
+    assert_true(ct_factors_compute(f, value));
+    assert_int_equal(ct_factors_npivoting(f), 1);
     value[0] = 1. / 3000;
-    assert_true(ct_factors_make(f, value));
-    assert_int_equal(ct_factors_sought(f), 2);
+    assert_true(ct_factors_compute(f, value));
+    assert_int_equal(ct_factors_npivoting(f), 2);
     ct_arena_destroy(a);
 }
 
@@ -398,7 +398,7 @@ static void entries_of_the_inverse_are_those_of_solutions(void **unused)
             assert_true(ct_pattern_order(a, p, value, first));
             f = ct_factors_create(a, p, false);
         }
-        assert_true(ct_factors_make(f, value));
+        assert_true(ct_factors_compute(f, value));
         ct_factors_inverse(f, z);
         for (int i = 0; i < N; i++) {
             memset(x, 0, sizeof x);

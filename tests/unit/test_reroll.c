@@ -242,7 +242,7 @@ static void many_rows_are_done_in_strips(void **unused)
     finish(p);
     const struct ct_reroll r = loops_of(p, 4, 1);
     assert_int_equal(r.nloop, 2);
-    assert_true(r.loop[0].is_side_by_side && !r.loop[1].is_side_by_side);
+    assert_true(r.loop[0].is_vectorized && !r.loop[1].is_vectorized);
     assert_int_equal(r.loop[0].nslot + r.loop[1].nslot, r.loop[0].period);
     assert_true(r.loop[0].strip > 0 && r.loop[0].strip < r.loop[0].count);
     uint32_t nlocal = 0;

@@ -2,7 +2,7 @@
 #include "formulate/kinematics/constraint_row.h"
 #include "formulate/kinematics/constraint_offset.h"
 #include "formulate/topology/linear_graph.h"
-#include "graph/pieces.h"
+#include "graph/disjoint_sets.h"
 
 #include <string.h>
 
@@ -342,14 +342,14 @@ static void driven_row(struct ct_build *b, int coordinate)
 static bool is_open(const struct ct_build *b)
 {
     const struct ct_model *m = b->model;
-    struct ct_pieces p;
-    ct_pieces_init(b->arena, (int)m->nbody, &p);
+    struct ct_disjoint_sets p;
+    ct_disjoint_sets_init(b->arena, (int)m->nbody, &p);
     for (size_t j = 0; j < m->njoint; j++) {
         const struct ct_instance *joint = &m->joint[j];
         if (joint->from < 0 || joint->to < 0)
             return false;
         const struct ct_edge between = {m->frame[joint->from].body, m->frame[joint->to].body};
-        if (!ct_pieces_join(&p, between))
+        if (!ct_disjoint_sets_union(&p, between))
             return false;
     }
     return true;

@@ -128,8 +128,8 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
     for (int i = 0; i < n; i++) {
         double axis[3] = {0};
         axis[turn[i].axis] = 1;
-        ct_motion_turn(&e->motion, ct_ex3_const(b->x, axis),
-                       ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
+        ct_motion_add_rotation(&e->motion, ct_ex3_const(b->x, axis),
+                               ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
     }
 }
 

@@ -67,7 +67,7 @@ static double sparse_work(const struct search *s, const int *row, const int *col
     struct ct_pattern *graph = ct_pattern_create(a, size, p.row, p.column, (int)p.n, place);
     const bool ok = ct_pattern_minimum_degree(graph, order);
     const double work
-        = ok ? CT_SPARSE_OPERATION * work_of(graph->nz, graph->operations, graph->fill)
+        = ok ? CT_SPARSE_OPERATION_COST * work_of(graph->nz, graph->operations, graph->fill)
              : INFINITY;
     ct_arena_destroy(a);
     return work;

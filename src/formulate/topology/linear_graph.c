@@ -250,7 +250,7 @@ static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct
     if (b->model->body[e->index].is_particle)
         return;
     if (b->is_planar) {
-        ct_motion_turn(m, b->plane[2], m->coord[2]);
+        ct_motion_add_rotation(m, b->plane[2], m->coord[2]);
         ct_motion_measure_angle(m, b->plane[2], b->plane[0]);
         m->measure[2].w = ct_ex33_apply_t(x, &e->S, b->plane[0]);
     } else {
@@ -305,8 +305,8 @@ void ct_linear_graph_edge_motion(struct ct_build *b, const struct ct_edge_info *
             e->self->cls->motion(b->x, e->self, m);
         break;
     case CT_EDGE_CLOSURE:
-        ct_motion_hold_place(b->x, m);
-        ct_motion_hold_turn(b->x, m);
+        ct_motion_lock_translation(b->x, m);
+        ct_motion_lock_rotation(b->x, m);
         break;
     case CT_EDGE_ARM:
     case CT_EDGE_FORCE:

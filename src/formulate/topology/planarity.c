@@ -256,7 +256,7 @@ void ct_planarity_detect(struct ct_build *b, bool allowed)
         return;
     }
     b->is_planar = b->eqs->is_planar = true;
-    ct_axes_across(b->x, b->plane[2], b->value, &b->plane[0], &b->plane[1]);
+    ct_axes_normal(b->x, b->plane[2], b->value, &b->plane[0], &b->plane[1]);
     double v[3];
     value3(b, b->plane[2], v);
     const char *why = ct_arena_printf(

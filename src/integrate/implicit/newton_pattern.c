@@ -298,10 +298,10 @@ static struct ct_newton_work sparse_work(const struct ct_newton_pattern *p)
 {
     const double nterm = (double)(p->ncopy + p->nproduct + p->nrotation), nz = p->pattern->nz;
     return (struct ct_newton_work){
-        .assembly = CT_SPARSE_OPERATION * (nterm + CT_NEWTON_PARTS * nz),
+        .assembly = CT_SPARSE_OPERATION_COST * (nterm + CT_NEWTON_PARTS * nz),
         .factorization
-        = CT_SPARSE_OPERATION * (p->pattern->operations + 2 * CT_NEWTON_PARTS * nz),
-        .solution = CT_SPARSE_OPERATION * 2 * p->pattern->fill,
+        = CT_SPARSE_OPERATION_COST * (p->pattern->operations + 2 * CT_NEWTON_PARTS * nz),
+        .solution = CT_SPARSE_OPERATION_COST * 2 * p->pattern->fill,
     };
 }
 
@@ -335,7 +335,7 @@ static bool may_pay(const struct ct_newton_pattern *p, struct ct_arena *scratch)
             nproduct += by.start[k + 1] - by.start[k];
         }
     }
-    return CT_SPARSE_OPERATION * (nproduct + nentry)
+    return CT_SPARSE_OPERATION_COST * (nproduct + nentry)
          < work_of_step(full_work(p->first_auxiliary));
 }
 

@@ -86,13 +86,13 @@ enum ct_eval ct_newton_evaluate(struct ct_newton *s, double t, const double *q, 
 bool ct_newton_factor(struct ct_newton *s, double c, double e)
 {
     ct_newton_pattern_form(s->p, s->G, s->A, c, e);
-    return ct_factors_make(s->real, s->G);
+    return ct_factors_compute(s->real, s->G);
 }
 
 bool ct_newton_factor_slow(struct ct_newton *s, double c)
 {
     ct_newton_pattern_form(s->p, s->G, s->A, c, c * c);
-    return ct_factors_make(s->slow, s->G);
+    return ct_factors_compute(s->slow, s->G);
 }
 
 bool ct_newton_factor_complex(struct ct_newton *s, double _Complex w)
@@ -105,7 +105,7 @@ bool ct_newton_factor_complex(struct ct_newton *s, double _Complex w)
         s->G[2 * i] = A[i] + creal(w) * B[i] + creal(by) * D[i];
         s->G[2 * i + 1] = cimag(w) * B[i] + cimag(by) * D[i];
     }
-    return ct_factors_make(s->pair, s->G);
+    return ct_factors_compute(s->pair, s->G);
 }
 
 // From rows that count to all, numbers `stride` apart, and back.

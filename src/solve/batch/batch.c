@@ -27,7 +27,7 @@ static void make_program(struct ct_batch *s, struct ct_lane_program *p,
     p->native = is_native(s) ? ct_native_create(a, l, W) : NULL;
     const size_t n = p->native ? ct_native_work(p->native) : W * ct_tape_work(p->tape);
     p->out = CT_NEWN(a, vec, p->nout);
-    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
+    p->work = ct_arena_alloc_cache_line(a, (n + 1) * sizeof *p->work);
 }
 
 static void prepare(struct ct_lane_program *p, const vec *input)

@@ -441,8 +441,8 @@ static bool has_inertia(struct ct_partition *s)
 // Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
 static double time_ahead(const struct ct_partition *s, double way)
 {
-    const double u = ct_vector_size(s->m->input + s->m->at_u, s->m->nu),
-                 a = ct_vector_size(s->a, s->m->nu);
+    const double u = ct_vector_max_norm(s->m->input + s->m->at_u, s->m->nu),
+                 a = ct_vector_max_norm(s->a, s->m->nu);
     return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
 }
 

@@ -68,7 +68,7 @@ static enum ct_eval project_by_matrices(struct ct_partition *s, double t, double
     for (int i = 0;; i++) {
         ct_evaluator_set(m, t, y);
         ct_evaluator_constraint(m);
-        const double size = ct_vector_size(m->phi, m->nrow) / s->scale;
+        const double size = ct_vector_max_norm(m->phi, m->nrow) / s->scale;
         if (ct_is_projected(nearness(s), size, before))
             break;
         if (ct_is_diverging(i, size, before))
@@ -134,7 +134,7 @@ static bool is_one_enough(const struct ct_partition *s, const double *y)
                                           0) // most often it is the places that are too far
         && ct_is_remainder_below_roundoff(
                near, dq, sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
-               ct_vector_size(y + m->nq, m->nu));
+               ct_vector_max_norm(y + m->nq, m->nu));
 }
 
 static void add_speeds(const struct ct_partition *s, double *y, const double *du)
@@ -157,7 +157,7 @@ static void correct_both(const struct ct_partition *s, double *y)
 static bool correct_speeds(struct ct_partition *s, double t, double *y)
 {
     const double *du = s->solver[0]->du;
-    const bool is_rough = ct_vector_size(du, s->m->nu) > ct_small_change;
+    const bool is_rough = ct_vector_max_norm(du, s->m->nu) > ct_small_change;
     add_speeds(s, y, du);
     const bool is_sound = !is_rough || evaluate_closing(s, t, y);
     if (is_rough)
@@ -176,12 +176,12 @@ static enum ct_eval project_by_solver(struct ct_partition *s, double t, double *
     if (s->kappa > ct_kappa_largest)
         return CT_EVAL_OK;
     for (int i = 0; evaluate_closing(s, t, y); i++) {
-        const double size = ct_vector_size(f->phi, m->nrow) / s->scale;
+        const double size = ct_vector_max_norm(f->phi, m->nrow) / s->scale;
         const bool is_closed = ct_is_projected(nearness(s), size, before);
         if (!is_closed && ct_is_diverging(i, size, before))
             return CT_EVAL_RETRY;
         if (i == 0)
-            s->correction = is_closed ? 0 : ct_vector_size(f->dq, m->nu) / size;
+            s->correction = is_closed ? 0 : ct_vector_max_norm(f->dq, m->nu) / size;
         *is_done = is_closed ? correct_speeds(s, t, y) : is_one_enough(s, y);
         if (!is_closed)
             correct_both(s, y);

@@ -80,7 +80,7 @@ static double strength(struct sparse_solver *f)
 static double solve_whole(struct sparse_solver *f, bool *is_refined)
 {
     for (int is_again = 0; is_again < 2; is_again++) {
-        const bool ok = is_again ? ct_sparse_factor_anew(f->whole, f->value)
+        const bool ok = is_again ? ct_sparse_factor_repivot(f->whole, f->value)
                                  : ct_sparse_factor(f->whole, f->value);
         const double error = ok ? ct_sparse_solve(f->whole, f->x, f->b, is_refined) : INFINITY;
         const double worn = 1e-12;

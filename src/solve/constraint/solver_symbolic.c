@@ -141,10 +141,10 @@ static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
 static double relative(const struct symbolic_solver *f, const double *r, size_t nu,
                        const double *Q)
 {
-    const double *gam = Q + nu, a = ct_vector_size(f->form.a, nu);
-    const double forces = fmax(ct_vector_size(Q, nu), f->M_size * a);
-    const double rates = fmax(ct_vector_size(gam, f->c->rank), f->J_size * a);
-    const double r0 = ct_vector_size(r, nu), r1 = ct_vector_size(r + nu, f->c->rank);
+    const double *gam = Q + nu, a = ct_vector_max_norm(f->form.a, nu);
+    const double forces = fmax(ct_vector_max_norm(Q, nu), f->M_size * a);
+    const double rates = fmax(ct_vector_max_norm(gam, f->c->rank), f->J_size * a);
+    const double r0 = ct_vector_max_norm(r, nu), r1 = ct_vector_max_norm(r + nu, f->c->rank);
     const double left = fmax(r0 > 0 ? r0 / forces : 0, r1 > 0 ? r1 / rates : 0);
     return isfinite(r0) && isfinite(r1) ? left : INFINITY;
 }
@@ -157,7 +157,8 @@ static void check(struct ct_solver *form, struct ct_evaluator *m)
     ct_program_run(&f->checked, m->input);
     form->remainder = relative(f, r, m->nu, Q);
     form->refined_remainder = relative(f, better, m->nu, Q);
-    form->kappa = form->kind == &ct_solver_symbolic_kkt ? NAN : ct_vector_size(Q + n, f->c->nB);
+    form->kappa
+        = form->kind == &ct_solver_symbolic_kkt ? NAN : ct_vector_max_norm(Q + n, f->c->nB);
 }
 
 static double close(struct ct_solver *form, struct ct_evaluator *m)
@@ -195,8 +196,8 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
         valued.value = ct_solver_values(own, m);
     f->form = (struct ct_solver){.kind = kind, .arena = own};
     ct_solver_set_partition(&f->form, p);
-    f->M_size = ct_vector_size(m->motion.out, m->e->nM);
-    f->J_size = ct_vector_size(J, m->e->nJ);
+    f->M_size = ct_vector_max_norm(m->motion.out, m->e->nM);
+    f->J_size = ct_vector_max_norm(J, m->e->nJ);
     f->c = ct_closed_derive(own, x, m->e, &valued, m->motion.out, J,
                             kind == &ct_solver_symbolic_kkt ? CT_CLOSED_KKT
                                                             : CT_CLOSED_PARTITION,

@@ -30,7 +30,7 @@ void ct_program_use(struct ct_arena *a, struct ct_program *p, struct ct_native *
         p->tape = ct_tape_create(a, p->listing);
     p->native = native;
     const size_t n = native ? ct_native_work(native) : ct_tape_work(p->tape);
-    p->work = ct_arena_line(a, (n + 1) * sizeof *p->work);
+    p->work = ct_arena_alloc_cache_line(a, (n + 1) * sizeof *p->work);
 }
 
 bool ct_program_choose(struct ct_arena *a, struct ct_evaluator *m, struct ct_program *p)

@@ -108,7 +108,7 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
     const size_t most = t->native ? ct_native_work(t->native) : LANES * ct_tape_work(t->tape);
     if (most >= t->nwork) {
         t->nwork = most + 1;
-        t->work = ct_arena_line(a, t->nwork * sizeof *t->work);
+        t->work = ct_arena_alloc_cache_line(a, t->nwork * sizeof *t->work);
     }
     ct_tangent_lanes_prepare(t, input);
 }

@@ -135,7 +135,7 @@ static void name_singular_start(struct ct_run *r)
 {
     const double near
         = 0.1; // [rad or m], as far as ct_singular_start_test looks: what ends it later is something else
-    const double way = r->stats.last_time * ct_vector_size(r->y + r->m->nq, r->m->nu);
+    const double way = r->stats.last_time * ct_vector_max_norm(r->y + r->m->nq, r->m->nu);
     if (r->singular_joints && way < near)
         ct_note(r->ctx, (struct ct_mark){0},
                 "the run began in a singular configuration, where constraints of %s do not "

@@ -132,7 +132,7 @@ double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const doubl
     const double now = ct_rank_monitor_pivot(w, ct_time_just_before(t, pending), y);
     const double behind = ct_rank_monitor_pivot_after(w, &a, -s),
                  ahead = ct_rank_monitor_pivot_after(w, &a, s);
-    const double way = ct_vector_size(w->d, w->m->nu);
+    const double way = ct_vector_max_norm(w->d, w->m->nu);
     if (behind > now
         && behind > ahead) // where it rises from the position on it tells, too, beyond it
         return now * way / (behind - now);

@@ -334,8 +334,8 @@ static double find_way(struct ct_run *r, struct initial_step *l)
 {
     const double glance = 1e-3; // of the time to a position beside
     const double *a = r->dy + r->m->nq, *u = r->y + r->m->nq;
-    l->u = ct_vector_size(u, r->m->nu);
-    l->a = ct_vector_size(a, r->m->nu);
+    l->u = ct_vector_max_norm(u, r->m->nu);
+    l->a = ct_vector_max_norm(a, r->m->nu);
     l->ua = ct_vector_dot(u, a, r->m->nu);
     if (!(l->u + l->a > 0))
         return INFINITY;
@@ -366,7 +366,8 @@ bool ct_run_starts_near_singular(struct ct_run *r)
 
 bool ct_run_singular_initial_step(struct ct_run *r, const struct ct_problem *p)
 {
-    struct initial_step l = {.p = p, .u = ct_vector_size(r->assembled + r->m->nq, r->m->nu)};
+    struct initial_step l
+        = {.p = p, .u = ct_vector_max_norm(r->assembled + r->m->nq, r->m->nu)};
     if (r->m->nrow && r->singular_joints && l.u > 0)
         return begin_in_position(r, &l);
     if (r->m->nrow && !r->singular_joints && r->o->step == 0)
