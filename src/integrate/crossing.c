@@ -280,11 +280,6 @@ static double allowed_mismatch(const struct ct_problem *p)
     return fmin(ct_crossing_mismatch_limit, fmax(met, eps / p->accuracy));
 }
 
-bool ct_crossing_misses_singularity(const struct ct_problem *p, double t, const double *y)
-{
-    return p->mismatch && p->mismatch(p->user, t, y) > allowed_mismatch(p);
-}
-
 // What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle may be all there is of it, which less
 // of a step leaves less of. Else the mechanism only passes by.
 static double judge(const struct task *s, double mismatch, double error)
@@ -452,21 +447,6 @@ struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, doub
     for (int j = 0; j < STAGES; j++)
         w->t[j] = t + (w->c[j] - w->begin) * whole;
     return (struct ct_gap_interpolation){STAGES, w->t, w->weight, w->stage};
-}
-
-struct ct_gap_interpolation ct_crossing_interpolation_over(void *work,
-                                                           const struct ct_stepper_span *span,
-                                                           double from, double to, double theta)
-{
-    struct work *w = work;
-    const double length = (to - from) / gap, begin = (from + to) / 2 - length / 2;
-    if (!w->has_weights)
-        find_weights(w);
-    for (int j = 0; j < STAGES; j++)
-        ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
-    w->begin = 0;
-    return ct_crossing_interpolation(work, span->t + begin * span->h, length * span->h,
-                                     (theta - begin) / length);
 }
 
 const struct ct_method ct_crossing = {

@@ -102,35 +102,15 @@ static bool has_crossing(const struct ct_driver *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
-// The length of the step that strides across the next singular configuration from here, or 0; *wanted becomes that of a step to
-// where it may begin. False if it is to be crossed otherwise.
-static bool plan_stage_gap(const struct ct_driver *r, double rest, double *wanted,
-                           double *length)
-{
-    *length = 0;
-    if (!r->stage_gap || r->has_failed_stage_gap || !has_crossing(r) || !(r->reach < INFINITY))
-        return false;
-    const double step = ct_stage_gap_approach(r->stage_gap, r->singular_in, r->reach, *wanted);
-    if (!(ct_stage_gap_length(r->stage_gap, r->singular_in) < rest) || isinf(step))
-        return false;
-    if (step == 0)
-        *length = ct_stage_gap_length(r->stage_gap, r->singular_in);
-    else
-        *wanted = step;
-    return true;
-}
-
 // s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s)
 {
     const double rest = stop - r->t;
-    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r)), length;
+    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r));
     const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
-    const bool is_strideable = plan_stage_gap(r, rest, &wanted, &length);
     s->method = r->method;
     s->work = r->work;
-    s->uses_stage_gap = length > 0;
     s->reaches_stop = s->is_event = s->is_interpolated = false;
     s->is_off_between = s->is_damping = s->leaves_remainder = false;
     s->error = s->begin = 0;
@@ -138,13 +118,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
         plan_remainder(r, stop, is_time, s);
         return;
     }
-    if (s->uses_stage_gap) {
-        s->h = length;
-        s->t1 = r->t + length;
-        return;
-    }
     // the run may end before the position, but beside it; one that begins beside it can only come from a crossing
-    if (!is_strideable && has_crossing(r) && reach > 0
+    if (has_crossing(r) && reach > 0
         && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
             plan_crossing(r, stop, is_time, s);
@@ -186,7 +161,6 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
         r->failed_crossings = 0;
-        r->has_failed_stage_gap = false;
     }
     if (!(r->singular_in < INFINITY))
         return;
@@ -213,7 +187,6 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
     keep_remainder(r, s);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
-    r->has_failed_stage_gap = false;
     r->control.was_refused = false;
 }
 
@@ -225,16 +198,11 @@ static void shrink_remainder(struct ct_driver *r)
     r->remainder.h = r->failed_crossings < MOST ? nearer * r->remainder.h : 0;
 }
 
-void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_planned_step *s,
-                                           double error)
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error)
 {
     const double power = -1.0 / (ct_crossing.error_order + 1);
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
-    if (s->uses_stage_gap) {
-        r->has_failed_stage_gap = true;
-        return;
-    }
     if (ct_driver_has_remainder(r)) {
         shrink_remainder(r);
         return;

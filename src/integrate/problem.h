@@ -242,9 +242,6 @@ struct ct_method {
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];
-    /// The part of a step in which neither `step` nor `prepare` evaluates f, where a singular configuration may lie; see
-    /// crossing_stage_gap.h. 0, 0: there is none to speak of.
-    double stage_gap[2];
     const void *coefficients; // of families of methods
     /// The private workspace for a run. What it keeps from step to step begins with `restart` and moves on
     /// with `accept`; both may be NULL.

@@ -22,7 +22,7 @@ struct record {
     struct ct_ctx ctx;
     struct ct_integrate_stats stats;
     double now; // last accepted time
-    bool is_passed_by, is_mismatched;
+    bool is_passed_by;
     double nearest;              // to the position, of all evaluations
     double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
     int nbridge, nevent;
@@ -173,7 +173,6 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
     for (int i = 0; i < MOST; i++)
         sample[i] = end * i / (MOST - 1);
     *r = (struct record){.is_passed_by = r->is_passed_by,
-                         .is_mismatched = r->is_mismatched,
                          .left = r->left,
                          .grows = r->grows,
                          .trusted = r->trusted,
@@ -350,59 +349,6 @@ static void a_position_that_is_passed_by_is_not_crossed(void **unused)
     assert_true(r.stats.steps > 50);
 }
 
-static enum ct_eval project(void *user, double t, double *y)
-{
-    (void)user, (void)t, (void)y;
-    return CT_EVAL_OK;
-}
-
-static void set_crossing(void *user, bool is_crossing)
-{
-    (void)user, (void)is_crossing;
-}
-
-static double mismatch(void *user, double t, const double *y)
-{
-    (void)t, (void)y;
-    return ((const struct record *)user)->is_mismatched ? 1e-3 : 0;
-}
-
-// A method that leaves a part of its steps without evaluations puts the position there, and needs fewer of them.
-static void long_steps_stride_across(void **unused)
-{
-    (void)unused;
-    struct ct_problem p = problem;
-    p.project = project;
-    p.set_crossing = set_crossing;
-    for (int k = 3; k <= 14; k++) {
-        const double tolerance = pow(10, -k), least = 0.15 * 0.25; // of the reach
-        struct record strides = {0}, crosses = {0};
-        p.mismatch = mismatch;
-        assert_true(run(&strides, "dop853", p, 3, tolerance));
-        p.mismatch = NULL;
-        assert_true(run(&crosses, "dop853", p, 3, tolerance));
-        check_below("error", strides.worst, 10 * tolerance + 1e-13);
-        check_below("error of the bridge", strides.worst_bridged, 1e3 * tolerance + 1e-11);
-        assert_true(strides.nbridge > 10);
-        check_below("least distance", least * (1 - 1e-9), strides.nearest);
-        assert_true(k > 9 || strides.stats.evaluations < crosses.stats.evaluations);
-    }
-}
-
-static void a_motion_that_is_not_smooth_is_not_stridden_across(void **unused)
-{
-    (void)unused;
-    struct ct_problem p = problem;
-    p.project = project;
-    p.set_crossing = set_crossing;
-    p.mismatch = mismatch;
-    struct record strides = {0}, refused = {.is_mismatched = true};
-    assert_true(run(&strides, "dop853", p, 3, 1e-6) && run(&refused, "dop853", p, 3, 1e-6));
-    assert_true(refused.stats.rejected_steps > strides.stats.rejected_steps);
-    assert_true(refused.stats.evaluations > strides.stats.evaluations + 20); // of a crossing
-    check_below("error", refused.worst, 1e-5);
-}
-
 // What misses the constraints by less than 100 T may meet them from nearer by; what misses them by more is passed by at once.
 static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
 {
@@ -451,8 +397,6 @@ int main(void)
         cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
         cmocka_unit_test(what_misses_a_little_is_tried_from_nearer_by),
         cmocka_unit_test(another_position_is_crossed_after_one_that_is_passed_by),
-        cmocka_unit_test(long_steps_stride_across),
-        cmocka_unit_test(a_motion_that_is_not_smooth_is_not_stridden_across),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = CT_CROSSING_STAGES, MODELS = 1 << CT_MOST_POLES, CHECKED = 2 };
+enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// With poles at some of the positions: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
+// With poles at the positions, or without: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
 // what they are.
 struct model {
     double weight[N], check[CHECKED][N];
@@ -25,7 +25,7 @@ struct numbers {
 struct ct_singular_dense_output {
     int n; // poles
     double pole[CT_MOST_POLES];
-    struct model model[MODELS]; // by the set of its poles
+    struct model smooth, singular; // without poles, with all of them
     struct numbers a, lam, result;
     bool *is_linear; // (nresult) in multipliers
     bool any_linear;
@@ -91,46 +91,42 @@ static double lagrange(const struct ct_gap_interpolation *b, const bool *some, i
     return weight;
 }
 
-// Weights of the stages for t, with these poles.
+// Weights of the stages for t, with the first n poles.
 static void find_weights(const struct ct_singular_dense_output *s,
-                         const struct ct_gap_interpolation *b, const bool *some, unsigned poles,
+                         const struct ct_gap_interpolation *b, const bool *some, int n,
                          double t, double *weight)
 {
     double plain[N];
     for (int j = 0; j < N; j++)
         weight[j] = plain[j] = lagrange(b, some, j, t);
-    for (int k = 0; k < s->n; k++) {
-        if (!(poles & 1u << k))
-            continue;
+    for (int k = 0; k < n; k++) {
         double factor = 1 / distance_to_pole(t, s->pole[k]);
         for (int j = 0; j < N; j++)
             factor -= some[j] ? plain[j] / distance_to_pole(b->t[j], s->pole[k]) : 0;
         for (int j = 0; j < N; j++) {
             double residue = lagrange(b, some, j, s->pole[k]) * (b->t[j] - s->pole[k]);
-            for (int l = 0; l < s->n; l++)
-                if (l != k && poles & 1u << l)
+            for (int l = 0; l < n; l++)
+                if (l != k)
                     residue *= (b->t[j] - s->pole[l]) / (s->pole[k] - s->pole[l]);
             weight[j] += factor * residue;
         }
     }
 }
 
-static void find_models(struct ct_singular_dense_output *s,
-                        const struct ct_gap_interpolation *b, double t)
+// m (out): with the first n poles, for t.
+static void find_model(const struct ct_singular_dense_output *s,
+                       const struct ct_gap_interpolation *b, double t, int n, struct model *m)
 {
     bool all[N], others[N];
     for (int j = 0; j < N; j++) {
         all[j] = true;
         others[j] = j != N / 2 - 1 && j != N / 2;
     }
-    for (unsigned poles = 0; poles < 1u << s->n; poles++) {
-        struct model *m = &s->model[poles];
-        find_weights(s, b, all, poles, t, m->weight);
-        for (int c = 0; c < CHECKED; c++) {
-            const int j = N / 2 - 1 + c;
-            find_weights(s, b, others, poles, b->t[j], m->check[c]);
-            m->check[c][j] -= 1;
-        }
+    find_weights(s, b, all, n, t, m->weight);
+    for (int c = 0; c < CHECKED; c++) {
+        const int j = N / 2 - 1 + c;
+        find_weights(s, b, others, n, b->t[j], m->check[c]);
+        m->check[c][j] -= 1;
     }
 }
 
@@ -159,22 +155,16 @@ static double error_of(const struct model *m, const double *at)
     return error;
 }
 
-// A pole belongs to a number if the stages tell of it.
+// A number has poles if the stages tell of them: with poles they predict the two stages beside the gap
+// ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
     const double clearly = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;
-        const struct model *best = &s->model[0];
-        double least = error_of(best, at);
-        for (unsigned poles = 1; has_poles && poles < 1u << s->n; poles++) {
-            const double error = error_of(&s->model[poles], at);
-            if (error < clearly * least) {
-                least = error;
-                best = &s->model[poles];
-            }
-        }
-        x->value[i] = ct_vector_dot(best->weight, at, N);
+        const bool is_singular
+            = has_poles && error_of(&s->singular, at) < clearly * error_of(&s->smooth, at);
+        x->value[i] = ct_vector_dot((is_singular ? &s->singular : &s->smooth)->weight, at, N);
     }
 }
 
@@ -207,7 +197,8 @@ bool ct_run_singular_dense_output(struct ct_run *r, double t, const double *y,
 {
     struct ct_singular_dense_output *s = r->singular_dense_output;
     find_poles(s, r->singular, b);
-    find_models(s, b, t);
+    find_model(s, b, t, 0, &s->smooth);
+    find_model(s, b, t, s->n, &s->singular);
     for (int j = 0; j < N; j++)
         if (!note_stage(r, b, j))
             return false;

@@ -269,15 +269,7 @@ static void warn_of_rounding(struct ct_run *r, double unknown)
         unknown);
 }
 
-static void find_best(struct ct_run *r, const struct initial_step *l, struct across *best)
-{
-    find_step(r, l, l->in, best);
-    if (l->a > 0)
-        find_step(r, l, -l->ua / (l->a * l->a), best);
-}
-
-// From half a step before the position on, if there is one that crosses it. A motion that is slow there, and turns, comes to it twice:
-// then the step is better centred on where it turns.
+// From half a step before the position on, if there is one that crosses it.
 static bool begin_before(struct ct_run *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
@@ -291,7 +283,7 @@ static bool begin_before(struct ct_run *r, struct initial_step *l)
     r->singular->time_to_singular = 0; // nearer than from where crossings begin
     r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
-    find_best(r, l, &best);
+    find_step(r, l, l->in, &best);
     if (best.error < INFINITY)
         look_back(r, l, &best);
     if (!(best.error < INFINITY)) {
