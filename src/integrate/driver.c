@@ -66,7 +66,7 @@ static void allocate(struct ct_driver *r)
         r->put_y = CT_NEWN(a, double, r->p->ny);
         r->put_dy = CT_NEWN(a, double, r->p->ny);
     }
-    if (r->p->time_to_singular && r->o->step == 0)
+    if (r->p->singular && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
     ct_event_location_init(&r->events, r->p, a);
 }
@@ -201,8 +201,7 @@ static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
     r->end = r->moved;
     r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
-    s->leaves_remainder
-        = s->is_event && p->is_singular && p->is_singular(p->user, s->t1, r->end);
+    s->leaves_remainder = s->is_event && p->singular->is_near(p->singular->user, s->t1, r->end);
     ct_crossing_slope(s->work, p->ny, (s->t1 - r->t) / s->h, r->dend);
     if (s->leaves_remainder || ct_driver_is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;

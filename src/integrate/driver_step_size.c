@@ -155,7 +155,7 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
         return;
     double reach;
     const double before = r->singular_in;
-    r->singular_in = r->p->time_to_singular(r->p->user, &reach);
+    r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
     // none, or another one; or what has failed was begun for one that had been taken to be much farther off
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
@@ -182,8 +182,9 @@ static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    if (r->p->crossed && !r->remainder.is_announced)
-        r->remainder.is_announced = r->p->crossed(r->p->user, &span, s->begin, s->t1);
+    const struct ct_singularities *x = r->p->singular;
+    if (!r->remainder.is_announced)
+        r->remainder.is_announced = x->passed(x->user, &span, s->begin, s->t1);
     keep_remainder(r, s);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
@@ -210,6 +211,6 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error)
     r->predicted_at = r->t + r->singular_in;
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
-    if (r->p->locks)
-        r->is_locked = r->p->locks(r->p->user, r->t, r->y, r->singular_in);
+    r->is_locked
+        = r->p->singular->ends_motion(r->p->singular->user, r->t, r->y, r->singular_in);
 }

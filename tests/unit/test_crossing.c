@@ -66,16 +66,18 @@ static double singular_in(void *user, double *reach)
     return r->now < singular ? singular - r->now : INFINITY;
 }
 
-static double residual(void *user, double t, const double *y)
+static double residual(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     (void)y;
     return ((struct record *)user)->is_passed_by && fabs(t - singular) < 0.1 ? 1e-3 : 0;
 }
 
 // --- positions that are passed by, or missed by a little
 
-static double missed(void *user, double t, const double *y)
+static double missed(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     (void)t, (void)y;
     struct record *r = user;
     r->ncrossing++;
@@ -89,8 +91,9 @@ static double two_ahead(void *user, double *reach)
     return r->now < r->trusted ? singular - 0.9 - r->now : singular_in(user, reach);
 }
 
-static double missed_before(void *user, double t, const double *y)
+static double missed_before(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     const struct record *r = user;
     (void)t, (void)y;
     return r->now < r->trusted ? 1e-2 : 0;
@@ -160,11 +163,38 @@ static enum ct_eval event(void *user, double t, double *y, const double *dy,
     return CT_EVAL_OK;
 }
 
-static const struct ct_problem problem = {.ny = NY,
-                                          .rhs = rhs,
-                                          .accepted = accepted,
-                                          .time_to_singular = singular_in,
-                                          .residual = residual};
+static bool is_never_near(void *user, double t, const double *y)
+{
+    (void)user, (void)t, (void)y;
+    return false;
+}
+
+static void set_crossing(void *user, bool is_crossing)
+{
+    (void)user, (void)is_crossing;
+}
+
+static bool passed(void *user, const struct ct_stepper_span *step, double begin, double t1)
+{
+    (void)user, (void)step, (void)begin, (void)t1;
+    return false;
+}
+
+static bool never_ends(void *user, double t, const double *y, double in)
+{
+    (void)user, (void)t, (void)y, (void)in;
+    return false;
+}
+
+static const struct ct_singularities singularities = {.time_to_next = singular_in,
+                                                      .is_near = is_never_near,
+                                                      .set_crossing = set_crossing,
+                                                      .residual = residual,
+                                                      .passed = passed,
+                                                      .ends_motion = never_ends};
+
+static const struct ct_problem problem
+    = {.ny = NY, .rhs = rhs, .accepted = accepted, .singular = &singularities};
 
 static bool run(struct record *r, const char *method, struct ct_problem p, double end,
                 double tolerance)
@@ -183,7 +213,9 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
                          .since = r->since,
                          .nearest = INFINITY,
                          .ctx = {.model = ct_arena_create()}};
-    p.user = r;
+    struct ct_singularities own = *p.singular;
+    own.user = p.user = r;
+    p.singular = &own;
     const bool ok
         = ct_integrate(&r->ctx, ct_method_find(method), &p,
                        &(struct ct_integrate_options){.t1 = end,
@@ -273,12 +305,17 @@ static bool is_singular(void *user, double t, const double *y)
     return fabs(t - singular) < 2 * closest;
 }
 
+static const struct ct_singularities singular_switching = {.time_to_next = singular_in,
+                                                           .is_near = is_singular,
+                                                           .set_crossing = set_crossing,
+                                                           .residual = residual,
+                                                           .passed = passed,
+                                                           .ends_motion = never_ends};
+
 static const struct ct_problem switching = {.ny = NY,
                                             .rhs = switched,
                                             .accepted = accepted,
-                                            .time_to_singular = singular_in,
-                                            .residual = residual,
-                                            .is_singular = is_singular,
+                                            .singular = &singular_switching,
                                             .nroot = 1,
                                             .root = root_beside,
                                             .event = event};
@@ -356,7 +393,9 @@ static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
     struct record near = {.left = 50 * tolerance, .grows = 14}, far = {.left = 300 * tolerance};
-    p.residual = missed;
+    struct ct_singularities x = singularities;
+    x.residual = missed;
+    p.singular = &x;
     assert_true(run(&near, "dopri5", p, 3, tolerance));
     assert_true(near.ncrossing > 1);
     check_below("error", near.worst, 10 * tolerance);
@@ -373,13 +412,15 @@ static void another_position_is_crossed_after_one_that_is_passed_by(void **unuse
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
     struct record two = {.trusted = 0.3}, one = {.left = 1, .wavers = 1.8};
-    p.time_to_singular = two_ahead;
-    p.residual = missed_before;
+    struct ct_singularities x = singularities;
+    x.time_to_next = two_ahead;
+    x.residual = missed_before;
+    p.singular = &x;
     assert_true(run(&two, "dopri5", p, 3, tolerance));
     assert_true(two.nbridge > 10);
     check_below("error", two.worst, 10 * tolerance);
-    p.time_to_singular = wavering;
-    p.residual = missed;
+    x.time_to_next = wavering;
+    x.residual = missed;
     p.rhs = sharp;
     assert_true(run(&one, "dopri5", p, 3, tolerance));
     assert_int_equal(one.ncrossing, 1);

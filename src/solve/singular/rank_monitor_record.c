@@ -1,4 +1,4 @@
-// See rank_monitor.h: what has been passed, and where steps have ended.
+// See singular.h: what has been passed, and where steps have ended.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
@@ -225,9 +225,9 @@ static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
-                            double begin, double t1, double pending)
+                            double begin, double t1)
 {
-    const struct passage p = {.span = span, .begin = begin, .pending = pending};
+    const struct passage p = {.span = span, .begin = begin, .pending = *w->pending};
     struct found f = {.n = 0};
     bool has_passed = false;
     find_positions(w, &p, &f);

@@ -1,5 +1,14 @@
-// See singular_dense_output.h.
-#include "solve/singular/singular_dense_output.h"
+// Dense output across a singular configuration: accelerations and multipliers in the gap of a crossing, from what they are at its stages.
+//
+// Accelerations are smooth across a singular configuration, and interpolated. Multipliers are not: what bears on the motion that is blocked
+// there but for the position, forces that do not vanish, is carried by rows that come to depend, and grows like 1/(t - t_k) towards a
+// position at t_k. Less that part they are smooth:
+//
+//     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
+//
+// with the product in brackets, and P, interpolated between stages, and those positions that stages tell of. Results that are linear in multipliers are interpolated so themselves:
+// what y errs by in the gap times loads without bound would be seen in those that have no part in them.
+#include "solve/singular/singular.h"
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
@@ -23,7 +32,9 @@ struct numbers {
 };
 
 struct ct_singular_dense_output {
-    int n; // poles
+    const struct ct_rank_monitor *w;
+    double *stage; // (ny)
+    int n;         // poles
     double pole[CT_MOST_POLES];
     struct model smooth, singular; // without poles, with all of them
     struct numbers a, lam, result;
@@ -62,9 +73,12 @@ static void find_linear(struct ct_singular_dense_output *s, struct ct_arena *a,
 }
 
 struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena *a,
-                                                                 const struct ct_evaluator *m)
+                                                                 struct ct_rank_monitor *w)
 {
+    const struct ct_evaluator *m = w->m;
     struct ct_singular_dense_output *s = CT_NEW(a, struct ct_singular_dense_output);
+    s->w = w;
+    s->stage = CT_NEWN(a, double, m->nq + m->nu + 1);
     s->a = create_numbers(a, m->nu);
     s->lam = create_numbers(a, m->nrow);
     s->result = create_numbers(a, m->e->nresult);
@@ -131,9 +145,9 @@ static void find_model(const struct ct_singular_dense_output *s,
 }
 
 // Positions that are next to each other are one.
-static void find_poles(struct ct_singular_dense_output *s, const struct ct_rank_monitor *w,
-                       const struct ct_gap_interpolation *b)
+static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
+    const struct ct_rank_monitor *w = s->w;
     const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
@@ -177,37 +191,39 @@ static const double *results(struct ct_evaluator *m, const double *a, const doub
     return m->result.out;
 }
 
-static bool note_stage(struct ct_run *r, const struct ct_gap_interpolation *b, int j)
+static bool note_stage(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b,
+                       int j)
 {
-    struct ct_singular_dense_output *s = r->singular_dense_output;
-    memcpy(r->stage, b->y + (size_t)j * r->ny, r->ny * sizeof *r->stage);
-    if (ct_partition_project(r->s, b->t[j], r->stage) != CT_EVAL_OK
-        || ct_run_accelerate(r, b->t[j], r->stage) != CT_EVAL_OK)
+    struct ct_partition *p = s->w->s;
+    const size_t ny = p->m->nq + p->m->nu + 1;
+    memcpy(s->stage, b->y + (size_t)j * ny, ny * sizeof *s->stage);
+    if (ct_partition_project(p, b->t[j], s->stage) != CT_EVAL_OK
+        || ct_partition_accelerate_at(p, b->t[j], s->stage) != CT_EVAL_OK)
         return false;
-    ct_partition_multipliers(r->s);
-    note(&s->a, r->s->a, j);
-    note(&s->lam, r->s->lam, j);
+    ct_partition_multipliers(p);
+    note(&s->a, p->a, j);
+    note(&s->lam, p->lam, j);
     if (s->any_linear)
-        note(&s->result, results(r->m, r->s->a, r->s->lam), j);
+        note(&s->result, results(p->m, p->a, p->lam), j);
     return true;
 }
 
-bool ct_run_singular_dense_output(struct ct_run *r, double t, const double *y,
-                                  const struct ct_gap_interpolation *b, double *value)
+bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, const double *y,
+                              const struct ct_gap_interpolation *b, double *value)
 {
-    struct ct_singular_dense_output *s = r->singular_dense_output;
-    find_poles(s, r->singular, b);
+    struct ct_evaluator *m = s->w->m;
+    find_poles(s, b);
     find_model(s, b, t, 0, &s->smooth);
     find_model(s, b, t, s->n, &s->singular);
     for (int j = 0; j < N; j++)
-        if (!note_stage(r, b, j))
+        if (!note_stage(s, b, j))
             return false;
     take(s, &s->a, false);
     take(s, &s->lam, true);
     take(s, &s->result, true);
-    ct_evaluator_set(r->m, t, y);
-    memcpy(value, results(r->m, s->a.value, s->lam.value), r->e->nresult * sizeof *value);
-    for (size_t i = 0; i < r->e->nresult; i++)
+    ct_evaluator_set(m, t, y);
+    memcpy(value, results(m, s->a.value, s->lam.value), m->e->nresult * sizeof *value);
+    for (size_t i = 0; i < m->e->nresult; i++)
         if (s->is_linear[i])
             value[i] = s->result.value[i];
     return true;

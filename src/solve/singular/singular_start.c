@@ -1,8 +1,8 @@
-// A start in a singular configuration; see rank_monitor.h.
+// A start in a singular configuration; see singular.h.
 //
 // The rank of J is the same wherever the mechanism can go, but for singular configurations, where it is less. So it is
 // compared with the rank a little way off, along what J lets move and brought back onto the constraints.
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #include "numeric/dense.h"
 
