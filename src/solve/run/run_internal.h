@@ -50,7 +50,7 @@ struct ct_run {
     struct ct_input_sampling input_sampling;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
-    double t0; // where steps begin: before 0 if the start is in a singular configuration
+    double t0; // where steps begin: before 0 if the start is in or near a singular configuration
     bool started;
     // the choice of the method
     const struct ct_method *method;       // that steps now

@@ -1,4 +1,4 @@
-// Driven mechanisms that lock: motions lead to where the constraints cannot be met any more.
+// End of reach: does a driven motion lead to where the constraints cannot be met any more?
 //
 // Before a position in which constraints come to depend on each other the motion either crosses it or ends in it. It ends if
 // behind it no place of the bodies meets the constraints: the sum of their squares has a least value above 0 there, one that grows

@@ -1,4 +1,8 @@
-// See singular.h: what is ahead.
+// Rank monitor: predicts the next singular configuration ahead of a motion. See singular.h.
+//
+// The smallest pivot of J, as rows and columns are chosen, vanishes at a singular configuration about linearly in time. Its zero is
+// extrapolated by secants along the motion. A change of sign of the test function (singularity_test_function.c) tells
+// that a step has passed over one.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -97,8 +101,7 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
     return is_roundoff_limited(w, ct_rank_monitor_pivot(w, t, y));
 }
 
-// The smallest pivot falls about linearly towards a singular configuration. Time to where it will vanish, by secants along
-// the motion as the accelerations of now continue it. INFINITY if it rises.
+// Time to the zero of the smallest pivot, by secants along the motion with its present accelerations. INFINITY if the pivot rises.
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
@@ -292,7 +295,7 @@ static void keep(struct ct_rank_monitor *w, const struct ct_rank_test *at, const
     w->farthest = fmax(w->farthest, fmax(w->most, l->now));
 }
 
-// Where a step of another kind than crossings has come: what is told of it at the end of the run.
+// Notes, for the end of the run, how near a step that is no crossing has come to a singular configuration.
 static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
 {
     if (l->is_another)

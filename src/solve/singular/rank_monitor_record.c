@@ -1,4 +1,4 @@
-// See singular.h: what has been passed, and where steps have ended.
+// Rank monitor: finds and records the singular configurations on a crossing, for the report and for dense output. See singular.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
@@ -82,7 +82,7 @@ static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p,
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
-// The same near where the pivot is least.
+// Where the smallest pivot is least on the way, if it is zero there; else NaN.
 static double find_least(struct ct_rank_monitor *w, const struct passage *p, double zero)
 {
     double least = INFINITY, at = 0;
@@ -97,7 +97,7 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// The same wherever sides change within. theta (PARTS, out); returns how many there are.
+// Where the test function changes its sign. theta (PARTS, out); returns how many such places there are.
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                         double *theta)
 {

@@ -1,12 +1,12 @@
-// A run that starts in a singular configuration with speeds, or just beside one: from a little before it.
+// First step of a run that starts in a singular configuration with speeds, or near one: backward collocation.
 //
-// In the position rows depend and accelerations cannot be found, but speeds that belong to one of the motions through it,
+// In a singular configuration rows of J are dependent and accelerations cannot be computed. Speeds of one of the motions through it satisfy
 //
 //     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
 //
-// tell which one it is. Beside it they are known to be those of a motion, but steps from there to where a crossing begins, or one that
-// begins there, would be among round-off errors. Collocation centred on the position finds the state half a step before it; from there the
-// run goes on as any that comes to such a position, and crosses it.
+// and select that motion. Near a singular configuration accelerations exist, but have too few digits for steps. Collocation
+// centred on the singular configuration finds the state half a step before it. The run begins there and crosses the
+// configuration as any other run does. Collocation: crossing.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
