@@ -15,6 +15,12 @@ static const struct ct_key keys[] = {
     {"points", CT_VALUE_POINTS, 0, NULL, 0, 0,
      "frames fixed to the body: {NAME: [x, y, z]} or {NAME: {at: [x, y, z], rotate: [axis, "
      "angle]}}"},
+    {"shape", CT_VALUE_SOLIDS, 0, NULL, 0, 0,
+     "what it is drawn with: {box: [a, b, c]}, {cylinder: [radius, length], axis: z}, {sphere: "
+     "radius}, "
+     "{lines: [[x, y, z], ...]} or {file: FILE.stl, scale: 1}, each with at, rotate and color; "
+     "or a list "
+     "of them (its frames)"},
 };
 
 const struct ct_component_class ct_component_rigid = {

@@ -479,6 +479,46 @@ CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, c
 /** How the factors were found, for people. */
 CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
 
+/* ---- pictures -------------------------------------------------------------------------------------- */
+
+/** Zero: the start, as it suits the system. */
+struct ct_draw_options {
+    const char *
+        view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
+    double time; /* [s]; > 0: the motion is followed up to there first */
+    bool trace;  /* the start, with the paths of points and of beams' ends over the run */
+    struct ct_sim_options run;
+    const char *path; /* FILE.svg; NULL: standard output */
+    FILE *progress;   /* a bar is shown there if it is a terminal */
+};
+
+/**
+ * A mechanism as a line drawing, SVG: bodies by their shapes, or by what holds them, joints by symbols, beams as they bend.
+ *
+ * The same system and options give the same bytes. Errors: E002, E003; those of assembly and of runs.
+ */
+CT_API bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
+                           const struct ct_draw_options *options);
+
+struct ct_plot;
+
+/**
+ * Outputs over time as a picture: pass ct_plot_row and the plot as `row` and `user` of a run's results, then write it.
+ *
+ * columns  in   names of columns, separated by commas; NULL: all
+ *
+ * Errors   E003 for a column that does not exist
+ * Owner    the caller, until ct_plot_destroy
+ */
+CT_API struct ct_plot *ct_plot_create(struct ct_ctx *ctx, struct ct_system *sys,
+                                      const char *columns);
+/** Accepts NULL. */
+CT_API void ct_plot_destroy(struct ct_plot *plot);
+/** A sample; value as a run gives it. Always true. */
+CT_API bool ct_plot_row(void *plot, double t, const double *value, size_t n);
+/** As SVG; a panel for each unit. Errors: E002. */
+CT_API bool ct_plot_write(struct ct_ctx *ctx, struct ct_plot *plot, const char *path);
+
 /* ---- what there is ------------------------------------------------------------------------------- */
 
 /** Component types with their terminal equations and keys. */

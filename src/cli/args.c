@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_equations,   &cli_graph,  &cli_accuracy,   &cli_sweep,
-       &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,  &cli_buckling,
-       &cli_kinematics, &cli_inverse,     &cli_export, &cli_components, &cli_methods,
-       &cli_schema,     &cli_completion,  NULL};
+    = {&cli_simulate, &cli_equations,  &cli_graph,       &cli_draw,   &cli_accuracy,
+       &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,
+       &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export, &cli_components,
+       &cli_methods,  &cli_schema,     &cli_completion,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -28,18 +28,18 @@ const struct cli_option cli_options[] = {
      "auto joints absolute"},
     {"keep-all", 0, NULL, CLI_FLAG, FIELD(keep_all), CLI_MODELS, true,
      "leave nothing out: keep the spatial rows of planar models"},
-    {"tolerance", 0, "T", CLI_NUMBER, FIELD(tolerance), CLI_RUNS, true,
+    {"tolerance", 0, "T", CLI_NUMBER, FIELD(tolerance), CLI_STEPS, true,
      "wanted relative accuracy of the outputs"},
-    {"method", 0, "NAME", CLI_TEXT, FIELD(method), CLI_RUNS, true,
+    {"method", 0, "NAME", CLI_TEXT, FIELD(method), CLI_STEPS, true,
      "auto, or a name that 'cotree methods' lists",
      "auto dop853 dopri5 rk4 radau5 generalized-alpha generalized-alpha-index3 hht newmark"},
-    {"step", 0, "H", CLI_NUMBER, FIELD(step), CLI_RUNS, true,
+    {"step", 0, "H", CLI_NUMBER, FIELD(step), CLI_STEPS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES, true,
+    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES | CLI_DRAW, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES, true,
+    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES | CLI_DRAW, true,
      "number of samples, both ends included"},
-    {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_RUNS, true,
+    {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_STEPS, true,
      "what evaluates the equations: auto, native or tape", "auto native tape"},
     {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK,
      false,
@@ -90,6 +90,18 @@ const struct cli_option cli_options[] = {
      "error against seconds, a line for each method"},
     {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_MODES, false,
      "shapes of the first modes"},
+    {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_SIMULATE, false,
+     "the outputs over time, a panel for each unit"},
+    {"columns", 0, "LIST", CLI_TEXT, FIELD(columns), CLI_SIMULATE, false,
+     "of --plot: names of outputs, as in a,b; all"},
+    {"view", 0, "VIEW", CLI_TEXT, FIELD(view), CLI_DRAW, false,
+     "x, y, z: along this axis, or iso; planar mechanisms:\n"
+     "along their normal, others: iso",
+     "x y z iso"},
+    {"time", 0, "T", CLI_TIME, FIELD(time), CLI_DRAW, false,
+     "the motion is followed to this time in seconds first"},
+    {"trace", 0, NULL, CLI_FLAG, FIELD(trace), CLI_DRAW, false,
+     "with paths of points and beams' ends over the run"},
     {"show", 0, "STAGES", CLI_TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced",
@@ -143,6 +155,13 @@ static bool parse_number(const char *text, double *v)
     return end != text && !*end && isfinite(*v) && *v > 0;
 }
 
+static bool parse_time(const char *text, double *v)
+{
+    char *end;
+    *v = strtod(text, &end);
+    return end != text && !*end && isfinite(*v) && *v >= 0;
+}
+
 static bool parse_integer(const char *text, long least, long *v)
 {
     const long most = 1000000000; // what the model file allows
@@ -185,6 +204,10 @@ static bool store(const struct cli_command *c, const struct cli_option *o, const
     case CLI_NUMBER:
         return parse_number(value, field)
             || wrong_value(c, o, value, "a number greater than 0");
+    case CLI_TIME:
+        args->has_time = true;
+        return parse_time(value, field)
+            || wrong_value(c, o, value, "a number of seconds, 0 or greater");
     case CLI_SEED:
         return parse_seed(value, field)
             || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");

@@ -19,15 +19,16 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *about, *inputs, *load, *curve, *elements, *formulations;
+        *plot, *columns, *view, *about, *inputs, *load, *curve, *elements, *formulations;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
     } set, vary;
-    double tolerance, step, until, error;
+    double tolerance, step, until, error, time;
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
-    bool hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool has_time; // --time 0 is a time, too
+    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 
@@ -50,14 +51,17 @@ enum cli_use {
     CLI_BUCKLING = 16384,
     CLI_SWEEP = 32768,
     CLI_COMPLETION = 65536,
+    CLI_DRAW = 131072,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
+    CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
-    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_CHECK | CLI_EXPORT
+    CLI_MODELS
+    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -70,9 +74,10 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_accuracy, cli_check,
-    cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse, cli_buckling,
-    cli_sweep, cli_export, cli_components, cli_methods, cli_schema, cli_completion;
+extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_draw, cli_accuracy,
+    cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
+    cli_buckling, cli_sweep, cli_export, cli_components, cli_methods, cli_schema,
+    cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -86,6 +91,7 @@ struct cli_option {
         CLI_TEXT,
         CLI_LIST,
         CLI_NUMBER,
+        CLI_TIME,
         CLI_INTEGER,
         CLI_COUNT_OF,
         CLI_SEED
@@ -133,6 +139,11 @@ bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_a
 /// Integrates or follows a motion: ct_sim_run, ct_sim_follow.
 typedef bool cli_motion(struct ct_ctx *ctx, struct ct_sim *sim,
                         const struct ct_sim_results *results);
+/// Sees each sample, as `row` of struct ct_sim_results.
+typedef bool cli_row(void *user, double t, const double *value, size_t n);
+/// A run of a system (NULL: false) that writes its samples; row may be NULL.
+bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
+                    struct ct_system *sys, cli_motion *motion, cli_row *row, void *user);
 /// The whole of a command that writes the samples of a motion; returns its exit status.
 /// Without -o the results go to the model's name with `suffix`.
 int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,

@@ -63,12 +63,14 @@ bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_a
 }
 
 static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args,
-                         const char *suffix, cli_motion *motion)
+                         const char *suffix, cli_motion *motion, cli_row *row, void *user)
 {
     char *standard = args->output ? NULL : cli_standard_path(args->model, suffix);
     const char *path = args->output ? args->output : standard;
-    const struct ct_sim_results results
-        = {.path = path ? path : "-", .progress = args->quiet ? NULL : stderr};
+    const struct ct_sim_results results = {.path = path ? path : "-",
+                                           .progress = args->quiet ? NULL : stderr,
+                                           .row = row,
+                                           .user = user};
     char text[512];
     snprintf(text, sizeof text, ": whole rows may be in '%s.partial'", results.path);
     cli_interrupt_explain(text);
@@ -82,13 +84,20 @@ static bool write_motion(struct ct_ctx *ctx, struct ct_sim *sim, const struct cl
     return ok;
 }
 
+bool cli_run_system(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
+                    struct ct_system *sys, cli_motion *motion, cli_row *row, void *user)
+{
+    struct ct_sim *sim = cli_sim(ctx, sys, args);
+    const bool ok = sim && write_motion(ctx, sim, args, suffix, motion, row, user);
+    ct_sim_destroy(sim);
+    return ok;
+}
+
 int cli_run_motion(struct ct_ctx *ctx, const struct cli_args *args, const char *suffix,
                    enum ct_columns_more columns, cli_motion *motion)
 {
     struct ct_system *sys = cli_load_with(ctx, args, columns);
-    struct ct_sim *sim = cli_sim(ctx, sys, args);
-    const bool ok = sim && write_motion(ctx, sim, args, suffix, motion);
-    ct_sim_destroy(sim);
+    const bool ok = cli_run_system(ctx, args, suffix, sys, motion, NULL, NULL);
     ct_system_destroy(sys);
     return ok ? CLI_DONE : CLI_FAILED;
 }

@@ -1,9 +1,25 @@
 // cotree simulate: integrates and writes the outputs.
 #include "cli/cli.h"
 
+// The same run, its samples plotted as well; columns that do not exist are refused before it begins.
+static int run_and_plot(struct ct_ctx *ctx, const struct cli_args *args)
+{
+    struct ct_system *sys = cli_load(ctx, args);
+    struct ct_plot *plot = ct_plot_create(ctx, sys, args->columns);
+    const bool ok = plot && cli_run_system(ctx, args, ".csv", sys, ct_sim_run, ct_plot_row, plot)
+                 && ct_plot_write(ctx, plot, args->plot);
+    ct_plot_destroy(plot);
+    ct_system_destroy(sys);
+    return ok ? CLI_DONE : CLI_FAILED;
+}
+
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    return cli_run_motion(ctx, args, ".csv", CT_COLUMNS_OF_MODEL, ct_sim_run);
+    if (args->columns && !args->plot)
+        return cli_complain(&cli_simulate,
+                            "--columns says what --plot shows; there is no --plot");
+    return args->plot ? run_and_plot(ctx, args)
+                      : cli_run_motion(ctx, args, ".csv", CT_COLUMNS_OF_MODEL, ct_sim_run);
 }
 
 const struct cli_command cli_simulate = {

@@ -39,6 +39,7 @@ enum ct_value_kind {
     CT_VALUE_SHAPES,   // {u: [...], v: [...], ...}: expressions of x, each with its name
     CT_VALUE_FIELDS, // `equilibrium` (count 1), or {u:, v:, w:, rx:, rates: {...}}: the same; names of rates end in '
     CT_VALUE_PLACES, // points; a place may be one number, the distance along the axis
+    CT_VALUE_SOLIDS, // what a body is drawn with: a shape or a list of them (solid.h)
 };
 
 enum {

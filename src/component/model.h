@@ -13,6 +13,7 @@
 #include "base/names.h"
 #include "component/beam.h"
 #include "component/class.h"
+#include "component/solid.h"
 
 struct ct_node;
 
@@ -32,7 +33,9 @@ struct ct_body {
     ct_ex3 com;                  // [m] in body axes
     ct_ex inertia[6]; // xx yy zz xy xz yz about the centre of mass, body axes [kg m^2]
     bool is_particle;
-    const struct ct_beam *beam; // NULL: not a beam
+    const struct ct_beam *beam;   // NULL: not a beam
+    const struct ct_solid *solid; // what it is drawn with
+    size_t nsolid;
 };
 
 struct ct_parameter {

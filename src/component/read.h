@@ -95,6 +95,10 @@ bool ct_read_beam_value(struct ct_reader *r, const struct ct_node *node,
 bool ct_read_fields(struct ct_reader *r, const struct ct_node *node, const struct ct_key *key,
                     struct ct_value *v);
 bool ct_fill_fields(struct ct_reader *r, const struct ct_instance *self, struct ct_beam *beam);
+/// The `shape` of a body, if it has one: b->solid.
+bool ct_read_solids(struct ct_reader *r, struct ct_body *b, const struct ct_node *node);
+/// A file that the model names, sought beside the model.
+const char *ct_read_path_beside(struct ct_reader *r, const char *file);
 /// {table:, column:, interpolate:, unit:, scale:}; wanted: a unit of the value's dimension, NULL: any
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
                    ct_ex *e);

@@ -151,9 +151,11 @@ static bool read_ground(struct ct_reader *r, const struct ct_node *node)
         return false;
     bool ok = true;
     for (size_t i = 0; i < node->n; i++)
-        if (strcmp(node->pair[i].key, "points") != 0)
+        if (strcmp(node->pair[i].key, "points") != 0 && strcmp(node->pair[i].key, "shape") != 0)
             ok = ct_error(r->ctx, node->pair[i].mark, CT_E_GROUND,
-                          "the ground has points only, no '%s'", node->pair[i].key);
+                          "the ground has 'points' and a 'shape' only, no '%s'",
+                          node->pair[i].key);
+    ok &= ct_read_solids(r, &r->m->body[0], node);
     return ct_read_points(r, &r->m->body[0], node) && ok;
 }
 
@@ -297,6 +299,7 @@ static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_no
         return false;
     bool ok = ct_read_component_keys(r, self, node, "body", false);
     ok &= ct_read_own_values(r, self, node);
+    ok &= ct_read_solids(r, b, node);
     if (!b->is_particle)
         ok &= ct_read_points(r, b, node);
     if (!ok)

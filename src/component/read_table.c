@@ -16,8 +16,7 @@
 
 static const size_t max_bytes = (size_t)256 << 20;
 
-// FILE beside the model
-static const char *path_beside(struct ct_reader *r, const char *file)
+const char *ct_read_path_beside(struct ct_reader *r, const char *file)
 {
     const char *slash = strrchr(r->m->file, '/');
     if (file[0] == '/' || !slash)
@@ -290,7 +289,7 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *
     ok &= !column || ct_read_text(r, column, &t.column);
     if (!ok)
         return false;
-    t.file = path_beside(r, file->text);
+    t.file = ct_read_path_beside(r, file->text);
     // one table per file, column and kind, however often it is used
     const char *key = ct_arena_printf(r->ctx->scratch, "%s\n%s\n%d", t.file, t.column, kind);
     int number = ct_names_get(&r->table, key);

@@ -420,6 +420,7 @@ bool ct_read_value(struct ct_reader *r, const struct ct_node *node, const struct
         return ct_read_beam_value(r, node, key, v);
     case CT_VALUE_POINTS:  // read_body.c
     case CT_VALUE_PLACES:  // read_body.c
+    case CT_VALUE_SOLIDS:  // read_solid.c
     case CT_VALUE_COORDS:  // read_joint.c
     case CT_VALUE_INITIAL: // read_joint.c
         break;

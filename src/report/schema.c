@@ -247,6 +247,61 @@ static void write_of_beams(struct ct_json *j)
     ct_json_end(j);
 }
 
+// One of the kinds, with what all of them have.
+static void write_solid(struct ct_json *j, const char *kind, int length, const char *more)
+{
+    ct_json_object(j, NULL);
+    ct_json_text(j, "type", "object");
+    ct_json_object(j, "properties");
+    ct_json_object(j, kind);
+    if (length > 0) {
+        ct_json_text(j, "type", "array");
+        ct_schema_refer(j, "items", "scalar", NULL);
+        ct_json_integer(j, "minItems", length);
+        ct_json_integer(j, "maxItems", length);
+    } else if (strcmp(kind, "lines") == 0) {
+        ct_json_text(j, "type", "array");
+        ct_schema_refer(j, "items", "vector", NULL);
+        ct_json_integer(j, "minItems", 2);
+    } else if (strcmp(kind, "file") == 0) {
+        ct_json_text(j, "type", "string");
+    } else {
+        ct_json_text(j, "$ref", "#/$defs/scalar");
+    }
+    ct_json_end(j);
+    if (more)
+        ct_schema_refer(j, more, strcmp(more, "axis") == 0 ? "axis" : "scalar", NULL);
+    ct_schema_refer(j, "at", "vector", "its place in axes of the body [m] ([0, 0, 0])");
+    ct_schema_refer(j, "rotate", "turns", "turns it out of the body's axes");
+    ct_schema_typed(j, "color", "string", NULL);
+    ct_json_end(j);
+    ct_json_array(j, "required");
+    ct_json_text(j, NULL, kind);
+    ct_json_end(j);
+    ct_json_bool(j, "additionalProperties", false);
+    ct_json_end(j);
+}
+
+static void write_solids(struct ct_json *j)
+{
+    ct_json_object(j, "solid");
+    ct_json_array(j, "anyOf");
+    write_solid(j, "box", 3, NULL);
+    write_solid(j, "cylinder", 2, "axis");
+    write_solid(j, "sphere", 0, NULL);
+    write_solid(j, "lines", 0, NULL);
+    write_solid(j, "file", 0, "scale");
+    ct_json_end(j);
+    ct_json_end(j);
+    ct_json_object(j, "solids");
+    ct_json_array(j, "anyOf");
+    ct_schema_refer(j, NULL, "solid", NULL);
+    ct_schema_list(j, NULL, "solid", 0, 0);
+    ct_schema_typed(j, NULL, "null", NULL);
+    ct_json_end(j);
+    ct_json_end(j);
+}
+
 static void write_initial(struct ct_json *j)
 {
     static const char *const keys[] = {"q", "u"};
@@ -336,9 +391,11 @@ static void write_simulation(struct ct_json *j)
 static void write_ground(struct ct_json *j)
 {
     ct_schema_object(j, "ground");
-    ct_json_text(j, "description", "the inertial body; it is listed only to carry points");
+    ct_json_text(j, "description",
+                 "the inertial body; it is listed only to carry points and a shape");
     ct_json_object(j, "properties");
     ct_schema_refer(j, "points", "points", NULL);
+    ct_schema_refer(j, "shape", "solids", NULL);
     ct_json_end(j);
     ct_json_bool(j, "additionalProperties", false);
     ct_json_end(j);
@@ -352,6 +409,7 @@ static void write_definitions(struct ct_json *j)
     write_axes(j);
     write_points(j, "points", "vector");
     write_of_beams(j);
+    write_solids(j);
     write_initial(j);
     write_outputs(j);
     write_simulation(j);

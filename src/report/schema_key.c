@@ -208,6 +208,9 @@ void ct_schema_key(struct ct_json *j, const struct ct_key *key)
     case CT_VALUE_PLACES:
         ct_json_text(j, "$ref", "#/$defs/places");
         break;
+    case CT_VALUE_SOLIDS:
+        ct_json_text(j, "$ref", "#/$defs/solids");
+        break;
     }
     ct_json_end(j);
 }

@@ -1,0 +1,11 @@
+// The unit of an output, as far as its signals tell.
+#ifndef CT_DRAW_DIMENSION_H
+#define CT_DRAW_DIMENSION_H
+
+#include "formulate/equations.h"
+
+/// "m", "rad/s", "" for a plain number; NULL where it is not known, as of a product with a
+/// parameter.
+const char *ct_result_unit(const struct ct_equations *e, size_t result);
+
+#endif

@@ -1,0 +1,24 @@
+// A scene at a state as a line drawing.
+#ifndef CT_DRAW_PICTURE_H
+#define CT_DRAW_PICTURE_H
+
+#include "draw/view.h"
+
+/// What is drawn. All of it lives as long as the call.
+struct ct_picture {
+    const struct ct_scene *scene;
+    const double *value; // of the scene (nvalue)
+    const char *title;
+    struct ct_view view; // as ct_view_choose gives it
+    const char *caption; // "t = 1.5 s"; NULL: none
+    // paths of points over the run: place k of path i is at path[3 (npath k + i)]
+    const double *path;
+    size_t npath, nplace;
+    const int *path_body; // whose point it is, for its colour
+};
+
+/// Write it as SVG. a: for the time of the call. Errors: E002. Raises the guard.
+bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
+                      const char *path);
+
+#endif

@@ -1,0 +1,31 @@
+// How a scene is looked at: parallel projection along one of the axes, or isometric.
+#ifndef CT_DRAW_VIEW_H
+#define CT_DRAW_VIEW_H
+
+#include "draw/canvas.h"
+#include "draw/scene.h"
+
+struct ct_view {
+    const char *name;                  // "x", "y", "z", "iso"
+    double right[3], up[3], toward[3]; // unit vectors; toward: to the eye
+    double scale;                      // [px/m], of lengths across the view
+    double shortening;                 // of lengths along the axes of ground that are seen
+    double low[2];                     // the place [m] that is at `origin`
+    struct ct_spot origin;             // [px]
+};
+
+/// name NULL: that which looks along the normal of a planar mechanism where this is an axis, else
+/// iso. False: no view has this name.
+bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *name);
+
+struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3]);
+/// Of a direction: across the view, per unit of length; y downwards.
+struct ct_spot ct_view_across(const struct ct_view *v, const double direction[3]);
+double ct_view_depth(const struct ct_view *v, const double place[3]);
+
+static inline double ct_dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+#endif

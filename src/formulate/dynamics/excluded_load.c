@@ -1,0 +1,56 @@
+// Loads that beams are told not to yield to: a force along an axis of the section in which `deformation` leaves out bending.
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/beam/flexible_body.h"
+#include "formulate/kinematics/kinematics.h"
+
+#include <math.h>
+
+// The component of a force along axis i of the beam's base against its size, where both depend on parameters alone; else 0.
+static double constant_part(struct ct_build *b, const struct ct_flexible *f, ct_ex3 force,
+                            int i)
+{
+    const ct_ex3 own = ct_node_unturn(b, f->base, force);
+    double square = 0, part = 0;
+    for (int k = 0; k < 3; k++) {
+        if (ct_ex_kinds(b->x, own.e[k]) & ~(1u << CT_SYM_PARAM)) {
+            if (k == i)
+                return 0;
+            continue;
+        }
+        const double v = ct_ex_value(b->x, own.e[k], b->value);
+        square += v * v;
+        part = k == i ? v : part;
+    }
+    return square > 0 ? fabs(part) / sqrt(square) : 0;
+}
+
+static void warn_of_load(struct ct_ctx *ctx, struct ct_build *b, const struct ct_load *load,
+                         const struct ct_flexible *f)
+{
+    static const struct {
+        unsigned family;
+        const char *axis, *name;
+    } bending[]
+        = {{CT_BEAM_BENDING_Z, "y", "bending-z"}, {CT_BEAM_BENDING_Y, "z", "bending-y"}};
+    const double roundoff = 1e-12; // of components of a rotated vector
+    for (int i = 0; i < 2; i++)
+        if (!(f->beam->deformation & bending[i].family)
+            && constant_part(b, f, load->force, 1 + i) > roundoff)
+            ct_warning(ctx, load->self->mark, 0,
+                       "force '%s' pushes beam '%s' along its %s axis, in which 'deformation' "
+                       "does not let "
+                       "it bend: there it acts as on a rigid body; add '%s' to 'deformation', "
+                       "or leave "
+                       "that key out",
+                       load->self->name, f->name, bending[i].axis, bending[i].name);
+}
+
+void ct_warn_of_excluded_loads(struct ct_ctx *ctx, struct ct_build *b)
+{
+    for (size_t i = 0; i < b->nload; i++) {
+        const struct ct_load *load = &b->load[i];
+        const struct ct_flexible *f = ct_flexible_of(b, b->node[load->head].body);
+        if (f && f->beam->deformation_given && load->self->cls->family == CT_FAMILY_FORCE)
+            warn_of_load(ctx, b, load, f);
+    }
+}
