@@ -280,11 +280,6 @@ static double allowed_mismatch(const struct ct_problem *p)
     return fmin(ct_crossing_mismatch_limit, fmax(met, eps / p->accuracy));
 }
 
-bool ct_crossing_misses_singularity(const struct ct_problem *p, double t, const double *y)
-{
-    return p->mismatch && p->mismatch(p->user, t, y) > allowed_mismatch(p);
-}
-
 // What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle may be all there is of it, which less
 // of a step leaves less of. Else the mechanism only passes by.
 static double judge(const struct task *s, double mismatch, double error)
@@ -349,8 +344,8 @@ static double error_of(const struct task *s, const double *y1)
     const struct ct_problem *p = s->p;
     const double middle = s->t + s->h / 2;
     point_at(p, s->h, 0.5, s->y, w, w->end);
-    const double left = p->residual ? p->residual(p->user, middle, w->end) : 0,
-                 mismatch = p->mismatch ? p->mismatch(p->user, middle, w->end) : 0;
+    double mismatch;
+    const double left = p->singular->residual(p->singular->user, middle, w->end, &mismatch);
     if (left > ct_crossing_mismatch_limit + held_tolerance * s->tolerance->rtol)
         return INFINITY;
     return fmax(judge(s, mismatch, estimate(s, w->begin > 0 ? w->rest : w->e, y1)),
@@ -367,11 +362,9 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     const struct task s = {p, t - w->begin * whole, whole, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
-    if (p->set_crossing)
-        p->set_crossing(p->user, true);
+    p->singular->set_crossing(p->singular->user, true);
     const enum ct_eval e = w->begin > 0 ? sweep_from(&s, w->begin, dy) : sweep_on(&s, dy);
-    if (p->set_crossing)
-        p->set_crossing(p->user, false);
+    p->singular->set_crossing(p->singular->user, false);
     if (e != CT_EVAL_OK)
         return e;
     memcpy(y1, w->stage + (STAGES - 1) * n, (size_t)n * sizeof *y1);
@@ -389,11 +382,9 @@ enum ct_eval ct_crossing_initial_step(const struct ct_problem *p, double t, doub
     const struct task s = {p, t - theta * h, h, y, tolerance, w, stats};
     if (!w->has_weights)
         find_weights(w);
-    if (p->set_crossing)
-        p->set_crossing(p->user, true);
+    p->singular->set_crossing(p->singular->user, true);
     const enum ct_eval e = sweep_from(&s, theta, dy);
-    if (p->set_crossing)
-        p->set_crossing(p->user, false);
+    p->singular->set_crossing(p->singular->user, false);
     if (e != CT_EVAL_OK)
         return e;
     memcpy(before, w->stage, (size_t)p->ny * sizeof *y);
@@ -452,21 +443,6 @@ struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, doub
     for (int j = 0; j < STAGES; j++)
         w->t[j] = t + (w->c[j] - w->begin) * whole;
     return (struct ct_gap_interpolation){STAGES, w->t, w->weight, w->stage};
-}
-
-struct ct_gap_interpolation ct_crossing_interpolation_over(void *work,
-                                                           const struct ct_stepper_span *span,
-                                                           double from, double to, double theta)
-{
-    struct work *w = work;
-    const double length = (to - from) / gap, begin = (from + to) / 2 - length / 2;
-    if (!w->has_weights)
-        find_weights(w);
-    for (int j = 0; j < STAGES; j++)
-        ct_stepper_point(span, begin + w->c[j] * length, w->stage + j * span->p->ny);
-    w->begin = 0;
-    return ct_crossing_interpolation(work, span->t + begin * span->h, length * span->h,
-                                     (theta - begin) / length);
 }
 
 const struct ct_method ct_crossing = {

@@ -15,10 +15,6 @@ enum { CT_CROSSING_STAGES = 14 };
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
 extern const double ct_crossing_mismatch_limit;
 
-/// Does the motion only pass by a singular configuration beside y, at t, in the middle of a step across, as rows that should depend there miss
-/// each other? So little that steps by it would be among round-off errors counts as none. (8.29)
-bool ct_crossing_misses_singularity(const struct ct_problem *p, double t, const double *y);
-
 /// Beside a singular configuration f has fewer digits: crossings may err by this part of the largest state.
 extern const double ct_crossing_roundoff;
 
@@ -35,11 +31,6 @@ void ct_crossing_slope(void *work, int n, double theta, double *dy);
 /// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
 struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, double h,
                                                       double theta);
-/// The same around the gap from `from` to `to` of a step of another method, with states of its interpolant.
-struct ct_gap_interpolation ct_crossing_interpolation_over(void *work,
-                                                           const struct ct_stepper_span *span,
-                                                           double from, double to,
-                                                           double theta);
 
 /// The state before (ny, out) at t - theta h, where a step h across a singular configuration begins, of the motion that is at y at t, in
 /// the position or near it. dy: its derivative; accelerations, which need not be known, are not used. *err (out): what the step

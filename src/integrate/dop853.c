@@ -274,7 +274,6 @@ const struct ct_method ct_method_dop853 = {
     .error_order = 7,
     // the two results of the estimate may cross by accident: a long step after a short one is not to be trusted
     .most_growth = 1.5,
-    .stage_gap = {1. / 3, 3. / 5},
     .create = create,
     .restart = ct_compensation_restart,
     .accept = ct_compensation_accept,

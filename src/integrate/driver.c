@@ -66,10 +66,8 @@ static void allocate(struct ct_driver *r)
         r->put_y = CT_NEWN(a, double, r->p->ny);
         r->put_dy = CT_NEWN(a, double, r->p->ny);
     }
-    if (r->p->time_to_singular && r->o->step == 0)
+    if (r->p->singular && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
-    if (r->crossing_work)
-        r->stage_gap = ct_stage_gap_create(a, r->method, r->p);
     ct_event_location_init(&r->events, r->p, a);
 }
 
@@ -203,8 +201,7 @@ static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
     r->end = r->moved;
     r->dend = r->dmoved;
     s->method->dense(p, s->h, (s->t1 - r->t) / s->h, r->y, r->y1, s->work, r->end);
-    s->leaves_remainder
-        = s->is_event && p->is_singular && p->is_singular(p->user, s->t1, r->end);
+    s->leaves_remainder = s->is_event && p->singular->is_near(p->singular->user, s->t1, r->end);
     ct_crossing_slope(s->work, p->ny, (s->t1 - r->t) / s->h, r->dend);
     if (s->leaves_remainder || ct_driver_is_in_gap(r, s, s->t1))
         return CT_EVAL_OK;
@@ -283,13 +280,10 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *
     enum ct_eval e = project_speeds(r, s);
     if (e != CT_EVAL_OK)
         return e;
-    e = s->uses_stage_gap ? ct_stage_gap_step(r->stage_gap, r->t, s->h, r->y, r->dy, tolerance,
-                                              r->y1, r->dy1, &error, s->work, r->stats)
-                          : s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1,
-                                            r->dy1, &error, s->work, r->stats);
+    e = s->method->step(r->p, r->t, s->h, r->y, r->dy, tolerance, r->y1, r->dy1, &error,
+                        s->work, r->stats);
     if (e != CT_EVAL_OK)
         return e;
-    s->is_interpolated = s->uses_stage_gap;
     if (!ct_stepper_finite(r->y1, r->p->ny) || isnan(error))
         return CT_EVAL_RETRY;
     s->error = error;
@@ -316,8 +310,7 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double theta = (r->o->sample[r->sample] - r->t) / s->h;
     double error = 0;
-    if (!s->method->dense_error || !r->p->sensitive_output_error || r->o->step > 0
-        || s->uses_stage_gap)
+    if (!s->method->dense_error || !r->p->sensitive_output_error || r->o->step > 0)
         return CT_EVAL_OK;
     ct_stepper_point(&span, theta, r->point);
     const enum ct_eval e
@@ -402,7 +395,7 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
 static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
-    const bool is_across = s->method == &ct_crossing || s->uses_stage_gap;
+    const bool is_across = s->method == &ct_crossing;
     if (s->leaves_remainder) // that will be
         return CT_EVAL_OK;
     return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend, is_across) : CT_EVAL_OK;
@@ -509,8 +502,8 @@ static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned
                                     double h, double error)
 {
     const bool had_rest = ct_driver_has_remainder(r);
-    if (s->method == &ct_crossing || s->uses_stage_gap)
-        ct_driver_adapt_after_failed_crossing(r, s, error);
+    if (s->method == &ct_crossing)
+        ct_driver_adapt_after_failed_crossing(r, error);
     else
         ct_driver_adapt_after_refusal(r, h, error);
     return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
@@ -521,7 +514,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
 {
     for (;;) {
         ct_driver_plan_step(r, stop, is_time, s);
-        const bool is_crossing = s->method == &ct_crossing || s->uses_stage_gap;
+        const bool is_crossing = s->method == &ct_crossing;
         const double h = s->h;
         if (is_at_lock(r))
             return report_lock(r);
@@ -607,7 +600,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
         return state_refused(r, e);
     r->reach = INFINITY; // of the position ahead everything may have changed
     r->failed_crossings = 0;
-    r->has_failed_stage_gap = r->is_locked = false;
+    r->is_locked = false;
     if (dy) {
         start_anew(r);
         return true;

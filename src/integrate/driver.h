@@ -10,7 +10,6 @@
 #include "integrate/step_control.h"
 #include "integrate/crossing.h"
 #include "integrate/periodic_tolerance.h"
-#include "integrate/crossing_stage_gap.h"
 #include "integrate/event_location.h"
 
 // A step h that erred too much, and the longest one tried from the same place; 0: there was none.
@@ -54,21 +53,19 @@ struct ct_driver {
     double singular_in;  // time to the next one, from t
     double reach;        // crossing it is to begin this long before
     double
-        crossing_begin; // time before it where crossings of it begin, if that is over; else 0
-    struct ct_stage_gap *stage_gap; // NULL: no crossings by steps of the method itself
-    bool has_failed_stage_gap;      // across the next position
-    int failed_crossings;           // of it
-    bool is_locked;                 // the motion ends in it
-    double predicted_at;            // when it was to come as the last of them was begun
-    bool is_open;                   // the last step met everything but the constraints
-    size_t sample;                  // the next one to give
-    bool ends_on_samples;           // steps end on samples: between them outputs err too much
-    double *roundoff;               // of f, of problem.noise once that has been felt  (ny)
-    double *arithmetic_roundoff;    // of f: what its arithmetic leaves by itself  (ny)
-    double *other;                  // a derivative to spare  (ny)
-    int roundoff_steps;             // since it was measured
-    struct ct_refusal refusal;      // of the step before this try
-    struct ct_problem problem;      // the caller's, with what is found here
+        crossing_begin;   // time before it where crossings of it begin, if that is over; else 0
+    int failed_crossings; // of it
+    bool is_locked;       // the motion ends in it
+    double predicted_at;  // when it was to come as the last of them was begun
+    bool is_open;         // the last step met everything but the constraints
+    size_t sample;        // the next one to give
+    bool ends_on_samples; // steps end on samples: between them outputs err too much
+    double *roundoff;     // of f, of problem.noise once that has been felt  (ny)
+    double *arithmetic_roundoff; // of f: what its arithmetic leaves by itself  (ny)
+    double *other;               // a derivative to spare  (ny)
+    int roundoff_steps;          // since it was measured
+    struct ct_refusal refusal;   // of the step before this try
+    struct ct_problem problem;   // the caller's, with what is found here
     struct ct_crossing_remainder {
         double h, first;   // its length, and as it was tried first; 0: there is none
         bool is_known;     // sides of roots are, with f as it is now
@@ -86,7 +83,6 @@ struct ct_planned_step {
     bool is_event;         // a state event ends it
     bool leaves_remainder; // of a crossing, which is to be the next step
     bool is_interpolated;  // the method is ready to interpolate it
-    bool uses_stage_gap;   // across a singular configuration
     bool is_off_between;   // outputs err too much in a sample before its end
     bool is_damping;       // a motion that it does not follow: samples have steps of their own
     double error;
@@ -106,8 +102,7 @@ bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_s
 void ct_driver_look_ahead(struct ct_driver *r, double t);
 void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s);
-void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_planned_step *s,
-                                           double error);
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error);
 
 /// Has an event cut a crossing where f cannot be computed, so that the next step is its rest?
 static inline bool ct_driver_has_remainder(const struct ct_driver *r)

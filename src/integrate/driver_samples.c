@@ -6,26 +6,13 @@ static const struct ct_mark nowhere = {0};
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_planned_step *s, double t)
 {
     const double theta = (t - r->t) / s->h;
-    double from, to;
-    return s->uses_stage_gap ? ct_stage_gap_contains(r->stage_gap, theta, &from, &to)
-                             : s->method == &ct_crossing && ct_crossing_is_gap(s->work, theta);
+    return s->method == &ct_crossing && ct_crossing_is_gap(s->work, theta);
 }
 
 static bool give_sample(struct ct_driver *r, const double *y)
 {
     const double t = r->o->sample[r->sample++];
     return r->o->at_sample(r->p->user, t, y);
-}
-
-static struct ct_gap_interpolation
-gap_interpolation(const struct ct_driver *r, const struct ct_planned_step *s, double theta)
-{
-    const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    double from, to;
-    if (!s->uses_stage_gap)
-        return ct_crossing_interpolation(s->work, r->t, s->h, theta);
-    ct_stage_gap_contains(r->stage_gap, theta, &from, &to);
-    return ct_crossing_interpolation_over(r->crossing_work, &span, from, to, theta);
 }
 
 // A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
@@ -35,7 +22,8 @@ static bool give_singular_sample(struct ct_driver *r, const struct ct_planned_st
     const double t = r->o->sample[r->sample];
     if (!r->o->at_singular_sample)
         return give_sample(r, y);
-    const struct ct_gap_interpolation b = gap_interpolation(r, s, (t - r->t) / s->h);
+    const struct ct_gap_interpolation b
+        = ct_crossing_interpolation(s->work, r->t, s->h, (t - r->t) / s->h);
     r->sample++;
     return r->o->at_singular_sample(r->p->user, t, y, &b);
 }
@@ -72,7 +60,7 @@ static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double kept = 0.95; // from look to look
     const double much_faster = 3;
-    if (!r->sample_work || s->work != r->work || s->uses_stage_gap)
+    if (!r->sample_work || s->work != r->work)
         return false;
     const double seen = r->method->stiffness_estimate(r->p, s->h, r->y, r->y1, s->work) / s->h;
     r->fastest = ct_larger(seen, kept * r->fastest);

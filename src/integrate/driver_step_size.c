@@ -102,35 +102,15 @@ static bool has_crossing(const struct ct_driver *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
-// The length of the step that strides across the next singular configuration from here, or 0; *wanted becomes that of a step to
-// where it may begin. False if it is to be crossed otherwise.
-static bool plan_stage_gap(const struct ct_driver *r, double rest, double *wanted,
-                           double *length)
-{
-    *length = 0;
-    if (!r->stage_gap || r->has_failed_stage_gap || !has_crossing(r) || !(r->reach < INFINITY))
-        return false;
-    const double step = ct_stage_gap_approach(r->stage_gap, r->singular_in, r->reach, *wanted);
-    if (!(ct_stage_gap_length(r->stage_gap, r->singular_in) < rest) || isinf(step))
-        return false;
-    if (step == 0)
-        *length = ct_stage_gap_length(r->stage_gap, r->singular_in);
-    else
-        *wanted = step;
-    return true;
-}
-
 // s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s)
 {
     const double rest = stop - r->t;
-    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r)), length;
+    double wanted = ct_smaller(r->control.h, ct_driver_step_limit(r));
     const double reach = is_time ? ct_smaller(r->reach, rest - r->singular_in) : r->reach;
-    const bool is_strideable = plan_stage_gap(r, rest, &wanted, &length);
     s->method = r->method;
     s->work = r->work;
-    s->uses_stage_gap = length > 0;
     s->reaches_stop = s->is_event = s->is_interpolated = false;
     s->is_off_between = s->is_damping = s->leaves_remainder = false;
     s->error = s->begin = 0;
@@ -138,13 +118,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
         plan_remainder(r, stop, is_time, s);
         return;
     }
-    if (s->uses_stage_gap) {
-        s->h = length;
-        s->t1 = r->t + length;
-        return;
-    }
     // the run may end before the position, but beside it; one that begins beside it can only come from a crossing
-    if (!is_strideable && has_crossing(r) && reach > 0
+    if (has_crossing(r) && reach > 0
         && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
             plan_crossing(r, stop, is_time, s);
@@ -180,13 +155,12 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
         return;
     double reach;
     const double before = r->singular_in;
-    r->singular_in = r->p->time_to_singular(r->p->user, &reach);
+    r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
     // none, or another one; or what has failed was begun for one that had been taken to be much farther off
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
         r->failed_crossings = 0;
-        r->has_failed_stage_gap = false;
     }
     if (!(r->singular_in < INFINITY))
         return;
@@ -208,12 +182,12 @@ static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    if (r->p->crossed && !r->remainder.is_announced)
-        r->remainder.is_announced = r->p->crossed(r->p->user, &span, s->begin, s->t1);
+    const struct ct_singularities *x = r->p->singular;
+    if (!r->remainder.is_announced)
+        r->remainder.is_announced = x->passed(x->user, &span, s->begin, s->t1);
     keep_remainder(r, s);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
-    r->has_failed_stage_gap = false;
     r->control.was_refused = false;
 }
 
@@ -225,16 +199,11 @@ static void shrink_remainder(struct ct_driver *r)
     r->remainder.h = r->failed_crossings < MOST ? nearer * r->remainder.h : 0;
 }
 
-void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_planned_step *s,
-                                           double error)
+void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error)
 {
     const double power = -1.0 / (ct_crossing.error_order + 1);
     r->stats->rejected_steps++;
     r->stats->inaccurate_steps += error > 1;
-    if (s->uses_stage_gap) {
-        r->has_failed_stage_gap = true;
-        return;
-    }
     if (ct_driver_has_remainder(r)) {
         shrink_remainder(r);
         return;
@@ -242,6 +211,6 @@ void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, const struct ct_
     r->predicted_at = r->t + r->singular_in;
     r->reach = r->singular_in * (error > 1 ? fmax(nearer, safety * pow(error, power)) : nearer);
     r->failed_crossings = isinf(error) ? most_crossings : r->failed_crossings + 1;
-    if (r->p->locks)
-        r->is_locked = r->p->locks(r->p->user, r->t, r->y, r->singular_in);
+    r->is_locked
+        = r->p->singular->ends_motion(r->p->singular->user, r->t, r->y, r->singular_in);
 }

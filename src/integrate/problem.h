@@ -86,6 +86,31 @@ struct ct_tolerance {
 
 struct ct_stepper_span;
 
+/// Singular configurations: there f has a limit along the motion that cannot be computed. Methods with step
+/// control cross one in a single step that does not evaluate f close to it, see crossing.h.
+struct ct_singularities {
+    void *user;
+    /// Time from the last accepted state to the next singular configuration as far as it can be
+    /// predicted, else INFINITY. *reach (out): the time before and after it in which f is better not
+    /// computed.
+    double (*time_to_next)(void *user, double *reach);
+    /// Is y so near to a singular configuration that f has too few digits?
+    bool (*is_near)(void *user, double t, const double *y);
+    /// Evaluations from now on belong to a crossing, none of them close to the singular configuration; or do
+    /// not any more.
+    void (*set_crossing)(void *user, bool is_crossing);
+    /// How far y is from the constraints. *dependent (out): the same of the combination of constraints that
+    /// becomes dependent. It vanishes with the square of the distance from a singular configuration, and does
+    /// not if y is only nearly singular.
+    double (*residual)(void *user, double t, const double *y, double *dependent);
+    /// A step has crossed a singular configuration. It ends at t1 or later, and is the crossing without its
+    /// first part `begin`. False if the configuration does not lie before t1.
+    bool (*passed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
+    /// Asked after a crossing has failed: does the motion end in the configuration that is `in` seconds
+    /// ahead of y, the last accepted state, because the constraints cannot be met behind it?
+    bool (*ends_motion)(void *user, double t, const double *y, double in);
+};
+
 struct ct_problem {
     void *user;
     int ny;     // states
@@ -139,28 +164,8 @@ struct ct_problem {
     double (*longest_step)(void *user);
     /// The longest step from t, of at most h, that does not pass over what f does by time alone. May be NULL.
     double (*input_limited_step)(void *user, double t, double h);
-    /// Time from the last accepted state to the next singular configuration as far as it can be foreseen,
-    /// else INFINITY. There f has a limit along the motion that cannot be computed: methods with step control
-    /// cross it in one step without evaluating close to it, see crossing.h. *reach (out): the time before
-    /// and after it in which f is better not computed. May be NULL.
-    double (*time_to_singular)(void *user, double *reach);
-    /// Does the motion end in the position that is `in` ahead of y, the last accepted state, as the constraints cannot be met behind
-    /// it? Asked after a crossing has failed. May be NULL.
-    bool (*locks)(void *user, double t, const double *y, double in);
-    /// What is evaluated from now on belongs to the crossing of a singular configuration, none of it close by; or does not.
-    /// May be NULL.
-    void (*set_crossing)(void *user, bool is_crossing);
-    /// Is y so near to a singular configuration that f has too few digits? NULL: it never is.
-    bool (*is_singular)(void *user, double t, const double *y);
-    /// A singular configuration was crossed by this step, which ends at t1 at the latest and is all but the first part of the crossing,
-    /// `begin` of it. False if the position is not before t1. May be NULL.
-    bool (*crossed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
-    /// How far y is from the constraints. May be NULL.
-    double (*residual)(void *user, double t, const double *y);
-    /// Beside a singular configuration: how far y is from them in what they ask of no motion there, the part that depends. It
-    /// vanishes with the square of the distance where the position is singular, but not where it is only nearly so.
-    /// May be NULL.
-    double (*mismatch)(void *user, double t, const double *y);
+    /// NULL: none are looked for.
+    const struct ct_singularities *singular;
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
@@ -243,9 +248,6 @@ struct ct_method {
     /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor between
     /// steady[0] and steady[1] is not made: it would cost a factorisation.
     double most_growth, steady[2];
-    /// The part of a step in which neither `step` nor `prepare` evaluates f, where a singular configuration may lie; see
-    /// crossing_stage_gap.h. 0, 0: there is none to speak of.
-    double stage_gap[2];
     const void *coefficients; // of families of methods
     /// The private workspace for a run. What it keeps from step to step begins with `restart` and moves on
     /// with `accept`; both may be NULL.

@@ -13,7 +13,7 @@ bool ct_data_accelerate(struct ct_data *d)
     if (d->known & CT_KNOWS_ACCELERATION)
         return true;
     ct_data_enter(d);
-    if (ct_run_accelerate(r, ct_run_time_before_event(r, d->t), d->y) != CT_EVAL_OK)
+    if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, d->t), d->y) != CT_EVAL_OK)
         return ct_error(&d->sim.own, (struct ct_mark){.file = d->sim.system->model.file},
                         CT_E_SINGULAR, "the accelerations at t = %.9g cannot be found", d->t);
     // M, Q and J of the machine may be those of before

@@ -5,7 +5,7 @@
 #include "formulate/beam/flexible_body.h"
 #include "solve/constraint/partition_conditioning.h"
 #include "solve/batch/batch.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "report/suffix.h"
 #include "report/outfile.h"
 #include "report/stage_beam.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/resource.h>

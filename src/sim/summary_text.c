@@ -3,7 +3,7 @@
 
 #include "formulate/beam/flexible_body.h"
 #include "report/stage_beam.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 #include "solve/evaluator/tangent.h"
 #include "formulate/beam/section_properties.h"
 

@@ -12,7 +12,7 @@
 #include "sim/sim.h"
 
 #include "base/guard.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #include <float.h>
 #include <math.h>

@@ -22,7 +22,7 @@ struct record {
     struct ct_ctx ctx;
     struct ct_integrate_stats stats;
     double now; // last accepted time
-    bool is_passed_by, is_mismatched;
+    bool is_passed_by;
     double nearest;              // to the position, of all evaluations
     double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
     int nbridge, nevent;
@@ -66,16 +66,18 @@ static double singular_in(void *user, double *reach)
     return r->now < singular ? singular - r->now : INFINITY;
 }
 
-static double residual(void *user, double t, const double *y)
+static double residual(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     (void)y;
     return ((struct record *)user)->is_passed_by && fabs(t - singular) < 0.1 ? 1e-3 : 0;
 }
 
 // --- positions that are passed by, or missed by a little
 
-static double missed(void *user, double t, const double *y)
+static double missed(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     (void)t, (void)y;
     struct record *r = user;
     r->ncrossing++;
@@ -89,8 +91,9 @@ static double two_ahead(void *user, double *reach)
     return r->now < r->trusted ? singular - 0.9 - r->now : singular_in(user, reach);
 }
 
-static double missed_before(void *user, double t, const double *y)
+static double missed_before(void *user, double t, const double *y, double *dependent)
 {
+    *dependent = 0;
     const struct record *r = user;
     (void)t, (void)y;
     return r->now < r->trusted ? 1e-2 : 0;
@@ -160,11 +163,38 @@ static enum ct_eval event(void *user, double t, double *y, const double *dy,
     return CT_EVAL_OK;
 }
 
-static const struct ct_problem problem = {.ny = NY,
-                                          .rhs = rhs,
-                                          .accepted = accepted,
-                                          .time_to_singular = singular_in,
-                                          .residual = residual};
+static bool is_never_near(void *user, double t, const double *y)
+{
+    (void)user, (void)t, (void)y;
+    return false;
+}
+
+static void set_crossing(void *user, bool is_crossing)
+{
+    (void)user, (void)is_crossing;
+}
+
+static bool passed(void *user, const struct ct_stepper_span *step, double begin, double t1)
+{
+    (void)user, (void)step, (void)begin, (void)t1;
+    return false;
+}
+
+static bool never_ends(void *user, double t, const double *y, double in)
+{
+    (void)user, (void)t, (void)y, (void)in;
+    return false;
+}
+
+static const struct ct_singularities singularities = {.time_to_next = singular_in,
+                                                      .is_near = is_never_near,
+                                                      .set_crossing = set_crossing,
+                                                      .residual = residual,
+                                                      .passed = passed,
+                                                      .ends_motion = never_ends};
+
+static const struct ct_problem problem
+    = {.ny = NY, .rhs = rhs, .accepted = accepted, .singular = &singularities};
 
 static bool run(struct record *r, const char *method, struct ct_problem p, double end,
                 double tolerance)
@@ -173,7 +203,6 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
     for (int i = 0; i < MOST; i++)
         sample[i] = end * i / (MOST - 1);
     *r = (struct record){.is_passed_by = r->is_passed_by,
-                         .is_mismatched = r->is_mismatched,
                          .left = r->left,
                          .grows = r->grows,
                          .trusted = r->trusted,
@@ -184,7 +213,9 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
                          .since = r->since,
                          .nearest = INFINITY,
                          .ctx = {.model = ct_arena_create()}};
-    p.user = r;
+    struct ct_singularities own = *p.singular;
+    own.user = p.user = r;
+    p.singular = &own;
     const bool ok
         = ct_integrate(&r->ctx, ct_method_find(method), &p,
                        &(struct ct_integrate_options){.t1 = end,
@@ -274,12 +305,17 @@ static bool is_singular(void *user, double t, const double *y)
     return fabs(t - singular) < 2 * closest;
 }
 
+static const struct ct_singularities singular_switching = {.time_to_next = singular_in,
+                                                           .is_near = is_singular,
+                                                           .set_crossing = set_crossing,
+                                                           .residual = residual,
+                                                           .passed = passed,
+                                                           .ends_motion = never_ends};
+
 static const struct ct_problem switching = {.ny = NY,
                                             .rhs = switched,
                                             .accepted = accepted,
-                                            .time_to_singular = singular_in,
-                                            .residual = residual,
-                                            .is_singular = is_singular,
+                                            .singular = &singular_switching,
                                             .nroot = 1,
                                             .root = root_beside,
                                             .event = event};
@@ -350,59 +386,6 @@ static void a_position_that_is_passed_by_is_not_crossed(void **unused)
     assert_true(r.stats.steps > 50);
 }
 
-static enum ct_eval project(void *user, double t, double *y)
-{
-    (void)user, (void)t, (void)y;
-    return CT_EVAL_OK;
-}
-
-static void set_crossing(void *user, bool is_crossing)
-{
-    (void)user, (void)is_crossing;
-}
-
-static double mismatch(void *user, double t, const double *y)
-{
-    (void)t, (void)y;
-    return ((const struct record *)user)->is_mismatched ? 1e-3 : 0;
-}
-
-// A method that leaves a part of its steps without evaluations puts the position there, and needs fewer of them.
-static void long_steps_stride_across(void **unused)
-{
-    (void)unused;
-    struct ct_problem p = problem;
-    p.project = project;
-    p.set_crossing = set_crossing;
-    for (int k = 3; k <= 14; k++) {
-        const double tolerance = pow(10, -k), least = 0.15 * 0.25; // of the reach
-        struct record strides = {0}, crosses = {0};
-        p.mismatch = mismatch;
-        assert_true(run(&strides, "dop853", p, 3, tolerance));
-        p.mismatch = NULL;
-        assert_true(run(&crosses, "dop853", p, 3, tolerance));
-        check_below("error", strides.worst, 10 * tolerance + 1e-13);
-        check_below("error of the bridge", strides.worst_bridged, 1e3 * tolerance + 1e-11);
-        assert_true(strides.nbridge > 10);
-        check_below("least distance", least * (1 - 1e-9), strides.nearest);
-        assert_true(k > 9 || strides.stats.evaluations < crosses.stats.evaluations);
-    }
-}
-
-static void a_motion_that_is_not_smooth_is_not_stridden_across(void **unused)
-{
-    (void)unused;
-    struct ct_problem p = problem;
-    p.project = project;
-    p.set_crossing = set_crossing;
-    p.mismatch = mismatch;
-    struct record strides = {0}, refused = {.is_mismatched = true};
-    assert_true(run(&strides, "dop853", p, 3, 1e-6) && run(&refused, "dop853", p, 3, 1e-6));
-    assert_true(refused.stats.rejected_steps > strides.stats.rejected_steps);
-    assert_true(refused.stats.evaluations > strides.stats.evaluations + 20); // of a crossing
-    check_below("error", refused.worst, 1e-5);
-}
-
 // What misses the constraints by less than 100 T may meet them from nearer by; what misses them by more is passed by at once.
 static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
 {
@@ -410,7 +393,9 @@ static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
     struct record near = {.left = 50 * tolerance, .grows = 14}, far = {.left = 300 * tolerance};
-    p.residual = missed;
+    struct ct_singularities x = singularities;
+    x.residual = missed;
+    p.singular = &x;
     assert_true(run(&near, "dopri5", p, 3, tolerance));
     assert_true(near.ncrossing > 1);
     check_below("error", near.worst, 10 * tolerance);
@@ -427,13 +412,15 @@ static void another_position_is_crossed_after_one_that_is_passed_by(void **unuse
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
     struct record two = {.trusted = 0.3}, one = {.left = 1, .wavers = 1.8};
-    p.time_to_singular = two_ahead;
-    p.residual = missed_before;
+    struct ct_singularities x = singularities;
+    x.time_to_next = two_ahead;
+    x.residual = missed_before;
+    p.singular = &x;
     assert_true(run(&two, "dopri5", p, 3, tolerance));
     assert_true(two.nbridge > 10);
     check_below("error", two.worst, 10 * tolerance);
-    p.time_to_singular = wavering;
-    p.residual = missed;
+    x.time_to_next = wavering;
+    x.residual = missed;
     p.rhs = sharp;
     assert_true(run(&one, "dopri5", p, 3, tolerance));
     assert_int_equal(one.ncrossing, 1);
@@ -451,8 +438,6 @@ int main(void)
         cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
         cmocka_unit_test(what_misses_a_little_is_tried_from_nearer_by),
         cmocka_unit_test(another_position_is_crossed_after_one_that_is_passed_by),
-        cmocka_unit_test(long_steps_stride_across),
-        cmocka_unit_test(a_motion_that_is_not_smooth_is_not_stridden_across),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,7 @@
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
 #include "solve/evaluator/switch_state.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #include <math.h>
 #include <string.h>

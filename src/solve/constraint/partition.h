@@ -89,6 +89,8 @@ double ct_partition_operations(const struct ct_partition *s);
 bool ct_partition_choose(struct ct_partition *s);
 /// u' into s->a and q' at the evaluator's input, in closed form where that is sound.
 enum ct_eval ct_partition_solve(struct ct_partition *s);
+/// The same at t, y, into the evaluator's input, too. CT_EVAL_RETRY if they are not finite.
+enum ct_eval ct_partition_accelerate_at(struct ct_partition *s, double t, const double *y);
 /// u' into s->a from M, Q, J, gam of the last ct_evaluator_dynamics.
 enum ct_eval ct_partition_accelerate(struct ct_partition *s);
 /// left (nu, out): the inertia against each independent speed that `follows` (nu) does not name, while those that it names are

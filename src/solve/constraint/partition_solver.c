@@ -223,3 +223,18 @@ bool ct_partition_solver_multipliers(struct ct_partition *s)
     memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
     return f->refined_remainder <= ct_left_most;
 }
+
+enum ct_eval ct_partition_accelerate_at(struct ct_partition *s, double t, const double *y)
+{
+    ct_evaluator_set(s->m, t, y);
+    const enum ct_eval e = ct_partition_solve(s);
+    if (e != CT_EVAL_OK)
+        return e;
+    double *a = s->m->input + s->m->at_a;
+    for (size_t i = 0; i < s->m->nu; i++) {
+        a[i] = s->a[i];
+        if (!isfinite(a[i]))
+            return CT_EVAL_RETRY;
+    }
+    return CT_EVAL_OK;
+}

@@ -147,7 +147,7 @@ static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
     if (e != CT_EVAL_OK)
         return e;
-    ct_rank_monitor_reset(r->singular, t, y, r->dy, r->pending);
+    ct_rank_monitor_reset(r->singular, t, y, r->dy);
     ct_evaluator_set(r->m, t, y);
     return CT_EVAL_OK;
 }

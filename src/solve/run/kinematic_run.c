@@ -34,7 +34,7 @@ static bool advance_step(struct ct_run *r, double t, double t1, const double *y,
     memcpy(out, y, r->ny * sizeof *y);
     if (!nu) // rows between driven coordinates alone: they hold or they do not
         return ct_partition_project(r->s, ct_run_time_before_event(r, t1), out) == CT_EVAL_OK;
-    if (ct_run_accelerate(r, ct_run_time_before_event(r, t), y) != CT_EVAL_OK)
+    if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, t), y) != CT_EVAL_OK)
         return false;
     for (size_t k = 0; k < nu; k++) {
         d[k] = h * (y[nq + k] + h / 2 * r->s->a[k]);
@@ -93,7 +93,7 @@ static bool advance_with_work(struct ct_run *r, double t, double t1, double *y)
         if (!advance_to(r, now, at, y))
             return false;
         now = at;
-        if (ct_run_accelerate(r, ct_run_time_before_event(r, at), y) != CT_EVAL_OK)
+        if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, at), y) != CT_EVAL_OK)
             return ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
                             "the equations are singular at t = %.9g", at);
         ct_run_find_multipliers(r);

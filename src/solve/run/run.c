@@ -3,28 +3,12 @@
 
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"
-#include "solve/singular/singular_dense_output.h"
 #include "solve/constraint/dae.h"
 
 #include <float.h>
 #include <string.h>
 
 // ---- evaluation -------------------------------------------------------------------------------------------
-
-enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y)
-{
-    ct_evaluator_set(r->m, t, y);
-    const enum ct_eval e = ct_partition_solve(r->s);
-    if (e != CT_EVAL_OK)
-        return e;
-    double *a = r->m->input + r->m->at_a;
-    for (size_t i = 0; i < r->m->nu; i++) {
-        a[i] = r->s->a[i];
-        if (!isfinite(a[i]))
-            return CT_EVAL_RETRY;
-    }
-    return CT_EVAL_OK;
-}
 
 void ct_run_find_multipliers(struct ct_run *r)
 {
@@ -36,7 +20,7 @@ static enum ct_eval rhs(void *user, double time, const double *y, double *dy)
 {
     struct ct_run *r = user;
     const double t = ct_run_time_before_event(r, time);
-    const enum ct_eval e = ct_run_accelerate(r, t, y);
+    const enum ct_eval e = ct_partition_accelerate_at(r->s, t, y);
     if (e != CT_EVAL_OK)
         return e;
     ct_evaluator_copy(dy, r->m->rate, r->m->nq);
@@ -64,31 +48,6 @@ static bool has_constraints(const struct ct_run *r)
     for (size_t i = 0; i < r->e->nq; i++)
         has |= r->e->q[i].quaternion == 0;
     return has;
-}
-
-static double time_to_singular(void *user, double *reach)
-{
-    const struct ct_run *r = user;
-    *reach = r->singular->reach;
-    return r->singular->time_to_singular;
-}
-
-static void set_crossing(void *user, bool is_crossing)
-{
-    struct ct_run *r = user;
-    ct_rank_monitor_set_crossing(r->singular, is_crossing);
-}
-
-static bool is_singular(void *user, double t, const double *y)
-{
-    struct ct_run *r = user;
-    return ct_rank_monitor_is_roundoff_limited(r->singular, ct_run_time_before_event(r, t), y);
-}
-
-static bool crossed(void *user, const struct ct_stepper_span *span, double begin, double t1)
-{
-    struct ct_run *r = user;
-    return ct_rank_monitor_record(r->singular, span, begin, t1, r->pending);
 }
 
 static double output_error(void *user, double t, const double *y, const double *e,
@@ -122,32 +81,6 @@ static double sensitive_output_error(void *user, double t, const double *y, cons
         return 0;
     return ct_output_error_of_sensitive(r->output_error, ct_run_time_before_event(r, t), y, e,
                                         tolerance, states);
-}
-
-static double residual(void *user, double t, const double *y)
-{
-    struct ct_run *r = user;
-    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
-    ct_evaluator_constraint(r->m);
-    return ct_vector_largest(r->m->phi, r->m->nrow) / r->s->scale;
-}
-
-// Its rows times the vector that they are combined with to nothing. Where rows are redundant, those that are kept may come to
-// depend before all do: positions are then better crossed from further away.
-static double mismatch(void *user, double t, const double *y)
-{
-    struct ct_run *r = user;
-    const struct ct_evaluator *m = r->m;
-    double log_det, sum = 0, *x = r->scratch;
-    if ((size_t)r->s->rank < m->nrow)
-        return 0;
-    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
-    ct_evaluator_constraint(r->m);
-    if (!ct_partition_dependence(r->s, x, &log_det))
-        return ct_vector_largest(m->phi, m->nrow) / r->s->scale;
-    for (int i = 0; i < r->s->rank; i++)
-        sum += x[i] * m->phi[r->s->row[i]];
-    return fabs(sum) / ct_vector_largest(x, (size_t)r->s->rank) / r->s->scale;
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
@@ -198,7 +131,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
         return CT_EVAL_RETRY;
     r->singular->retains_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
     const struct ct_rank_monitor_step step = {r->o->step > 0, is_across};
-    if (!ct_rank_monitor_predict(r->singular, t, y, dy, r->pending, &step)) {
+    if (!ct_rank_monitor_predict(r->singular, t, y, dy, &step)) {
         r->turning = turning_before;
         r->t_turning = t_before;
         return CT_EVAL_RETRY;
@@ -317,8 +250,9 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->pending = INFINITY;
     r->m = ct_evaluator_create(a, model, e);
     r->s = ct_partition_create(a, ctx, r->m);
-    r->singular = ct_rank_monitor_create(a, r->m, r->s);
-    r->singular_dense_output = ct_singular_dense_output_create(a, r->m);
+    r->singular = ct_rank_monitor_create(a, r->m, r->s, &r->pending);
+    r->singularities = ct_singular_hooks(r->singular);
+    r->singular_dense_output = ct_singular_dense_output_create(a, r->singular);
     r->ny = r->m->nq + r->m->nu + 1;
     r->y = CT_NEWN(a, double, r->ny);
     r->dy = CT_NEWN(a, double, r->ny);
@@ -385,7 +319,7 @@ const double *ct_run_state(const struct ct_run *r)
 
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out)
 {
-    const enum ct_eval e = ct_run_accelerate(r, t, y);
+    const enum ct_eval e = ct_partition_accelerate_at(r->s, t, y);
     if (e != CT_EVAL_OK)
         return e;
     if (r->has_lam_results)
@@ -419,7 +353,7 @@ static void update_energy_balance(struct ct_run *r, const double *y)
 // Steps that began before the start have to come to it.
 static bool has_come_to_start(struct ct_run *r, const double *y)
 {
-    return r->started || !(r->t0 < 0) || ct_run_meets_start(r, y)
+    return r->started || !(r->t0 < 0) || ct_singular_meets_start(r->assembled, y, r->ny)
         || ct_error(
                r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_STEP_SINGULAR,
                "the run starts near a singular configuration, and the motion that comes from "
@@ -482,8 +416,9 @@ static bool at_singular_sample(void *user, double t, const double *y,
                                const struct ct_gap_interpolation *b)
 {
     struct ct_run *r = user;
-    return ct_run_singular_dense_output(r, t, y, b, r->value) ? give_row(r, t, y)
-                                                              : singular_at(r, t);
+    return ct_singular_dense_output(r->singular_dense_output, t, y, b, r->value)
+             ? give_row(r, t, y)
+             : singular_at(r, t);
 }
 
 bool ct_run_at_step(void *user, double t, const double *y)
@@ -522,7 +457,7 @@ void ct_run_find_undetermined(struct ct_run *r, double t, const double *y, bool 
 {
     for (size_t i = 0; i < r->e->nresult; i++)
         result[i] |= r->e->result[i].undetermined;
-    if (r->s->rank == (int)r->m->nrow || ct_run_accelerate(r, t, y) != CT_EVAL_OK)
+    if (r->s->rank == (int)r->m->nrow || ct_partition_accelerate_at(r->s, t, y) != CT_EVAL_OK)
         return;
     ct_run_find_multipliers(r);
     ct_evaluator_constraint(r->m);
@@ -598,19 +533,47 @@ static double input_limited_step(void *user, double t, double h)
     return ct_input_sampling_limit_step(&r->input_sampling, r->method, t, h, r->o->rtol);
 }
 
+bool ct_run_starts_near_singular(struct ct_run *r)
+{
+    return ct_singular_starts_near(r->singular, r->y, r->dy);
+}
+
+// A start in or near a singular configuration: steps begin a little before it.
 bool ct_run_start_steps(struct ct_run *r)
 {
     const struct ct_problem p = {.user = r,
                                  .ny = (int)r->ny,
-                                 .nq = (int)r->m->nq,
-                                 .nu = (int)r->m->nu,
                                  .rhs = rhs,
                                  .project = project,
-                                 .set_crossing = set_crossing,
+                                 .singular = &r->singularities,
                                  .accuracy = r->o->output_rtol,
-                                 .residual = residual,
-                                 .mismatch = mismatch};
-    return ct_run_singular_initial_step(r, &p);
+                                 .nq = (int)r->m->nq,
+                                 .nu = (int)r->m->nu,
+                                 .nroot = r->nroot,
+                                 .root = ct_run_root};
+    struct ct_singular_start start = {.ctx = r->ctx,
+                                      .arena = r->arena,
+                                      .file = r->model->file,
+                                      .singular = r->singular,
+                                      .m = r->m,
+                                      .s = r->s,
+                                      .p = &p,
+                                      .stats = &r->stats,
+                                      .assembled = r->assembled,
+                                      .is_given = r->is_given,
+                                      .joints = r->singular_joints,
+                                      .rtol = r->o->rtol,
+                                      .atol = r->o->atol,
+                                      .output_rtol = r->o->output_rtol,
+                                      .is_fixed = r->o->step > 0,
+                                      .is_implicit = r->method->is_implicit,
+                                      .y = r->y,
+                                      .dy = r->dy,
+                                      .stage = r->stage,
+                                      .scratch = r->scratch};
+    const bool ok = ct_singular_initial_step(&start);
+    r->t0 = start.t0;
+    return ok;
 }
 
 // Accelerations of a single freedom whose inertia is what next to nothing is left of others err by eps over that part.  (8.39)
@@ -647,13 +610,7 @@ void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched)
         .accepted = accepted,
         .longest_step = r->has_turns ? ct_run_longest_step : NULL,
         .input_limited_step = r->e->ntime_function ? input_limited_step : NULL,
-        .time_to_singular = r->m->nrow ? time_to_singular : NULL,
-        .locks = r->m->nrow ? ct_run_locks : NULL,
-        .set_crossing = set_crossing,
-        .is_singular = is_singular,
-        .crossed = crossed,
-        .residual = residual,
-        .mismatch = (size_t)r->s->rank < r->m->nrow ? NULL : mismatch,
+        .singular = r->m->nrow ? &r->singularities : NULL,
         .nroot = r->nroot,
         .root = ct_run_root,
         .next_time_event = ct_run_next_event,

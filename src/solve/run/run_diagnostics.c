@@ -145,6 +145,34 @@ static void name_singular_start(struct ct_run *r)
                 r->singular_joints);
 }
 
+void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
+{
+    enum { MOST = 3 };
+    int n = 0;
+    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
+    ct_program_run(&r->m->driver, r->m->input);
+    for (size_t i = 0; i < r->e->ndriver && n < MOST; i++) {
+        const struct ct_driver *d = &r->e->driver[i];
+        if (r->m->driver.out[2 * i + 1] == 0)
+            continue; // it holds still
+        ct_note(r->ctx, d->mark, "'%s' is driven here, to %.6g at t = %.6g",
+                r->model->joint[d->joint].name, r->m->driver.out[2 * i], t);
+        n++;
+    }
+    // drivers of joints that are chords stand in rows
+    for (size_t i = 0; i < r->model->njoint && n < MOST; i++) {
+        const struct ct_instance *joint = &r->model->joint[i];
+        bool is_known = !joint->cls->motion || !ct_instance_value(joint, "motion")->given;
+        for (size_t k = 0; k < r->e->ndriver; k++)
+            is_known |= r->e->driver[k].joint == (int)i;
+        if (is_known)
+            continue;
+        ct_note(r->ctx, ct_instance_value(joint, "motion")->mark, "'%s' is driven here",
+                joint->name);
+        n++;
+    }
+}
+
 // Steps of order 2 come to round-off long before those of the others do, near singular configurations first.
 static void advise_order(struct ct_run *r)
 {

@@ -1,10 +1,9 @@
 // A run from inside: what its parts share. For run.c and the files beside it that it is made of.
 //
-//     run.c  evaluation, creation, samples      rank_monitor.c  singular configurations
+//     run.c  evaluation, creation, samples
 //     event.c     events, jumps of driven rates      kinematic_run.c    motions driven all through
 //     impulse.c      speeds after those
 //     method_switch.c    the choice of the method, when the motion turns stiff
-//     singular_initial_step.c   starts in singular configurations
 //     step_forecast.c    what is said of runs that take long
 //     run_diagnostics.c    and of those that end before their time
 //     roundoff_limit.c     outputs that have few digits
@@ -17,7 +16,7 @@
 #include "solve/output_error/output_error.h"
 #include "solve/evaluator/switch_state.h"
 #include "solve/run/run.h"
-#include "solve/singular/rank_monitor.h"
+#include "solve/singular/singular.h"
 
 #include <math.h>
 
@@ -46,11 +45,13 @@ struct ct_run {
     struct ct_run_report *report;
     double energy0, energy_scale;
     struct ct_rank_monitor *singular;
+    struct ct_singularities singularities; // hooks of that monitor
     struct ct_singular_dense_output *singular_dense_output;
     struct ct_input_sampling input_sampling;
     double pending;            // time of the event ahead; INFINITY if there is none
     double turning, t_turning; // how fast followed angles turn [rad/s], and when that was
-    double t0; // where steps begin: before 0 if the start is in a singular configuration
+    double
+        t0; // where steps begin: before 0 if the start is in or near a singular configuration
     bool started;
     // the choice of the method
     const struct ct_method *method;       // that steps now
@@ -86,8 +87,6 @@ static inline double ct_run_time_before_event(const struct ct_run *r, double t)
     return t < r->pending ? t : ct_time_just_before(t, r->pending);
 }
 
-/// u' into the partitioning's a and the evaluator's input, q' into its rate.
-enum ct_eval ct_run_accelerate(struct ct_run *r, double t, const double *y);
 /// Multipliers that belong to them, into the evaluator's input.
 void ct_run_find_multipliers(struct ct_run *r);
 double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y);
@@ -127,8 +126,6 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
                           const signed char *crossed, bool is_time);
 /// As ct_run_refuse_sticking, where the derivative at y, dy, is known.
 enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy);
-/// y at t, `in` before a position that no step has crossed: does the mechanism lock there?  (lock.c)
-bool ct_run_locks(void *user, double t, const double *y, double in);
 /// Notes that name the drivers that move at t, y, and where they are.
 void ct_run_note_drivers(struct ct_run *r, double t, const double *y);
 /// With the modes set: CT_EVAL_FATAL with CT_E_STUCK where a force on both sides of its switch leads back to it (dry
@@ -142,14 +139,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
 /// At the last ct_evaluator_constraint. False with CT_E_DRIVER_JUMP.
 bool ct_run_chords_are_closed(struct ct_run *r, double t);
 
-/// From a start in a singular configuration, with speeds that tell which motion is meant, to a little before it: y, t0. False with
-/// CT_E_STEP_OPEN where speeds belong to none. From one beside it the same where the position can be crossed; else steps begin
-/// there. Nothing changes elsewhere.
-bool ct_run_singular_initial_step(struct ct_run *r, const struct ct_problem *p);
-/// The same with the problem that it asks for.
+/// Brings the first state to where steps begin: in or near a singular configuration a little before it. False with a diagnostic.
 bool ct_run_start_steps(struct ct_run *r);
-/// Is y, at t = 0, the start, as well as that is known?
-bool ct_run_meets_start(const struct ct_run *r, const double *y);
 
 /// For ct_integrate: tells that the end is many steps away, once.
 void ct_run_forecast(void *user, double t, const double *y, double step, double to_come);

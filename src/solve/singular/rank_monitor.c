@@ -1,4 +1,8 @@
-// See rank_monitor.h: what is ahead.
+// Rank monitor: predicts the next singular configuration ahead of a motion. See singular.h.
+//
+// The smallest pivot of J, as rows and columns are chosen, vanishes at a singular configuration about linearly in time. Its zero is
+// extrapolated by secants along the motion. A change of sign of the test function (singularity_test_function.c) tells
+// that a step has passed over one.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -10,11 +14,11 @@
 #include <string.h>
 
 struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct_evaluator *m,
-                                               struct ct_partition *s)
+                                               struct ct_partition *s, const double *pending)
 {
     struct ct_rank_monitor *w = CT_NEW(arena, struct ct_rank_monitor);
     const size_t kept = m->nrow ? CT_MOST_SINGULAR : 0;
-    *w = (struct ct_rank_monitor){.m = m, .s = s};
+    *w = (struct ct_rank_monitor){.m = m, .s = s, .pending = pending};
     w->y = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->d = CT_NEWN(arena, double, m->nu + 1);
     w->x = CT_NEWN(arena, double, m->nrow + 1);
@@ -97,8 +101,7 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
     return is_roundoff_limited(w, ct_rank_monitor_pivot(w, t, y));
 }
 
-// The smallest pivot falls about linearly towards a singular configuration. Time to where it will vanish, by secants along
-// the motion as the accelerations of now continue it. INFINITY if it rises.
+// Time to the zero of the smallest pivot, by secants along the motion with its present accelerations. INFINITY if the pivot rises.
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
@@ -124,12 +127,12 @@ static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_t
 }
 
 double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
-                                const double *dy, double pending, double s)
+                                const double *dy, double s)
 {
-    const struct ct_rank_test a = {t, pending, y, dy};
+    const struct ct_rank_test a = {t, *w->pending, y, dy};
     if (!ct_partition_has_pivot(w->s))
         return INFINITY;
-    const double now = ct_rank_monitor_pivot(w, ct_time_just_before(t, pending), y);
+    const double now = ct_rank_monitor_pivot(w, ct_time_just_before(t, a.pending), y);
     const double behind = ct_rank_monitor_pivot_after(w, &a, -s),
                  ahead = ct_rank_monitor_pivot_after(w, &a, s);
     const double way = ct_vector_max_norm(w->d, w->m->nu);
@@ -292,7 +295,7 @@ static void keep(struct ct_rank_monitor *w, const struct ct_rank_test *at, const
     w->farthest = fmax(w->farthest, fmax(w->most, l->now));
 }
 
-// Where a step of another kind than crossings has come: what is told of it at the end of the run.
+// Notes, for the end of the run, how near a step that is no crossing has come to a singular configuration.
 static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
 {
     if (l->is_another)
@@ -304,10 +307,9 @@ static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
 }
 
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
-                             const double *dy, double pending,
-                             const struct ct_rank_monitor_step *step)
+                             const double *dy, const struct ct_rank_monitor_step *step)
 {
-    const struct ct_rank_test at = {t, pending, y, dy};
+    const struct ct_rank_test at = {t, *w->pending, y, dy};
     const double dt = t - w->t;
     if (!ct_partition_has_pivot(w->s) || !(dt > 0))
         return true;
@@ -322,7 +324,7 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     if (step->is_fixed && !l.is_another && is_steep(w, dt))
         l.is_another = ct_rank_monitor_is_crossed(w, &at, w->pivot, l.now);
     if (!step->is_across) {
-        if (!step->is_fixed && (return_rows(w, pending) || is_to_be_shorter(w, &l)))
+        if (!step->is_fixed && (return_rows(w, at.pending) || is_to_be_shorter(w, &l)))
             return false;
         note_step(w, t, &l);
     }
@@ -333,15 +335,15 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
 }
 
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
-                           const double *dy, double pending)
+                           const double *dy)
 {
-    const struct ct_rank_test ahead = {t, pending, y, dy};
+    const struct ct_rank_test ahead = {t, *w->pending, y, dy};
     w->there->rank = 0;
     w->pivot = 0;
     keep_speeds(w, &ahead); // a look back finds the place, and these
     if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
         return;
-    find_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, pending), y));
+    find_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
 }
 
 void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,

@@ -1,4 +1,4 @@
-// See rank_monitor.h: what has been passed, and where steps have ended.
+// Rank monitor: finds and records the singular configurations on a crossing, for the report and for dense output. See singular.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
@@ -82,7 +82,7 @@ static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p,
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
-// The same near where the pivot is least.
+// Where the smallest pivot is least on the way, if it is zero there; else NaN.
 static double find_least(struct ct_rank_monitor *w, const struct passage *p, double zero)
 {
     double least = INFINITY, at = 0;
@@ -97,27 +97,18 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-struct window { // of a way, parts of it; and where the pivot is least in it
-    double from, to, least;
-};
-
-// The same wherever sides change within. theta (PARTS, out); returns how many there are.
+// Where the test function changes its sign. theta (PARTS, out); returns how many such places there are.
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                        struct window *in, double *theta)
+                        double *theta)
 {
-    const double part = (in->to - in->from) / PARTS, near = part / 4;
+    const double part = 1.0 / PARTS, near = part / 4;
     struct ct_tangent_basis *last = w->along, *next = w->here;
     int n = 0;
-    double before = pivot_on(w, p, in->from), least = before;
-    in->least = in->from;
+    double before = pivot_on(w, p, 0);
     ct_tangent_basis_find(w->s, last);
     for (int i = 1; i <= PARTS; i++) {
-        const double at = in->from + i * part, behind = pivot_on(w, p, at);
+        const double at = i * part, behind = pivot_on(w, p, at);
         ct_tangent_basis_find(w->s, next);
-        if (behind < least) {
-            least = behind;
-            in->least = at;
-        }
         if (ct_singularity_test_sign_changed(w->s, last, next)) {
             theta[n] = narrow(w, p, at - behind / (before + behind) * part, near);
             n += pivot_on(w, p, theta[n]) < zero;
@@ -128,23 +119,6 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
         before = behind;
     }
     return n;
-}
-
-// Several next to each other, which leave the side as it was, around a place.
-static int find_close(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                      double around, double *theta)
-{
-    enum { DEPTH = 7 }; // down to 1e-7
-    struct window in = {.least = around};
-    double half = 1.0 / PARTS;
-    for (int i = 0; i < DEPTH; i++, half *= 2.0 / PARTS) {
-        in.from = in.least - half;
-        in.to = in.least + half;
-        const int n = find_changes(w, p, zero, &in, theta);
-        if (n)
-            return n;
-    }
-    return 0;
 }
 
 // Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
@@ -205,13 +179,10 @@ static void find_positions(struct ct_rank_monitor *w, const struct passage *p, s
     const double vanished
         = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
     const double zero = vanished * pivot_on(w, p, 0);
-    struct window whole = {0, 1, 0};
     double theta[PARTS];
     if (find_foreseen(w, p, zero, f))
         return;
-    int n = find_changes(w, p, zero, &whole, theta);
-    if (!n)
-        n = find_close(w, p, zero, f->n ? f->theta[0] : whole.least, theta);
+    int n = find_changes(w, p, zero, theta);
     if (!n && !f->n) {
         theta[0] = find_least(w, p, zero);
         n = isfinite(theta[0]);
@@ -254,9 +225,9 @@ static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
-                            double begin, double t1, double pending)
+                            double begin, double t1)
 {
-    const struct passage p = {.span = span, .begin = begin, .pending = pending};
+    const struct passage p = {.span = span, .begin = begin, .pending = *w->pending};
     struct found f = {.n = 0};
     bool has_passed = false;
     find_positions(w, &p, &f);

@@ -1,5 +1,14 @@
-// See singular_dense_output.h.
-#include "solve/singular/singular_dense_output.h"
+// Dense output across a singular configuration: accelerations and multipliers in the gap of a crossing, from what they are at its stages.
+//
+// Accelerations are smooth across a singular configuration, and interpolated. Multipliers are not: what bears on the motion that is blocked
+// there but for the position, forces that do not vanish, is carried by rows that come to depend, and grows like 1/(t - t_k) towards a
+// position at t_k. Less that part they are smooth:
+//
+//     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
+//
+// with the product in brackets, and P, interpolated between stages, and those positions that stages tell of. Results that are linear in multipliers are interpolated so themselves:
+// what y errs by in the gap times loads without bound would be seen in those that have no part in them.
+#include "solve/singular/singular.h"
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
@@ -8,9 +17,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = CT_CROSSING_STAGES, MODELS = 1 << CT_MOST_POLES, CHECKED = 2 };
+enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// With poles at some of the positions: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
+// With poles at the positions, or without: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
 // what they are.
 struct model {
     double weight[N], check[CHECKED][N];
@@ -23,9 +32,11 @@ struct numbers {
 };
 
 struct ct_singular_dense_output {
-    int n; // poles
+    const struct ct_rank_monitor *w;
+    double *stage; // (ny)
+    int n;         // poles
     double pole[CT_MOST_POLES];
-    struct model model[MODELS]; // by the set of its poles
+    struct model smooth, singular; // without poles, with all of them
     struct numbers a, lam, result;
     bool *is_linear; // (nresult) in multipliers
     bool any_linear;
@@ -62,9 +73,12 @@ static void find_linear(struct ct_singular_dense_output *s, struct ct_arena *a,
 }
 
 struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena *a,
-                                                                 const struct ct_evaluator *m)
+                                                                 struct ct_rank_monitor *w)
 {
+    const struct ct_evaluator *m = w->m;
     struct ct_singular_dense_output *s = CT_NEW(a, struct ct_singular_dense_output);
+    s->w = w;
+    s->stage = CT_NEWN(a, double, m->nq + m->nu + 1);
     s->a = create_numbers(a, m->nu);
     s->lam = create_numbers(a, m->nrow);
     s->result = create_numbers(a, m->e->nresult);
@@ -91,53 +105,49 @@ static double lagrange(const struct ct_gap_interpolation *b, const bool *some, i
     return weight;
 }
 
-// Weights of the stages for t, with these poles.
+// Weights of the stages for t, with the first n poles.
 static void find_weights(const struct ct_singular_dense_output *s,
-                         const struct ct_gap_interpolation *b, const bool *some, unsigned poles,
+                         const struct ct_gap_interpolation *b, const bool *some, int n,
                          double t, double *weight)
 {
     double plain[N];
     for (int j = 0; j < N; j++)
         weight[j] = plain[j] = lagrange(b, some, j, t);
-    for (int k = 0; k < s->n; k++) {
-        if (!(poles & 1u << k))
-            continue;
+    for (int k = 0; k < n; k++) {
         double factor = 1 / distance_to_pole(t, s->pole[k]);
         for (int j = 0; j < N; j++)
             factor -= some[j] ? plain[j] / distance_to_pole(b->t[j], s->pole[k]) : 0;
         for (int j = 0; j < N; j++) {
             double residue = lagrange(b, some, j, s->pole[k]) * (b->t[j] - s->pole[k]);
-            for (int l = 0; l < s->n; l++)
-                if (l != k && poles & 1u << l)
+            for (int l = 0; l < n; l++)
+                if (l != k)
                     residue *= (b->t[j] - s->pole[l]) / (s->pole[k] - s->pole[l]);
             weight[j] += factor * residue;
         }
     }
 }
 
-static void find_models(struct ct_singular_dense_output *s,
-                        const struct ct_gap_interpolation *b, double t)
+// m (out): with the first n poles, for t.
+static void find_model(const struct ct_singular_dense_output *s,
+                       const struct ct_gap_interpolation *b, double t, int n, struct model *m)
 {
     bool all[N], others[N];
     for (int j = 0; j < N; j++) {
         all[j] = true;
         others[j] = j != N / 2 - 1 && j != N / 2;
     }
-    for (unsigned poles = 0; poles < 1u << s->n; poles++) {
-        struct model *m = &s->model[poles];
-        find_weights(s, b, all, poles, t, m->weight);
-        for (int c = 0; c < CHECKED; c++) {
-            const int j = N / 2 - 1 + c;
-            find_weights(s, b, others, poles, b->t[j], m->check[c]);
-            m->check[c][j] -= 1;
-        }
+    find_weights(s, b, all, n, t, m->weight);
+    for (int c = 0; c < CHECKED; c++) {
+        const int j = N / 2 - 1 + c;
+        find_weights(s, b, others, n, b->t[j], m->check[c]);
+        m->check[c][j] -= 1;
     }
 }
 
 // Positions that are next to each other are one.
-static void find_poles(struct ct_singular_dense_output *s, const struct ct_rank_monitor *w,
-                       const struct ct_gap_interpolation *b)
+static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
+    const struct ct_rank_monitor *w = s->w;
     const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
@@ -159,22 +169,16 @@ static double error_of(const struct model *m, const double *at)
     return error;
 }
 
-// A pole belongs to a number if the stages tell of it.
+// A number has poles if the stages tell of them: with poles they predict the two stages beside the gap
+// ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
     const double clearly = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;
-        const struct model *best = &s->model[0];
-        double least = error_of(best, at);
-        for (unsigned poles = 1; has_poles && poles < 1u << s->n; poles++) {
-            const double error = error_of(&s->model[poles], at);
-            if (error < clearly * least) {
-                least = error;
-                best = &s->model[poles];
-            }
-        }
-        x->value[i] = ct_vector_dot(best->weight, at, N);
+        const bool is_singular
+            = has_poles && error_of(&s->singular, at) < clearly * error_of(&s->smooth, at);
+        x->value[i] = ct_vector_dot((is_singular ? &s->singular : &s->smooth)->weight, at, N);
     }
 }
 
@@ -187,36 +191,39 @@ static const double *results(struct ct_evaluator *m, const double *a, const doub
     return m->result.out;
 }
 
-static bool note_stage(struct ct_run *r, const struct ct_gap_interpolation *b, int j)
+static bool note_stage(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b,
+                       int j)
 {
-    struct ct_singular_dense_output *s = r->singular_dense_output;
-    memcpy(r->stage, b->y + (size_t)j * r->ny, r->ny * sizeof *r->stage);
-    if (ct_partition_project(r->s, b->t[j], r->stage) != CT_EVAL_OK
-        || ct_run_accelerate(r, b->t[j], r->stage) != CT_EVAL_OK)
+    struct ct_partition *p = s->w->s;
+    const size_t ny = p->m->nq + p->m->nu + 1;
+    memcpy(s->stage, b->y + (size_t)j * ny, ny * sizeof *s->stage);
+    if (ct_partition_project(p, b->t[j], s->stage) != CT_EVAL_OK
+        || ct_partition_accelerate_at(p, b->t[j], s->stage) != CT_EVAL_OK)
         return false;
-    ct_partition_multipliers(r->s);
-    note(&s->a, r->s->a, j);
-    note(&s->lam, r->s->lam, j);
+    ct_partition_multipliers(p);
+    note(&s->a, p->a, j);
+    note(&s->lam, p->lam, j);
     if (s->any_linear)
-        note(&s->result, results(r->m, r->s->a, r->s->lam), j);
+        note(&s->result, results(p->m, p->a, p->lam), j);
     return true;
 }
 
-bool ct_run_singular_dense_output(struct ct_run *r, double t, const double *y,
-                                  const struct ct_gap_interpolation *b, double *value)
+bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, const double *y,
+                              const struct ct_gap_interpolation *b, double *value)
 {
-    struct ct_singular_dense_output *s = r->singular_dense_output;
-    find_poles(s, r->singular, b);
-    find_models(s, b, t);
+    struct ct_evaluator *m = s->w->m;
+    find_poles(s, b);
+    find_model(s, b, t, 0, &s->smooth);
+    find_model(s, b, t, s->n, &s->singular);
     for (int j = 0; j < N; j++)
-        if (!note_stage(r, b, j))
+        if (!note_stage(s, b, j))
             return false;
     take(s, &s->a, false);
     take(s, &s->lam, true);
     take(s, &s->result, true);
-    ct_evaluator_set(r->m, t, y);
-    memcpy(value, results(r->m, s->a.value, s->lam.value), r->e->nresult * sizeof *value);
-    for (size_t i = 0; i < r->e->nresult; i++)
+    ct_evaluator_set(m, t, y);
+    memcpy(value, results(m, s->a.value, s->lam.value), m->e->nresult * sizeof *value);
+    for (size_t i = 0; i < m->e->nresult; i++)
         if (s->is_linear[i])
             value[i] = s->result.value[i];
     return true;

@@ -1,13 +1,13 @@
-// A run that starts in a singular configuration with speeds, or just beside one: from a little before it.
+// First step of a run that starts in a singular configuration with speeds, or near one: backward collocation.
 //
-// In the position rows depend and accelerations cannot be found, but speeds that belong to one of the motions through it,
+// In a singular configuration rows of J are dependent and accelerations cannot be computed. Speeds of one of the motions through it satisfy
 //
 //     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
 //
-// tell which one it is. Beside it they are known to be those of a motion, but steps from there to where a crossing begins, or one that
-// begins there, would be among round-off errors. Collocation centred on the position finds the state half a step before it; from there the
-// run goes on as any that comes to such a position, and crosses it.
-#include "solve/run/run_internal.h"
+// and select that motion. Near a singular configuration accelerations exist, but have too few digits for steps. Collocation
+// centred on the singular configuration finds the state half a step before it. The run begins there and crosses the
+// configuration as any other run does. Collocation: crossing.h.
+#include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
@@ -30,7 +30,6 @@ static const double exact = 1e-12, unfelt = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct initial_step {
-    const struct ct_problem *p;
     void *work;
     double u, a, ua;    // |u|, |u'|, u . u'
     double in;          // time to the position, below 0 behind it
@@ -62,7 +61,7 @@ static double speed_at(const struct initial_step *l, double t)
 }
 
 // How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no motion leave much more.
-static double off_constraints(struct ct_run *r, double t, const double *y)
+static double off_constraints(struct ct_singular_start *r, double t, const double *y)
 {
     ct_evaluator_set(r->m, t, y);
     ct_evaluator_constraint(r->m);
@@ -70,10 +69,10 @@ static double off_constraints(struct ct_run *r, double t, const double *y)
 }
 
 // Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h after it.
-static bool choose_near_singular(struct ct_run *r, double h, const double *y)
+static bool choose_near_singular(struct ct_singular_start *r, double h, const double *y)
 {
     const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
-    memcpy(r->stage, y, r->ny * sizeof *y);
+    memcpy(r->stage, y, (size_t)r->p->ny * sizeof *y);
     for (size_t k = 0; k < r->m->nu; k++)
         r->scratch[k] = h * y[r->m->nq + k];
     ct_evaluator_retract(r->m, r->stage, r->scratch);
@@ -95,53 +94,50 @@ static bool choose_near_singular(struct ct_run *r, double h, const double *y)
 // other motions are as far as speeds are large.
 static const double meant = 1e-4;
 
-// How far the first n of y are from it.
-static double miss(const struct ct_run *r, const double *y, size_t n)
+// How far y (ny) is from it, the work aside.
+static double miss(const double *assembled, const double *y, size_t ny)
 {
     double most = 0;
-    for (size_t i = 0; i < n; i++)
-        most = fmax(most, fabs(y[i] - r->assembled[i]));
-    return most / ct_vector_largest(r->assembled, r->ny);
+    for (size_t i = 0; i + 1 < ny; i++)
+        most = fmax(most, fabs(y[i] - assembled[i]));
+    return most / ct_vector_largest(assembled, ny);
 }
 
-static bool is_near_start(const struct ct_run *r, const double *y, size_t n)
+bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny)
 {
-    return miss(r, y, n) <= meant;
-}
-
-bool ct_run_meets_start(const struct ct_run *r, const double *y)
-{
-    return is_near_start(r, y, r->ny - 1);
+    return miss(assembled, y, ny) <= meant;
 }
 
 // Does the step from l->before lead across, and to the start on its way? r->stage (out): what it makes of the start.
-static bool leads_across(struct ct_run *r, const struct initial_step *l, const struct across *c)
+static bool leads_across(struct ct_singular_start *r, const struct initial_step *l,
+                         const struct across *c)
 {
-    const double t = begin_of(c), most = ct_vector_largest(l->before, r->ny),
-                 roundoff = fmax(ct_crossing_roundoff, unfelt * r->o->output_rtol);
-    const struct ct_tolerance tolerance = {r->o->rtol, fmax(r->o->atol, roundoff * most)};
+    const double t = begin_of(c), most = ct_vector_largest(l->before, (size_t)r->p->ny),
+                 roundoff = fmax(ct_crossing_roundoff, unfelt * r->output_rtol);
+    const struct ct_tolerance tolerance = {r->rtol, fmax(r->atol, roundoff * most)};
     double error;
-    if (l->p->rhs(r, t, l->before, r->dy) != CT_EVAL_OK
-        || ct_crossing.step(l->p, t, c->h, l->before, r->dy, &tolerance, l->end, l->dend,
-                            &error, l->work, &r->stats)
+    if (r->p->rhs(r->p->user, t, l->before, r->dy) != CT_EVAL_OK
+        || ct_crossing.step(r->p, t, c->h, l->before, r->dy, &tolerance, l->end, l->dend,
+                            &error, l->work, r->stats)
                != CT_EVAL_OK
         || !(error <= 1))
         return false;
-    ct_crossing.dense(l->p, c->h, -t / c->h, l->before, l->end, l->work, r->stage);
-    return ct_run_meets_start(r, r->stage);
+    ct_crossing.dense(r->p, c->h, -t / c->h, l->before, l->end, l->work, r->stage);
+    return ct_singular_meets_start(r->assembled, r->stage, (size_t)r->p->ny);
 }
 
 // Sweeps of the step into l->before, down to a part of the largest state or, where they come to round-off before, to ten times as
 // much and so on. Returns what the step errs by, or INFINITY.
-static double collocate_backwards(struct ct_run *r, const struct initial_step *l,
+static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
                                   const struct across *c)
 {
-    const double *y = r->assembled, largest = ct_vector_largest(y, r->ny), t = begin_of(c);
+    const double *y = r->assembled, largest = ct_vector_largest(y, (size_t)r->p->ny),
+                 t = begin_of(c);
     double error, part = exact;
     while (part <= l->most) {
         const struct ct_tolerance tolerance = {part, part * largest};
-        if (ct_crossing_initial_step(l->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
-                                     &error, l->work, &r->stats)
+        if (ct_crossing_initial_step(r->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
+                                     &error, l->work, r->stats)
             == CT_EVAL_OK)
             return fmax(error, 1) * part;
         part *= 10;
@@ -150,16 +146,18 @@ static double collocate_backwards(struct ct_run *r, const struct initial_step *l
 }
 
 // The state where a step begins, with the digits that its stages have.
-static bool put_on_constraints(struct ct_run *r, const struct initial_step *l, double t)
+static bool put_on_constraints(struct ct_singular_start *r, const struct initial_step *l,
+                               double t)
 {
-    l->p->set_crossing(r, true);
-    const enum ct_eval e = l->p->project(r, t, l->before);
-    l->p->set_crossing(r, false);
+    r->p->singular->set_crossing(r->p->singular->user, true);
+    const enum ct_eval e = r->p->project(r->p->user, t, l->before);
+    r->p->singular->set_crossing(r->p->singular->user, false);
     return e == CT_EVAL_OK;
 }
 
 // The state where a step across begins, into l->before, and what that errs by; INFINITY where it does not lead across.
-static void look_back(struct ct_run *r, const struct initial_step *l, struct across *c)
+static void look_back(struct ct_singular_start *r, const struct initial_step *l,
+                      struct across *c)
 {
     const double t = begin_of(c);
     c->error = INFINITY;
@@ -167,7 +165,7 @@ static void look_back(struct ct_run *r, const struct initial_step *l, struct acr
         return;
     ct_evaluator_set(r->m, 0, r->assembled);
     ct_evaluator_dynamics(r->m);
-    memset(r->dy, 0, r->ny * sizeof *r->dy);
+    memset(r->dy, 0, (size_t)r->p->ny * sizeof *r->dy);
     ct_evaluator_copy(r->dy, r->m->rate, r->m->nq);
     const double error = collocate_backwards(r, l, c);
     if (error <= l->most && off_constraints(r, t, l->before) <= ct_crossing_mismatch_limit
@@ -176,13 +174,14 @@ static void look_back(struct ct_run *r, const struct initial_step *l, struct acr
 }
 
 // Does J keep its rank on either side of the gap? Near a position among the stages samples would be among round-off errors.
-static bool keeps_rank(struct ct_run *r, const struct initial_step *l, const struct across *c)
+static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
+                       const struct across *c)
 {
     const struct ct_gap_interpolation b
         = ct_crossing_interpolation(l->work, begin_of(c), c->h, 0.5);
     struct ct_tangent_basis *there = l->view[0], *here = l->view[1];
     for (int k = 0; k < b.n; k++) {
-        ct_evaluator_set(r->m, b.t[k], b.y + (size_t)k * r->ny);
+        ct_evaluator_set(r->m, b.t[k], b.y + (size_t)k * (size_t)r->p->ny);
         ct_evaluator_constraint(r->m);
         ct_partition_pivot(r->s);
         ct_tangent_basis_find(r->s, here);
@@ -196,12 +195,13 @@ static bool keeps_rank(struct ct_run *r, const struct initial_step *l, const str
 }
 
 // Do root functions keep their signs? What switches on the way is another motion.
-static bool keeps_sides(struct ct_run *r, const struct initial_step *l, double t)
+static bool keeps_sides(struct ct_singular_start *r, const struct initial_step *l, double t)
 {
-    double *now = CT_NEWN(r->arena, double, 2 * (size_t)r->nroot + 1), *then = now + r->nroot;
-    ct_run_root(r, 0, r->assembled, now);
-    ct_run_root(r, t, l->before, then);
-    for (int i = 0; i < r->nroot; i++)
+    double *now = CT_NEWN(r->arena, double, 2 * (size_t)r->p->nroot + 1),
+           *then = now + r->p->nroot;
+    r->p->root(r->p->user, 0, r->assembled, now);
+    r->p->root(r->p->user, t, l->before, then);
+    for (int i = 0; i < r->p->nroot; i++)
         if (!(now[i] * then[i] > 0))
             return false;
     return true;
@@ -209,7 +209,7 @@ static bool keeps_sides(struct ct_run *r, const struct initial_step *l, double t
 
 // The longest step around `middle` that errs little enough, of those that are halves of each other and reach the start, in place of
 // best (in and out) if that is shorter: it ends farther from the position.
-static void find_step(struct ct_run *r, const struct initial_step *l, double middle,
+static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct across *best)
 {
     struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
@@ -225,13 +225,13 @@ static void find_step(struct ct_run *r, const struct initial_step *l, double mid
 // Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them leaves is far below.
 static const double belongs = 1e-7;
 
-static bool refuse_speeds(struct ct_run *r, double misfit, int freedoms)
+static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)
 {
     ct_error(r->ctx, (struct ct_mark){0}, CT_E_STEP_OPEN,
              "the constraints cannot be met beyond t = 0: the run starts in a singular "
              "configuration, where constraints of %s do not count "
              "and several motions go on, and %s",
-             r->singular_joints,
+             r->joints,
              misfit > belongs ? "the speeds belong to none of them"
                               : "none that has these speeds is found to this tolerance");
     if (misfit > belongs)
@@ -250,7 +250,7 @@ static bool refuse_speeds(struct ct_run *r, double misfit, int freedoms)
 }
 
 // As if nothing had been tried.
-static void return_to_start(struct ct_run *r)
+static void return_to_start(struct ct_singular_start *r)
 {
     ct_evaluator_set(r->m, 0, r->y);
     ct_evaluator_constraint(r->m);
@@ -259,26 +259,18 @@ static void return_to_start(struct ct_run *r)
 }
 
 // What is not given follows from what is by pivots as small as the way to the position.
-static void warn_of_rounding(struct ct_run *r, double unknown)
+static void warn_of_rounding(struct ct_singular_start *r, double unknown)
 {
     ct_warning(
-        r->ctx, (struct ct_mark){.file = r->model->file}, 0,
+        r->ctx, (struct ct_mark){.file = r->file}, 0,
         "the run starts so near to a singular configuration that round-off leaves places and "
         "speeds that are not given known to %.1g: start in the position itself, or "
         "farther from it",
         unknown);
 }
 
-static void find_best(struct ct_run *r, const struct initial_step *l, struct across *best)
-{
-    find_step(r, l, l->in, best);
-    if (l->a > 0)
-        find_step(r, l, -l->ua / (l->a * l->a), best);
-}
-
-// From half a step before the position on, if there is one that crosses it. A motion that is slow there, and turns, comes to it twice:
-// then the step is better centred on where it turns.
-static bool begin_before(struct ct_run *r, struct initial_step *l)
+// From half a step before the position on, if there is one that crosses it.
+static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
     struct across best = {.error = INFINITY};
@@ -287,23 +279,23 @@ static bool begin_before(struct ct_run *r, struct initial_step *l)
         ct_tangent_basis_reserve(r->s, l->view[i]);
     }
     for (size_t i = 0; i < COUNT(vector); i++)
-        *vector[i] = CT_NEWN(r->arena, double, r->ny);
+        *vector[i] = CT_NEWN(r->arena, double, (size_t)r->p->ny);
     r->singular->time_to_singular = 0; // nearer than from where crossings begin
     r->singular->reach = INFINITY;
-    l->work = ct_crossing.create(r->arena, &ct_crossing, l->p);
-    find_best(r, l, &best);
+    l->work = ct_crossing.create(r->arena, &ct_crossing, r->p);
+    find_step(r, l, l->in, &best);
     if (best.error < INFINITY)
         look_back(r, l, &best);
     if (!(best.error < INFINITY)) {
         return_to_start(r);
         return false;
     }
-    const double unknown = miss(r, r->stage, r->ny - 1);
-    if (unknown > r->o->output_rtol)
+    const double unknown = miss(r->assembled, r->stage, (size_t)r->p->ny);
+    if (unknown > r->output_rtol)
         warn_of_rounding(r, unknown);
     r->t0 = begin_of(&best);
-    memcpy(r->y, l->before, r->ny * sizeof *r->y);
-    r->singular->retains_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
+    memcpy(r->y, l->before, (size_t)r->p->ny * sizeof *r->y);
+    r->singular->retains_rows = r->is_implicit && (size_t)r->s->rank < r->m->nrow;
     ct_rank_monitor_announce(r->singular, r->t0, r->y, best.h / 2);
     return true;
 }
@@ -314,43 +306,44 @@ static void allow(struct initial_step *l, double asked, double felt)
     l->most = fmax(exact, unfelt * asked * felt);
 }
 
-static bool begin_in_position(struct ct_run *r, struct initial_step *l)
+static bool begin_in_position(struct ct_singular_start *r, struct initial_step *l)
 {
     int freedoms;
-    if (r->o->step > 0)
+    if (r->is_fixed)
         return ct_error(
             r->ctx, (struct ct_mark){0}, CT_E_STEP_REFUSED,
             "the run starts in a singular configuration, where constraints of %s do not "
             "count: steps of fixed size do not lead "
             "away from it; leave out 'step'",
-            r->singular_joints);
+            r->joints);
     const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
-    allow(l, r->o->rtol, 1);
+    allow(l, r->rtol, 1);
     return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
 }
 
-// How far the position is, below 0 behind the start, as the motion goes there; accelerations of the start are in r->dy.
-static double find_way(struct ct_run *r, struct initial_step *l)
+// How far the position is, below 0 behind the start, as the motion goes there.
+static double find_way(struct ct_rank_monitor *w, const double *y, const double *dy,
+                       struct initial_step *l)
 {
     const double glance = 1e-3; // of the time to a position beside
-    const double *a = r->dy + r->m->nq, *u = r->y + r->m->nq;
-    l->u = ct_vector_max_norm(u, r->m->nu);
-    l->a = ct_vector_max_norm(a, r->m->nu);
-    l->ua = ct_vector_dot(u, a, r->m->nu);
+    const size_t nq = w->m->nq, nu = w->m->nu;
+    const double *a = dy + nq, *u = y + nq;
+    l->u = ct_vector_max_norm(u, nu);
+    l->a = ct_vector_max_norm(a, nu);
+    l->ua = ct_vector_dot(u, a, nu);
     if (!(l->u + l->a > 0))
         return INFINITY;
-    const double s = glance * time_for(l, l->u, beside);
-    return ct_rank_monitor_distance(r->singular, 0, r->y, r->dy, r->pending, s);
+    return ct_rank_monitor_distance(w, 0, y, dy, glance * time_for(l, l->u, beside));
 }
 
 // Beside a position: from before it, or else what is known of it from the start on.
-static void begin_near_singular(struct ct_run *r, struct initial_step *l)
+static void begin_near_singular(struct ct_singular_start *r, struct initial_step *l)
 {
-    const double way = find_way(r, l), size = fabs(way);
+    const double way = find_way(r->singular, r->y, r->dy, l), size = fabs(way);
     if (!(size > 0 && size < near))
         return;
     const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
-    allow(l, r->o->output_rtol, fmin(1, along));
+    allow(l, r->output_rtol, fmin(1, along));
     l->in = copysign(time_for(l, l->u, size), way);
     ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near / size);
     if (size > beside || !begin_before(r, l))
@@ -358,19 +351,18 @@ static void begin_near_singular(struct ct_run *r, struct initial_step *l)
                                    near / size);
 }
 
-bool ct_run_starts_near_singular(struct ct_run *r)
+bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy)
 {
     struct initial_step l = {.in = 0};
-    return r->m->nrow && fabs(find_way(r, &l)) < near;
+    return w->m->nrow && fabs(find_way(w, y, dy, &l)) < near;
 }
 
-bool ct_run_singular_initial_step(struct ct_run *r, const struct ct_problem *p)
+bool ct_singular_initial_step(struct ct_singular_start *r)
 {
-    struct initial_step l
-        = {.p = p, .u = ct_vector_max_norm(r->assembled + r->m->nq, r->m->nu)};
-    if (r->m->nrow && r->singular_joints && l.u > 0)
+    struct initial_step l = {.u = ct_vector_max_norm(r->assembled + r->m->nq, r->m->nu)};
+    if (r->m->nrow && r->joints && l.u > 0)
         return begin_in_position(r, &l);
-    if (r->m->nrow && !r->singular_joints && r->o->step == 0)
+    if (r->m->nrow && !r->joints && !r->is_fixed)
         begin_near_singular(r, &l);
     return true;
 }

@@ -1,8 +1,9 @@
-// A start in a singular configuration; see rank_monitor.h.
+// Test whether a start is a singular configuration; see singular.h.
 //
-// The rank of J is the same wherever the mechanism can go, but for singular configurations, where it is less. So it is
-// compared with the rank a little way off, along what J lets move and brought back onto the constraints.
-#include "solve/singular/rank_monitor.h"
+// J has the same rank at all configurations of a motion except singular ones, where it has less. The rank at the
+// start is compared with the rank at a configuration 0.1 rad or m away: a step in the null space of J, projected onto the
+// constraints by Gauss-Newton steps of least norm.
+#include "solve/singular/singular.h"
 
 #include "numeric/dense.h"
 

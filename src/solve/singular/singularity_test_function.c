@@ -1,4 +1,4 @@
-// Test function of singular configurations, see partition_internal.h: whether J has lost rank on the way from one place of a motion to another.  (8.40)
+// Test function of singular configurations: does J lose rank between two configurations of a motion?  (8.40)
 //
 // With J T = 0 and N'J = 0, [J N_0; T_0' 0] with T_0 and N_0 of another place is regular as long as J has its rank, while tangents
 // and what annihilates J turn by less than a right angle. With the rows and columns that are kept here first, and signs of the orders,

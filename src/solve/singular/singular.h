@@ -1,9 +1,14 @@
-// Rank monitor: singular configurations, predicted ahead of a motion and recorded for the report when it has passed them.
+// Singular configurations: all that a run, its report and the driver of the integration ask about them.
+//
+//     rank monitor    predicts them ahead of a motion, and records those that it has passed
+//     hooks           what the driver of the integration asks while it crosses one
+//     start           tests of a start in or near one, and the first step from there
+//     dense output    results at samples on a crossing
 //
 // Where J loses rank u' has a limit along the motion that cannot be computed. The driver of the integration crosses
 // such a position in one step (integrate/crossing.h); where it is and how near, is found here.  (6.8)
-#ifndef CT_SOLVE_SINGULAR_RANK_MONITOR_H
-#define CT_SOLVE_SINGULAR_RANK_MONITOR_H
+#ifndef CT_SOLVE_SINGULAR_SINGULAR_H
+#define CT_SOLVE_SINGULAR_SINGULAR_H
 
 #include "integrate/stepper.h"
 #include "solve/constraint/partition.h"
@@ -21,6 +26,7 @@ struct ct_singular_configuration {
 struct ct_rank_monitor {
     struct ct_evaluator *m;
     struct ct_partition *s;
+    const double *pending;   // time of the event ahead, the run's
     double time_to_singular; // time to the position ahead; INFINITY: there is none
     double wanted;           // relative, of outputs; 0: not known
     double
@@ -53,8 +59,11 @@ struct ct_rank_monitor {
     double *y, *d, *x;                        // (ny), (nu), (nrow)
 };
 
+/// pending: the run's time of the event ahead, INFINITY if there is none.
 struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct_evaluator *m,
-                                               struct ct_partition *s);
+                                               struct ct_partition *s, const double *pending);
+/// For ct_problem.singular: the monitor is their user.
+struct ct_singularities ct_singular_hooks(struct ct_rank_monitor *w);
 /// Nothing is known and nothing was passed: before a run.
 void ct_rank_monitor_start(struct ct_rank_monitor *w);
 
@@ -67,27 +76,10 @@ struct ct_rank_monitor_step {
 /// configuration, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
 /// they are beside one, and counted where they have come past it.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
-                             const double *dy, double pending,
-                             const struct ct_rank_monitor_step *step);
+                             const double *dy, const struct ct_rank_monitor_step *step);
 /// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
-                           const double *dy, double pending);
-/// How far [rad, m] y at t, where steps begin, is from a position: above 0 ahead along the motion, below 0 behind; as the smallest
-/// pivot changes within s seconds, infinite where it does not change or does not tell.
-double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
-                                const double *dy, double pending, double s);
-/// Beside a position, at y: farther off the smallest pivot is so many times what it is here.
-void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
-                                 double times);
-/// At y, where steps begin, a position so much ahead is known of that is nearer than positions are where they are foreseen: the
-/// largest pivot is taken to be so many times the one of now.
-void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
-                                double times);
-/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it, whatever round-off
-/// beside the position makes of it, as none from nearer by would be better.
-void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in);
-/// Is y so near to one that round-off of accelerations in double precision is felt?
-bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y);
+                           const double *dy);
 /// Is y, where steps have ended, near a singular configuration, foreseen or not, or would a step of this size, 0 where it is not fixed,
 /// come past one? row (nrow, out): those that depend there; none of a large system.
 bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
@@ -100,11 +92,46 @@ bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition 
 /// At y in a singular configuration: what (8.23) is missed by, of the squares of the speeds that it is made of. freedoms (out): there.
 double ct_singular_start_misfit(struct ct_arena *scratch, const struct ct_partition *s,
                                 double t, const double *y, int *freedoms);
-/// What is evaluated from now on belongs to a crossing, or does not.
+/// The hook of that name.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing);
-/// A crossing has been made, of which the span is all but the first part, `begin` of it, and goes on to t1: find the position on it and
-/// keep it. False if there is none before t1.
-bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
-                            double begin, double t1, double pending);
+/// A start from which steps begin: assembled, with rows and columns chosen there.
+struct ct_singular_start {
+    struct ct_ctx *ctx;
+    struct ct_arena *arena;
+    const char *file; // of the model
+    struct ct_rank_monitor *singular;
+    struct ct_evaluator *m;
+    struct ct_partition *s;
+    const struct ct_problem *p;
+    struct ct_integrate_stats *stats;
+    const double *
+        assembled; // (ny) as demanded: rows in a singular configuration would take off more than they see
+    const bool *is_given; // (nu) speeds whose coordinates the start is given by
+    const char *joints;   // whose constraints are dependent at the start only; NULL: none
+    double rtol, atol, output_rtol;
+    bool is_fixed, is_implicit; // steps of fixed size; the method
+    double *y, *dy;             // (ny) in: the start; y out: where steps begin
+    double *stage, *scratch;    // workspace (ny)
+    double t0;                  // out: where steps begin, 0 or before
+};
+
+/// From a start in a singular configuration, with speeds that select one of the motions through it, to a little before it:
+/// y, t0. The same from a start near one if it can be crossed; otherwise steps begin at the start. False with
+/// CT_E_STEP_OPEN if the speeds belong to no motion.
+bool ct_singular_initial_step(struct ct_singular_start *r);
+/// Is the start, with its derivative dy, near a singular configuration, so that its first step is a special one?
+bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy);
+/// Is y the start, as well as a start near a singular configuration is known?
+bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny);
+
+struct ct_singular_dense_output;
+
+/// For the results of the monitor's evaluator; everything lives in a.
+struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena *a,
+                                                                 struct ct_rank_monitor *w);
+/// value (nresult, out): results at (t, y) within the crossing that b interpolates. False if they cannot be
+/// computed at its stages.
+bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, const double *y,
+                              const struct ct_gap_interpolation *b, double *value);
 
 #endif

@@ -1,4 +1,4 @@
-// Driven mechanisms that lock: motions lead to where the constraints cannot be met any more.
+// End of reach: does a driven motion lead to where the constraints cannot be met any more?
 //
 // Before a position in which constraints come to depend on each other the motion either crosses it or ends in it. It ends if
 // behind it no place of the bodies meets the constraints: the sum of their squares has a least value above 0 there, one that grows
@@ -7,15 +7,18 @@
 //
 // Source: Nocedal and Wright (2006), Numerical Optimization, 10.3, for the method.
 #include "solve/constraint/partition_internal.h"
-#include "solve/run/run_internal.h"
+#include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
+#include "solve/evaluator/switch_state.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 struct search {
-    struct ct_run *r;
+    struct ct_rank_monitor *w;
+    size_t ny;
     double t;
     double *y, *next; // (ny)
     double *H, *g;    // J' J + mu 1  (nu x nu), J' phi, and then the step  (nu)
@@ -24,10 +27,10 @@ struct search {
 // Half the sum of squares at y; J is there, too.
 static double find_misfit(const struct search *s, const double *y)
 {
-    const struct ct_evaluator *m = s->r->m;
+    const struct ct_evaluator *m = s->w->m;
     double sum = 0;
-    ct_evaluator_set(s->r->m, s->t, y);
-    ct_evaluator_constraint(s->r->m);
+    ct_evaluator_set(s->w->m, s->t, y);
+    ct_evaluator_constraint(s->w->m);
     for (size_t i = 0; i < m->nrow; i++)
         sum += m->phi[i] * m->phi[i] / 2;
     return sum;
@@ -36,7 +39,7 @@ static double find_misfit(const struct search *s, const double *y)
 // H = J' J, g = J' phi; returns the size of g against that of its factors.
 static double find_slope(const struct search *s)
 {
-    const struct ct_evaluator *m = s->r->m;
+    const struct ct_evaluator *m = s->w->m;
     const int nu = (int)m->nu, nrow = (int)m->nrow;
     ct_matrix_multiply_transposed(s->H, m->J, m->J, nu, nrow, nu);
     ct_matrix_multiply_transposed(s->g, m->J, m->phi, nu, nrow, 1);
@@ -54,12 +57,12 @@ static bool find_least(struct search *s, double *size)
 {
     enum { MOST = 100 };
     const double flat = 1e-7; // the root of round-off: what a misfit tells of where it is least
-    const struct ct_evaluator *m = s->r->m;
+    const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
     double mu = 1e-3, now = find_misfit(s, s->y);
     for (int i = 0; i < MOST && isfinite(now); i++) {
         *size = sqrt(2 * now);
-        if (*size <= DBL_EPSILON * s->r->s->scale || find_slope(s) <= flat)
+        if (*size <= DBL_EPSILON * s->w->s->scale || find_slope(s) <= flat)
             return true;
         for (size_t k = 0; k < nu; k++)
             s->H[k + nu * k] += mu;
@@ -68,11 +71,11 @@ static bool find_least(struct search *s, double *size)
         ct_cholesky_solve(s->g, s->H, (int)nu, (int)nu, 1, (int)nu);
         for (size_t k = 0; k < nu; k++)
             s->g[k] = -s->g[k];
-        memcpy(s->next, s->y, s->r->ny * sizeof *s->y);
-        ct_evaluator_retract(s->r->m, s->next, s->g);
+        memcpy(s->next, s->y, s->ny * sizeof *s->y);
+        ct_evaluator_retract(s->w->m, s->next, s->g);
         const double then = find_misfit(s, s->next);
         if (then < now) {
-            memcpy(s->y, s->next, s->r->ny * sizeof *s->y);
+            memcpy(s->y, s->next, s->ny * sizeof *s->y);
             now = then;
             mu /= 10;
         } else {
@@ -86,61 +89,34 @@ static bool find_least(struct search *s, double *size)
 // What stays open dt after t, from where the speeds of y at t lead. False if it cannot be told.
 static bool find_open(struct search *s, double t, const double *y, double dt, double *size)
 {
-    const struct ct_evaluator *m = s->r->m;
+    const struct ct_evaluator *m = s->w->m;
     s->t = t + dt;
-    memcpy(s->y, y, s->r->ny * sizeof *y);
+    memcpy(s->y, y, s->ny * sizeof *y);
     for (size_t k = 0; k < m->nu; k++)
         s->g[k] = dt * y[m->nq + k];
-    ct_evaluator_retract(s->r->m, s->y, s->g);
+    ct_evaluator_retract(s->w->m, s->y, s->g);
     return find_least(s, size);
 }
 
-// y at t, `in` before a position that no step has crossed: does the mechanism lock there?
-bool ct_run_locks(void *user, double t, const double *y, double in)
+bool ct_singular_ends_motion(void *user, double t, const double *y, double in)
 {
-    struct ct_run *r = user;
-    const size_t nu = r->m->nu;
+    struct ct_rank_monitor *w = user;
+    struct ct_arena *a = w->s->arena;
+    const size_t nu = w->m->nu, ny = w->m->nq + nu + 1;
     const double closed = 1e-9; // what steps leave open is less by far
     double once, twice;
-    if (t + 3 * in >= r->pending || ct_partition_is_large(r->s))
+    if (t + 3 * in >= *w->pending || ct_partition_is_large(w->s))
         return false; // behind an event motions may be others
-    struct search s = {.r = r,
-                       .y = CT_NEWN(r->arena, double, r->ny),
-                       .next = CT_NEWN(r->arena, double, r->ny),
-                       .H = CT_NEWN(r->arena, double, nu *nu + 1),
-                       .g = CT_NEWN(r->arena, double, nu + 1)};
+    struct search s = {.w = w,
+                       .ny = ny,
+                       .y = CT_NEWN(a, double, ny),
+                       .next = CT_NEWN(a, double, ny),
+                       .H = CT_NEWN(a, double, nu *nu + 1),
+                       .g = CT_NEWN(a, double, nu + 1)};
     // it is open by as much more as it is later: from t + in on
     const bool is_found
         = find_open(&s, t, y, 2 * in, &once) && find_open(&s, t, y, 3 * in, &twice);
-    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
-    ct_evaluator_constraint(r->m);
-    return is_found && once > closed * r->s->scale && twice > 1.5 * once;
-}
-
-void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
-{
-    enum { MOST = 3 };
-    int n = 0;
-    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
-    ct_program_run(&r->m->driver, r->m->input);
-    for (size_t i = 0; i < r->e->ndriver && n < MOST; i++) {
-        const struct ct_driver *d = &r->e->driver[i];
-        if (r->m->driver.out[2 * i + 1] == 0)
-            continue; // it holds still
-        ct_note(r->ctx, d->mark, "'%s' is driven here, to %.6g at t = %.6g",
-                r->model->joint[d->joint].name, r->m->driver.out[2 * i], t);
-        n++;
-    }
-    // drivers of joints that are chords stand in rows
-    for (size_t i = 0; i < r->model->njoint && n < MOST; i++) {
-        const struct ct_instance *joint = &r->model->joint[i];
-        bool is_known = !joint->cls->motion || !ct_instance_value(joint, "motion")->given;
-        for (size_t k = 0; k < r->e->ndriver; k++)
-            is_known |= r->e->driver[k].joint == (int)i;
-        if (is_known)
-            continue;
-        ct_note(r->ctx, ct_instance_value(joint, "motion")->mark, "'%s' is driven here",
-                joint->name);
-        n++;
-    }
+    ct_evaluator_set(w->m, ct_rank_monitor_time(w, t), y);
+    ct_evaluator_constraint(w->m);
+    return is_found && once > closed * w->s->scale && twice > 1.5 * once;
 }
