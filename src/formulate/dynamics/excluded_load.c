@@ -5,6 +5,16 @@
 
 #include <math.h>
 
+// The value of an expression of parameters, which is not noted as decisive: a warning changes no equation.
+static double number(struct ct_exs *x, ct_ex e, const double *value)
+{
+    const size_t ndecided = x->ndecided;
+    x->ndecided = 0;
+    const double v = ct_ex_value(x, e, value);
+    x->ndecided = ndecided;
+    return v;
+}
+
 // The component of a force along axis i of the beam's base against its size, where both depend on parameters alone; else 0.
 static double constant_part(struct ct_build *b, const struct ct_flexible *f, ct_ex3 force,
                             int i)
@@ -17,7 +27,7 @@ static double constant_part(struct ct_build *b, const struct ct_flexible *f, ct_
                 return 0;
             continue;
         }
-        const double v = ct_ex_value(b->x, own.e[k], b->value);
+        const double v = number(b->x, own.e[k], b->value);
         square += v * v;
         part = k == i ? v : part;
     }
