@@ -32,7 +32,7 @@ struct split {
     double *T;            // f x (k + n1): unit vectors of the heavy ones, N1
 };
 
-// ---- directions -----------------------------------------------------------------------------------------------
+// ---- directions -----------------------------------------------------------------------------
 
 // N (f x n0): null space of Mr, n0 counted.
 static void find_massless(struct split *s)
@@ -142,7 +142,7 @@ static bool not_held(struct split *s)
                     ct_linear_coordinate(e, s->a, s->l->independent[s->light[0]]));
 }
 
-// ---- the equations in z -----------------------------------------------------------------------------------------
+// ---- the equations in z ---------------------------------------------------------------------
 
 struct reduced {
     int m;                 // k + n1
@@ -212,7 +212,7 @@ static bool reduce(struct split *s, struct reduced *r)
     return true;
 }
 
-// ---- states --------------------------------------------------------------------------------------------------------
+// ---- states ---------------------------------------------------------------------------------
 
 // X (n x k) <- A^-1 X for the square part of P (ld) from `at`, n rows.
 static bool divide(struct split *s, double *X, const double *P, int at, int n, int ld, int k)

@@ -267,10 +267,8 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
     b->eqs->build = b;
     b->eqs->how = report->how;
     *out = *b->eqs;
-    if (!options->like) {
+    if (!options->like)
         warn_of_cuts(ctx, b);
-        ct_warn_of_excluded_loads(ctx, b);
-    }
     return true;
 }
 

@@ -114,16 +114,3 @@ outputs: [pin.q, pin.u]
 END
   say simulate table.yaml -q -o -
 done
-
-# a load in a plane that `deformation` leaves out
-cat >across.yaml <<'END'
-cotree: 1
-bodies:
-  strip: {type: beam, length: 1, elements: 2, E: 7e10, density: 2700, area: 1e-4, Iz: 1e-9, deformation: [bending-z], points: {tip: length}}
-joints:
-  w: {type: weld, from: ground, to: strip}
-forces:
-  push: {type: force, at: strip.tip, value: [0, 3, 0]}
-  side: {type: force, at: strip.tip, value: [0, 3, 4]}
-END
-"$COTREE" check across.yaml -q 2>&1

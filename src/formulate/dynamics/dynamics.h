@@ -65,7 +65,5 @@ ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
 ct_ex ct_build_value(struct ct_build *b, ct_ex e);
 /// Efforts, springs and dampers of joints; forces.
 bool ct_loads_derive(struct ct_build *b);
-/// Warns of forces across a beam whose `deformation` leaves out the bending that they ask for. After ct_loads_derive.
-void ct_warn_of_excluded_loads(struct ct_ctx *ctx, struct ct_build *b);
 
 #endif

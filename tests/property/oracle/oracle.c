@@ -406,10 +406,10 @@ static void balance_freedoms(const struct oracle *o, const struct motion *m, con
 static bool solve_symmetric(double *A, int n, const double *b, double *z, double *condition)
 {
     double w[MOST_COLUMNS];
-    const int lwork = 34 * n + 10, lda = n > 0 ? n : 1;
+    const int lwork = 34 * n + 10;
     double *work = numbers(lwork);
     int info;
-    dsyev_("V", "U", &n, A, &lda, w, work, &lwork, &info, 1, 1);
+    dsyev_("V", "U", &n, A, &n, w, work, &lwork, &info, 1, 1);
     free(work);
     *condition = n ? w[n - 1] / w[0] : 1;
     if (info || (n && !(w[0] > 0)))
