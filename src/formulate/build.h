@@ -61,6 +61,11 @@ struct ct_edge_info {
     ct_ex3 *translation, *rotation; // of the station, by elastic coordinate
 };
 
+static inline bool ct_edge_is_rigid_arm(const struct ct_edge_info *e)
+{
+    return e->kind == CT_EDGE_ARM && !e->flexible;
+}
+
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
 struct ct_term {
     int speed, driver;

@@ -292,7 +292,7 @@ static void put_force(struct ct_derivation *d, const struct ct_instance *self)
         const char *key = cls->key[k].name;
         const char *left
             = is_value
-                ? ct_derivation_of(d, !strcmp(cls->name, "torque") ? "T" : "F", self->name)
+                ? ct_derivation_of(d, cls->applied == CT_APPLIED_TORQUE ? "T" : "F", self->name)
             : ct_derivation_is_latex(d) ? ct_arena_printf(
                   d->a, "\\mathrm{%s}_{\\mathrm{%s}}", key, ct_latex_quoted(d->a, self->name))
                                         : ct_arena_printf(d->a, "%s(%s)", key, self->name);
