@@ -57,7 +57,8 @@ static ct_ex3 rotation_vector(struct ct_exs *x, const ct_ex33 *R)
 static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     struct ct_exs *x = b->x;
-    const int tail = b->node_of_frame[self->from], head = b->node_of_frame[self->to];
+    const int tail = b->topology->node_of_frame[self->from],
+              head = b->topology->node_of_frame[self->to];
     const int from = b->placement[tail].frame, to = b->placement[head].frame;
     const ct_ex3 k = three(self, "stiffness", 0), kr = three(self, "stiffness", 3);
     const ct_ex3 c = three(self, "damping", 0), cr = three(self, "damping", 3);

@@ -318,8 +318,8 @@ static bool draw(void *task)
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     for (int i = 0; i < e->graph->nedge; i++) {
-        quiet[i] = ct_edge_is_rigid_arm(&e->build->edge[i]);
-        marked[i] = e->build->edge[i].flexible != NULL;
+        quiet[i] = ct_edge_is_rigid_arm(&e->build->topology->edge[i]);
+        marked[i] = e->build->topology->edge[i].beam >= 0;
     }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,

@@ -45,25 +45,51 @@ struct ct_edge_info {
     struct ct_mark mark;
     int index;                      // of the body, joint or force in the model; arms: frame
     const struct ct_instance *self; // joints, forces
-    ct_ex3 at;                      // arms: place in axes of the tail
-    ct_ex33 S; // arms: rotation of the head out of the tail's axes; bodies in a
-               // plane: that of the body before its angle
-    struct ct_motion trial,
-        motion;        // bodies, joints, closures: with LOCAL symbols; with coordinates
-    bool has_rotation; // false where a particle is reached
+    ct_ex3 at;                      // arms: place in axes of the tail [m]
+    ct_ex33 S;              // arms: rotation of the head out of the tail's axes; bodies in a
+                            // plane: that of the body before its angle
+    struct ct_motion trial; // bodies, joints, closures: with LOCAL symbols as coordinates
+    bool has_rotation;      // false where a particle is reached
     bool must_be_branch, never_branch;
     int weight_t, weight_r;            // freedoms in the translational and rotational graph
     int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
-    struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
-    ct_ex along;                       // [m]
-    const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
-    ct_ex3 *translation, *rotation; // of the station, by elastic coordinate
+    int beam; // arms of beams: number in build->flexible, with the section at `along`; else -1
+    ct_ex along; // [m]
+};
+
+/// The linear graph of a model and the plane it keeps to: written by formulate/topology, const for
+/// all that follows. Lengths of the lists are nnode and nedge unless a comment says otherwise.
+struct ct_topology {
+    struct ct_graph graph;
+    struct ct_node_info *node;
+    struct ct_edge_info *edge;
+    struct ct_edge *wiring; // of graph
+    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
+    int *node_of_frame, *node_of_com; // by frame, by body
+    int *edge_of_joint, *edge_of_body;
+
+    // planar mechanisms: common normal and a basis of the plane (ground components)
+    bool is_planar;
+    bool keeps_plane;          // is_planar, or would be if something were left out
+    bool is_spatial_for_beams; // for that alone the mechanism is not planar
+    ct_ex3 normal;             // to that plane
+    ct_ex3 plane[3];           // e1, e2, n
+    ct_ex *layer;              // by node: its place along n [m]
+    // by node: its axes -> ground's, joints at rest; identity where both see the normal alike
+    ct_ex33 *upright;
+};
+
+/// What an edge does in coordinates of the chosen trees, by edge.
+struct ct_edge_kinematics {
+    struct ct_motion motion; // bodies, joints, closures; arms: d, and turns of sections
+    const struct ct_station *station; // arms of beams: once the beam's coordinates are chosen
+    ct_ex3 *translation, *rotation;   // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // translations that forces act along, where they differ; else NULL
 };
 
 static inline bool ct_edge_is_rigid_arm(const struct ct_edge_info *e)
 {
-    return e->kind == CT_EDGE_ARM && !e->flexible;
+    return e->kind == CT_EDGE_ARM && e->beam < 0;
 }
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
@@ -185,35 +211,21 @@ struct ct_build {
 
     bool is_derived; // by T and R, with the dynamics, when they were chosen
 
-    // planar mechanisms: common normal and a basis of the plane (ground components)
-    bool is_planar;
-    bool keeps_plane;      // is_planar, or would be if something were left out
-    ct_ex3 normal;         // to that plane
     const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
     const struct ct_equations *like; // whose beams are formulated alike; NULL: none
     bool keep_all;                   // leave nothing out
     bool
         keeps_all_deformations; // beams do what their sections allow, whether the scene excites it or not
-    bool is_spatial_for_beams; // for that alone the mechanism is not planar
-    bool drivers_are_held;     // drivers stand still: time does not go on
-    bool has_offsets;          // loops need not be closed (constraint_offset.h)
+    bool drivers_are_held;  // drivers stand still: time does not go on
+    bool has_offsets;       // loops need not be closed (constraint_offset.h)
     struct ct_build *rigid; // the scene with rigid beams, once asked for (beam_error_coupled.h)
     bool has_no_rigid;      // that is of no use
-    bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
-    ct_ex3 plane[3]; // e1, e2, n
-    ct_ex *layer;    // by node: its place along n [m]
-    ct_ex33 *
-        upright; // by node: its axes -> ground's, joints at rest; none where both see the normal alike
+    bool is_rigid; // beams keep their shape: for assembly, where they are not deformed yet
 
-    struct ct_graph graph;
-    struct ct_node_info *node;
-    struct ct_edge_info *edge;
-    struct ct_edge *wiring; // graph.edge, writable
-    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
-    int *node_of_frame, *node_of_com; // by frame, by body
-    int *edge_of_joint, *edge_of_body;
+    const struct ct_topology *topology;
     struct ct_tree T, R;
 
+    struct ct_edge_kinematics *edge_kinematics; // by edge
     struct ct_coordinate *coordinate;
     size_t ncoordinate, coordinate_cap;
 
@@ -254,6 +266,16 @@ struct ct_build {
     struct ct_signal_state signals;
 };
 
+static inline struct ct_edge_kinematics *ct_edge_kinematics(const struct ct_build *b,
+                                                            const struct ct_edge_info *e)
+{
+    return &b->edge_kinematics[e - b->topology->edge];
+}
+static inline const struct ct_motion *ct_edge_motion(const struct ct_build *b,
+                                                     const struct ct_edge_info *e)
+{
+    return &ct_edge_kinematics(b, e)->motion;
+}
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
 {
     return b->cluster[inner].enter <= b->cluster[outer].enter

@@ -55,7 +55,6 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_build *b = copy(a, from, 1, sizeof *b);
     b->ctx = ctx;
     b->arena = a;
-    COPY(a, b->edge, b->nedge);
     COPY(a, b->coordinate, b->ncoordinate);
     COPY(a, b->cluster, b->ncluster);
     COPY(a, b->rotation_axis, b->nrotation_axis);
@@ -64,10 +63,6 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
         COPY(a, b->flexible, b->nflexible);
     for (size_t i = 0; i < b->nflexible; i++)
         fork_flexible(a, &b->flexible[i]);
-    for (size_t i = 0; i < b->nedge; i++)
-        if (b->edge[i].flexible)
-            b->edge[i].flexible = b->flexible + (b->edge[i].flexible - from->flexible);
-    b->edge_cap = b->nedge;
     b->coordinate_cap = b->ncoordinate;
     b->cluster_cap = b->ncluster;
     b->rotation_axis_cap = b->nrotation_axis;
@@ -80,7 +75,7 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     b->coupling_cap = b->ncoupling;
     b->speed_axis_cap = b->nspeed_axis;
     if (b->signals.quaternion)
-        COPY(a, b->signals.quaternion, b->nnode);
+        COPY(a, b->signals.quaternion, b->topology->nnode);
     // workspace
     if (b->piece)
         COPY(a, b->piece, b->nanchor + 2);

@@ -73,7 +73,6 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
     b->x = b->eqs->x = ct_exs_clone(a, from->x);
     const size_t ndecided = b->x->ndecided;
     b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
-    b->edge = copy(a, from->edge, b->nedge, b->edge_cap, sizeof *b->edge);
     b->coordinate
         = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
     return b;

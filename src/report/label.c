@@ -33,12 +33,12 @@ static void label33(struct ct_build *b, const ct_ex33 *A, const char *letter, co
 // each anchor.
 static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
 {
-    for (size_t i = 0; i < b->nnode; i++) {
+    for (size_t i = 0; i < b->topology->nnode; i++) {
         const struct ct_node_placement *p = &b->placement[i];
         if (!cluster[p->frame])
-            cluster[p->frame] = b->node[i].name;
+            cluster[p->frame] = b->topology->node[i].name;
         if (!anchor[p->anchor] && ct_ex3_is_zero(p->local))
-            anchor[p->anchor] = b->node[i].name;
+            anchor[p->anchor] = b->topology->node[i].name;
     }
 }
 

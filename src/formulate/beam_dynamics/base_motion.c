@@ -20,7 +20,7 @@ static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
 {
     struct ct_exs *x = b->x;
     ct_ex3 w, al;
-    if (b->is_planar) {
+    if (b->topology->is_planar) {
         out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
         out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
         return true;

@@ -306,7 +306,7 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);
-            else if (b->is_planar)
+            else if (b->topology->is_planar)
                 s = ct_ex33_apply_t(x, &at->S, spin->axis);
             else
                 s = ct_base_into(b, f, spin->axis);

@@ -38,7 +38,7 @@ void ct_augmented_bodies_lump(struct ct_build *b)
     b->is_lumped = true;
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
-        const struct ct_node_placement *p = &b->placement[b->node_of_com[i]];
+        const struct ct_node_placement *p = &b->placement[b->topology->node_of_com[i]];
         if (body->beam)
             continue;
         b->anchor[p->anchor].mass = ct_ex_add(b->x, b->anchor[p->anchor].mass, body->mass);

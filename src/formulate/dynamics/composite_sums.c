@@ -164,7 +164,7 @@ static ct_ex33 cross_inertia(struct ct_build *b, ct_ex3 d, ct_ex3 h)
     struct ct_exs *x = b->x;
     const ct_ex twice = ct_ex_scale(x, 2, ct_ex3_dot(x, d, h));
     ct_ex33 X = {{{0}}};
-    if (b->is_planar) {
+    if (b->topology->is_planar) {
         X.e[8] = twice;
         return X;
     }
@@ -203,8 +203,9 @@ ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
     struct ct_exs *x = b->x;
     const ct_ex33 *L = &b->cluster[c].L, *R = &b->cluster[c].R;
     ct_ex33 out = {{{0}}};
-    if (b->is_planar) {
-        out.e[8] = ct_ex3_dot(x, b->plane[2], ct_ex33_apply(x, L, b->plane[2]));
+    if (b->topology->is_planar) {
+        out.e[8]
+            = ct_ex3_dot(x, b->topology->plane[2], ct_ex33_apply(x, L, b->topology->plane[2]));
         return out;
     }
     const ct_ex33 half = ct_ex33_mul(x, R, L);

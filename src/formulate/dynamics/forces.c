@@ -27,7 +27,7 @@ ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
     ct_ex3 v;
     for (int i = 0; i < 3; i++)
         v.e[i] = ct_build_value(b, value->e[i]);
-    return in->given ? ct_node_turn(b, b->node_of_frame[in->frame], v) : v;
+    return in->given ? ct_node_turn(b, b->topology->node_of_frame[in->frame], v) : v;
 }
 
 bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out)
@@ -133,7 +133,7 @@ static ct_ex3 inertia_torque(struct work *w, int c)
     struct ct_exs *x = b->x;
     const ct_ex33 I = ct_cluster_inertia(b, c);
     const ct_ex3 al = ct_cluster_acceleration(b, c, w->level);
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(x, I.e[8], al);
     const ct_ex3 omega = ct_cluster_velocity(b, c);
     return ct_ex3_add(x, ct_ex33_apply(x, &I, al),
@@ -148,7 +148,7 @@ static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
     struct ct_exs *x = b->x;
     const ct_ex33 *L = &b->cluster[c].L;
     ct_ex3 omega, al;
-    if (b->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
+    if (b->topology->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
         return false;
     *torque = ct_ex3_add(x, ct_ex33_apply(x, L, al),
                          ct_ex3_cross(x, omega, ct_ex33_apply(x, L, omega)));
@@ -320,7 +320,7 @@ static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct
                             ct_ex power)
 {
     const struct ct_coordinate *c = &b->coordinate[coordinate];
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     struct ct_equations *s = b->eqs;
     if (c->u >= 0)
         s->Q[c->u] = ct_ex_add(b->x, s->Q[c->u], effort);
@@ -332,8 +332,8 @@ static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct
     struct ct_wrench w;
     if (ct_coordinate_wrench(b, coordinate, &w))
         ct_load_add(b, &(struct ct_load){.self = e->self,
-                                         .tail = b->wiring[c->edge].tail,
-                                         .head = b->wiring[c->edge].head,
+                                         .tail = b->topology->wiring[c->edge].tail,
+                                         .head = b->topology->wiring[c->edge].head,
                                          .force = ct_ex3_scale(b->x, effort, w.force),
                                          .torque = ct_ex3_scale(b->x, effort, w.torque),
                                          .potential = potential,
@@ -374,7 +374,7 @@ ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     if (c->motion_row)
         return b->eqs->row[c->motion_row - 1].lam;
-    const struct effort own = own_effort(b, &b->edge[c->edge], c->index);
+    const struct effort own = own_effort(b, &b->topology->edge[c->edge], c->index);
     ct_ex rest
         = ct_ex_sub(x, sweep_driver_row(b, ct_sweep_run(b, CT_FULL), c->driver), own.total);
     for (size_t i = 0; i < b->ncoupling; i++)
@@ -406,8 +406,8 @@ static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k
 bool ct_loads_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         b->signals.holding = e->mark;
         if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
             for (int k = 0; k < e->self->nfree; k++)

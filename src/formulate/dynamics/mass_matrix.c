@@ -34,7 +34,7 @@ struct column {
 // a x (axis x v): planar: (a . v) along the axis.
 static ct_ex3 double_cross(struct ct_build *b, const struct column *c, ct_ex3 a, ct_ex3 v)
 {
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(b->x, ct_ex3_dot(b->x, a, v), c->axis);
     return ct_ex3_cross(b->x, a, ct_ex3_cross(b->x, c->axis, v));
 }
@@ -102,7 +102,7 @@ static ct_ex3 row_torque(struct ct_composite_sums *s, const struct column *c, in
 
 static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
 {
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(b->x, c->inertia.e[8], c->axis);
     if (c->is_local)
         return ct_cluster_turn(b, c->cluster, c->momentum);
@@ -254,7 +254,8 @@ void ct_mass_matrix_derive(struct ct_build *b)
         c.torque = CT_NEWN(b->arena, ct_ex3, b->nanchor);
         c.has_torque = CT_NEWN(b->arena, bool, b->nanchor);
         ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
-        c.is_local = !b->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
+        c.is_local
+            = !b->topology->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
         if (c.is_local) {
             c.momentum = ct_ex33_apply(b->x, &b->cluster[c.cluster].L, self->local);
         } else {

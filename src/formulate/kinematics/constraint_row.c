@@ -178,7 +178,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         const struct ct_multiplier_wrench p = {row,
                                                n.tail,
                                                n.head,
-                                               b->edge[c->edge].index,
+                                               b->topology->edge[c->edge].index,
                                                ct_ex3_scale(x, f, w.force),
                                                ct_ex3_scale(x, f, w.torque),
                                                true};
@@ -195,12 +195,13 @@ static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct 
     struct ct_exs *x = b->x;
     const ct_ex3 d = ct_path_position(b, n.tail, n.head);
     const ct_ex3 a = ct_path_acceleration(b, n.tail, n.head, CT_BIAS);
-    for (int i = 0; i < (b->is_planar ? 2 : 3); i++) {
-        const struct ct_wrench w = {b->plane[i], zero3};
+    for (int i = 0; i < (b->topology->is_planar ? 2 : 3); i++) {
+        const struct ct_wrench w = {b->topology->plane[i], zero3};
         add_row(b, e->index,
                 ct_arena_printf(b->arena, "%s.%s", e->name, ct_plane_axis_name(b, i)), n, &w,
-                false, ct_constraint_offset_subtract(b, e, ct_ex3_dot(x, b->plane[i], d)),
-                ct_ex3_dot(x, b->plane[i], a));
+                false,
+                ct_constraint_offset_subtract(b, e, ct_ex3_dot(x, b->topology->plane[i], d)),
+                ct_ex3_dot(x, b->topology->plane[i], a));
     }
 }
 
@@ -230,21 +231,22 @@ static int slide_directions(struct ct_build *b, const struct ct_edge_info *e, ct
 
 static void translation_rows(struct ct_build *b, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
     ct_ex3 dir[3];
     const int nslide = slide_directions(b, e, dir);
     if (nslide == 0) {
         place_rows(b, e, n);
-    } else if (b->is_planar) {
+    } else if (b->topology->is_planar) {
         if (nslide == 1) {
-            const ct_ex3 p = ct_ex3_cross(b->x, b->plane[2], ct_node_turn(b, n.tail, dir[0]));
+            const ct_ex3 p
+                = ct_ex3_cross(b->x, b->topology->plane[2], ct_node_turn(b, n.tail, dir[0]));
             across_row(b, e, ct_arena_printf(b->arena, "%s.across", e->name), n, p);
         }
     } else {
-        for (int i = 0; i < e->motion.ntrans; i++)
+        for (int i = 0; i < ct_edge_motion(b, e)->ntrans; i++)
             across_row(b, e, ct_arena_printf(b->arena, "%s.across%d", e->name, i + 1), n,
-                       ct_node_turn(b, n.tail, e->motion.trans[i]));
+                       ct_node_turn(b, n.tail, ct_edge_motion(b, e)->trans[i]));
     }
 }
 
@@ -253,10 +255,10 @@ static void translation_rows(struct ct_build *b, int edge)
 static void planar_angle_row(struct ct_build *b, int edge)
 {
     struct ct_exs *x = b->x;
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
-    const struct ct_wrench w = {zero3, b->plane[2]};
-    const ct_ex3 v = ct_ex33_apply_t(x, &b->upright[n.tail], b->plane[0]);
+    const struct ct_wrench w = {zero3, b->topology->plane[2]};
+    const ct_ex3 v = ct_ex33_apply_t(x, &b->topology->upright[n.tail], b->topology->plane[0]);
     // the gap of an angle is not wrapped: it says which way round
     const ct_ex diff = ct_constraint_offset_subtract(
         b, e, ct_ex_sub(x, ct_angle_in_plane(b, n.head, v), ct_angle_in_plane(b, n.tail, v)));
@@ -266,20 +268,21 @@ static void planar_angle_row(struct ct_build *b, int edge)
     const ct_ex3 al = ct_cluster_path_acceleration(b, b->placement[n.tail].frame,
                                                    b->placement[n.head].frame, CT_BIAS);
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.angle", e->name), n, &w, true, phi,
-            ct_ex3_dot(x, b->plane[2], al));
+            ct_ex3_dot(x, b->topology->plane[2], al));
 }
 
 // Pair (s|t): s fixed in the tail's axes, t in the head's; s_local: s there.  (4.4)
 static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
 {
     struct ct_exs *x = b->x;
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
     const int from = b->placement[n.tail].frame, to = b->placement[n.head].frame;
     const ct_ex3 s = ct_node_turn(b, n.tail, s_local);
-    const ct_ex3 t = ct_node_turn(b, n.head, e->motion.rot_to[i]);
+    const ct_ex3 t = ct_node_turn(b, n.head, ct_edge_motion(b, e)->rot_to[i]);
     const struct ct_wrench w = {zero3, ct_ex3_cross(x, t, s)};
-    const ct_ex wanted = ct_ex3_dot(x, e->motion.rot_from[i], e->motion.rot_to[i]);
+    const ct_ex wanted
+        = ct_ex3_dot(x, ct_edge_motion(b, e)->rot_from[i], ct_edge_motion(b, e)->rot_to[i]);
     const ct_ex phi = ct_ex_sub(x, ct_ex3_dot(x, s, t), wanted);
     const ct_ex3 turning
         = ct_ex3_add(x, ct_ex3_cross(x, ct_cluster_cross_velocity(b, to, t), s),
@@ -290,21 +293,22 @@ static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.turn%d", e->name, i + 1), n, &w, true,
             phi, gam);
     // the rows also hold half a turn away: the cosine between like axes tells
-    const ct_ex3 axis = ct_node_turn(b, n.tail, e->motion.rot_to[i]);
-    if (e->motion.nrot > 1)
+    const ct_ex3 axis = ct_node_turn(b, n.tail, ct_edge_motion(b, e)->rot_to[i]);
+    if (ct_edge_motion(b, e)->nrot > 1)
         b->eqs->row[b->eqs->nrow - 1].assembly_sign = ct_ex3_dot(x, axis, t);
 }
 
 static void rotation_rows(struct ct_build *b, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
-    if (!b->is_planar) {
-        ct_ex3 s[COUNT(e->motion.rot_from)];
-        for (int i = 0; i < e->motion.nrot; i++)
-            s[i] = e->motion.rot_from[i];
-        ct_constraint_offset_rotate(b, e, b->wiring[edge].tail, b->wiring[edge].head, s,
-                                    e->motion.nrot);
-        for (int i = 0; i < e->motion.nrot; i++)
+    const struct ct_edge_info *e = &b->topology->edge[edge];
+    if (!b->topology->is_planar) {
+        ct_ex3 s[COUNT(ct_edge_motion(b, e)->rot_from)];
+        for (int i = 0; i < ct_edge_motion(b, e)->nrot; i++)
+            s[i] = ct_edge_motion(b, e)->rot_from[i];
+        ct_constraint_offset_rotate(b, e, b->topology->wiring[edge].tail,
+                                    b->topology->wiring[edge].head, s,
+                                    ct_edge_motion(b, e)->nrot);
+        for (int i = 0; i < ct_edge_motion(b, e)->nrot; i++)
             pair_row(b, edge, i, s[i]);
         return;
     }
@@ -320,7 +324,7 @@ static void driven_row(struct ct_build *b, int coordinate)
 {
     struct ct_exs *x = b->x;
     const struct ct_coordinate *c = &b->coordinate[coordinate];
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     struct ct_wrench w;
     if (!ct_coordinate_wrench(b, coordinate, &w))
@@ -358,8 +362,8 @@ static bool is_open(const struct ct_build *b)
 bool ct_rows_derive(struct ct_build *b)
 {
     b->eqs->is_open = is_open(b);
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         const bool moves
             = e->kind == CT_EDGE_CLOSURE || (e->kind == CT_EDGE_JOINT && e->self->cls->motion);
         if (!moves)

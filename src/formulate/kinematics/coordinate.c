@@ -8,7 +8,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static const struct ct_measure *measure_of(const struct ct_build *b,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &b->edge[c->edge].motion;
+    const struct ct_motion *m = &b->edge_kinematics[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index >= m->quaternion ? m->quaternion : c->index;
     return &m->measure[k];
 }
@@ -54,8 +54,8 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
 static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &b->placement[node].S, v);
-    const ct_ex sine = ct_ex3_dot(x, b->plane[2], ct_ex3_cross(x, e1, s));
+    const ct_ex3 e1 = b->topology->plane[0], s = ct_ex33_apply(x, &b->placement[node].S, v);
+    const ct_ex sine = ct_ex3_dot(x, b->topology->plane[2], ct_ex3_cross(x, e1, s));
     return ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
 }
 
@@ -65,7 +65,7 @@ static bool is_upward(const struct ct_build *b, const ct_ex3 *direction)
     double sum = 0;
     for (int i = 0; i < 3; i++)
         sum += ct_ex_value(b->x, direction->e[i], b->value)
-             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+             * ct_ex_value(b->x, b->topology->plane[2].e[i], b->value);
     return sum > 0;
 }
 
@@ -86,7 +86,7 @@ static bool add_angles(struct ct_build *b, const struct ct_measure *m, struct ct
 {
     struct ct_exs *x = b->x;
     const unsigned known = 1u << CT_SYM_PARAM;
-    if (!b->is_planar
+    if (!b->topology->is_planar
         || (ct_ex_kinds(x, angle_in_frame(b, p.tail, m->v))
             | ct_ex_kinds(x, angle_in_frame(b, p.head, m->w)))
                & ~known)
@@ -107,7 +107,7 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const ct_ex along = ct_ex3_dot(x, m->about, m->reversed ? m->w : m->v);
     const ct_ex cosine = ct_ex_sub(x, ct_ex3_dot(x, V, W), ct_ex_mul(x, along, along));
     const ct_ex sine = ct_ex3_dot(x, a, ct_ex3_cross(x, V, W));
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const int joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
     const size_t r = b->eqs->nmemory;
     const ct_ex followed = angle_from(b, c->name, joint, c->index, sine, cosine);
@@ -165,7 +165,8 @@ static void measure_quaternion(struct ct_build *b, const struct ct_coordinate *c
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     const ct_ex33 A = ct_node_rotation(b, p.tail), B = ct_node_rotation(b, p.head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(b->x, &T, &B);
-    const int first = b->edge[c->edge].first_coordinate + b->edge[c->edge].motion.quaternion;
+    const int first = b->topology->edge[c->edge].first_coordinate
+                    + b->edge_kinematics[c->edge].motion.quaternion;
     ct_ex q[4];
     ct_quaternion_follow(b, c->name, &R, q);
     for (int i = 0; i < 4; i++) {
@@ -222,7 +223,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
         break;
     case CT_MEASURE_QUATERNION: {
         ct_ex3 axis = zero3;
-        const int i = c->index - b->edge[c->edge].motion.quaternion;
+        const int i = c->index - b->edge_kinematics[c->edge].motion.quaternion;
         if (i >= 3) // four numbers, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;

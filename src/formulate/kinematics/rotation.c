@@ -56,7 +56,8 @@ static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
         q[1 + i].rate = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
 }
 
-static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k, int speed)
+static void choose_quaternion(struct ct_build *b, const struct ct_edge_info *e, int k,
+                              int speed)
 {
     ct_ex w[3];
     const int first = (int)b->eqs->nq;
@@ -106,37 +107,39 @@ static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
 }
 
 // An arm of a beam: where its section is, and how that depends on the elastic coordinates.
-static void find_station(struct ct_build *b, struct ct_edge_info *e)
+static void find_station(struct ct_build *b, const struct ct_edge_info *e)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    struct ct_edge_kinematics *k = ct_edge_kinematics(b, e);
     struct ct_station *s = CT_NEW(b->arena, struct ct_station);
     ct_flexible_station(b, f, e->along, f->kinematics, s);
-    e->translation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
-    e->rotation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
-    ct_station_partials(b, f, s, e->translation, e->rotation);
-    e->station = s;
+    k->translation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    k->rotation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    ct_station_partials(b, f, s, k->translation, k->rotation);
+    k->station = s;
     if (f->kinematics != f->axial) {
         struct ct_station forces;
-        e->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        k->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
         ct_flexible_station(b, f, e->along, f->axial, &forces);
-        ct_station_partials(b, f, &forces, e->foreshortened,
+        ct_station_partials(b, f, &forces, k->foreshortened,
                             CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
     }
-    e->at = s->position;
+    k->motion.d = s->position;
     struct ct_section_turn turn[4];
     const int n = ct_section_turns(s->angle, turn);
     for (int i = 0; i < n; i++) {
         double axis[3] = {0};
         axis[turn[i].axis] = 1;
-        ct_motion_add_rotation(&e->motion, ct_ex3_const(b->x, axis),
+        ct_motion_add_rotation(&k->motion, ct_ex3_const(b->x, axis),
                                ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
     }
 }
 
 bool ct_unknowns_choose(struct ct_build *b)
 {
-    for (size_t i = 0; i < b->nedge; i++) {
-        struct ct_edge_info *e = &b->edge[i];
+    b->edge_kinematics = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         for (int k = 0; k < e->ncoordinate; k++) {
             struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
             if (!is_branch_coordinate(b, c))
@@ -154,13 +157,13 @@ bool ct_unknowns_choose(struct ct_build *b)
         for (int k = 0; k < e->ncoordinate; k++)
             m.coord[k] = b->coordinate[e->first_coordinate + k].value;
         ct_linear_graph_edge_motion(b, e, &m);
-        e->motion = m;
+        ct_edge_kinematics(b, e)->motion = m;
     }
     for (size_t i = 0; i < b->nflexible; i++)
         ct_flexible_unknowns(b, &b->flexible[i]);
-    for (size_t i = 0; i < b->nedge; i++)
-        if (b->edge[i].flexible)
-            find_station(b, &b->edge[i]);
+    for (size_t i = 0; i < b->topology->nedge; i++)
+        if (b->topology->edge[i].beam >= 0)
+            find_station(b, &b->topology->edge[i]);
     return true;
 }
 
@@ -214,7 +217,8 @@ static bool same3(ct_ex3 a, ct_ex3 b)
 ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex trial, int k)
 {
     const ct_ex c = ct_ex_diff(b->x, trial, e->trial.coord[k]);
-    return ct_ex_subst(b->x, c, e->trial.coord, e->motion.coord, (size_t)e->ncoordinate);
+    return ct_ex_subst(b->x, c, e->trial.coord, ct_edge_motion(b, e)->coord,
+                       (size_t)e->ncoordinate);
 }
 
 static void add_term(struct ct_build *b, struct ct_rotation_axis *s, int speed, int driver,
@@ -229,13 +233,14 @@ static void add_term(struct ct_build *b, struct ct_rotation_axis *s, int speed, 
 static void section_terms(struct ct_build *b, const struct ct_edge_info *e, int i, int sign,
                           struct ct_rotation_axis *s)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_edge_kinematics *kin = ct_edge_kinematics(b, e);
     struct ct_section_turn turn[4];
-    ct_section_turns(e->station->angle, turn);
+    ct_section_turns(kin->station->angle, turn);
     s->term = CT_NEWN(b->arena, struct ct_term, f->nelastic + 1);
     for (int k = 0; k < f->nelastic; k++)
         add_term(b, s, f->elastic[k].u, -1, sign,
-                 ct_ex_scale(b->x, turn[i].share, e->rotation[k].e[turn[i].axis]));
+                 ct_ex_scale(b->x, turn[i].share, kin->rotation[k].e[turn[i].axis]));
 }
 
 void ct_rotation_turn_sections(struct ct_build *b)
@@ -244,7 +249,7 @@ void ct_rotation_turn_sections(struct ct_build *b)
         struct ct_rotation_axis *s = &b->rotation_axis[i];
         s->nterm = s->section ? 0 : s->nterm;
         if (s->section)
-            section_terms(b, &b->edge[s->section - 1], s->turn, s->sign, s);
+            section_terms(b, &b->topology->edge[s->section - 1], s->turn, s->sign, s);
     }
 }
 
@@ -256,8 +261,8 @@ static void add_rotation_axis(struct ct_build *b, int cluster, const struct ct_e
     // fixed in the axes it starts from and in those it leads to
     struct ct_rotation_axis s
         = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
-    if (e->flexible) {
-        s.section = (int)(e - b->edge) + 1;
+    if (e->beam >= 0) {
+        s.section = (int)(e - b->topology->edge) + 1;
         s.turn = i;
         s.sign = sign;
         section_terms(b, e, i, sign, &s);
@@ -280,7 +285,7 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
                         int sign, ct_ex3 axis)
 {
     struct ct_exs *x = b->x;
-    ct_ex angle = e->motion.turn[i].angle;
+    ct_ex angle = ct_edge_motion(b, e)->turn[i].angle;
     if (sign < 0)
         angle = ct_ex_neg(x, angle);
     const int c = add_cluster(b, parent, 1);
@@ -333,8 +338,8 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
     struct ct_exs *x = b->x;
     const int c = add_cluster(b, parent, 3);
     const ct_ex33 P = ct_ex33_mul(x, &b->cluster[parent].R, S);
-    const int k = e->motion.quaternion;
-    const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
+    const int k = ct_edge_motion(b, e)->quaternion;
+    const ct_ex33 forward = quaternion_matrix(x, &ct_edge_motion(b, e)->coord[k]);
     const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
     b->cluster[c].R = ct_ex33_mul(x, &P, &A);
     b->cluster[c].S = ct_ex33_mul(x, S, &A);
@@ -358,7 +363,7 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
 // Axes of a node from those of its parent in the rotational tree.
 static void place_axes(struct ct_build *b, int node)
 {
-    const struct ct_edge_info *e = &b->edge[b->R.parent_edge[node]];
+    const struct ct_edge_info *e = &b->topology->edge[b->R.parent_edge[node]];
     const struct ct_node_placement *p = &b->placement[b->R.parent[node]];
     struct ct_node_placement *self = &b->placement[node];
     const int sign = b->R.sign[node];
@@ -369,16 +374,19 @@ static void place_axes(struct ct_build *b, int node)
         S = ct_ex33_mul(b->x, &p->S, &own);
     }
     self->S = S;
-    for (int i = 0; i < e->motion.nturn; i++) {
-        const int k = sign > 0 ? i : e->motion.nturn - 1 - i; // backwards from `to` to `from`
-        const ct_ex3 axis = ct_ex33_apply(b->x, sign > 0 ? &p->S : &S, e->motion.turn[k].axis);
+    for (int i = 0; i < ct_edge_motion(b, e)->nturn; i++) {
+        const int k = sign > 0
+                        ? i
+                        : ct_edge_motion(b, e)->nturn - 1 - i; // backwards from `to` to `from`
+        const ct_ex3 axis
+            = ct_ex33_apply(b->x, sign > 0 ? &p->S : &S, ct_edge_motion(b, e)->turn[k].axis);
         self->frame = turn_cluster(b, self->frame, e, k, sign, axis);
     }
     if (e->kind == CT_EDGE_ARM)
         return;
     if (e->kind == CT_EDGE_BODY) // from ground outwards always
         self->S = e->S;
-    if (e->motion.quaternion >= 0) {
+    if (ct_edge_motion(b, e)->quaternion >= 0) {
         self->frame = quaternion_cluster(b, self->frame, &p->S, e, sign);
         self->S = ct_ex33_identity();
     }
@@ -416,17 +424,17 @@ static ct_ex3 relative_velocity(struct ct_build *b, int c)
 
 void ct_rotation_derive(struct ct_build *b)
 {
-    b->placement = CT_NEWN(b->arena, struct ct_node_placement, b->nnode);
+    b->placement = CT_NEWN(b->arena, struct ct_node_placement, b->topology->nnode);
     add_cluster(b, -1, 0);
     b->cluster[0].R = ct_ex33_identity();
     b->placement[0].S = ct_ex33_identity();
-    for (size_t i = 1; i < b->nnode; i++)
+    for (size_t i = 1; i < b->topology->nnode; i++)
         place_axes(b, b->R.order[i]);
     number_clusters(b);
     for (size_t c = 1; c < b->ncluster; c++) {
         struct ct_cluster *self = &b->cluster[c];
         self->w = ct_ex3_add(b->x, b->cluster[self->parent].w, relative_velocity(b, (int)c));
-        if (b->is_planar) { // one spin, its axis is the normal or its opposite
+        if (b->topology->is_planar) { // one spin, its axis is the normal or its opposite
             const struct ct_rotation_axis *s = &b->rotation_axis[self->first_axis];
             const ct_ex inner = b->cluster[self->parent].omega;
             self->omega = ct_rotation_axis_is_positive(b, (size_t)self->first_axis)
@@ -441,7 +449,7 @@ bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r)
     double sum = 0;
     for (int i = 0; i < 3; i++)
         sum += ct_ex_value(b->x, b->rotation_axis[r].axis.e[i], b->value)
-             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+             * ct_ex_value(b->x, b->topology->plane[2].e[i], b->value);
     return sum > 0;
 }
 
@@ -493,7 +501,7 @@ static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level lev
         al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->axis));
         w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->axis));
     }
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return al; // all axes are parallel
     return ct_ex3_add(x, al, ct_ex3_cross(x, b->cluster[self->parent].w, w));
 }
@@ -564,7 +572,7 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
     const ct_ex3 w = b->cluster[c].w;
-    if (!b->is_planar)
+    if (!b->topology->is_planar)
         return ct_ex3_cross(x, w, ct_ex3_cross(x, w, v));
     const ct_ex omega = b->cluster[c].omega;
     return ct_ex3_neg(x, ct_ex3_scale(x, ct_ex_mul(x, omega, omega), ct_build_in_plane(b, v)));

@@ -62,14 +62,16 @@ static void add_translation_axis(struct ct_build *b, struct ct_anchor *a, int sp
 static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
                           const struct ct_node_placement *tail, int sign, struct ct_anchor *a)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_edge_kinematics *kin = ct_edge_kinematics(b, e);
     a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, f->nelastic + 1);
     a->ntranslation_axis = 0;
     for (int k = 0; k < f->nelastic; k++) {
-        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->translation[k]);
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, kin->translation[k]);
         ct_ex3 extra = zero3;
-        if (e->foreshortened)
-            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        if (kin->foreshortened)
+            extra
+                = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, kin->foreshortened[k]), along);
         add_translation_axis(b, a, f->elastic[k].u, -1, sign, along, extra);
     }
 }
@@ -89,7 +91,7 @@ static void place_translating(struct ct_build *b, const struct ct_edge_info *e,
     a->moves = true;
     a->fixed = fixed;
     a->sliding = vector;
-    if (e->flexible)
+    if (e->beam >= 0)
         slide_section(b, e, tail, sign, a);
     else
         a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, e->ncoordinate + 1);
@@ -117,17 +119,17 @@ static const struct ct_node_placement *tail_of(const struct ct_build *b, int nod
 // Along the branch to a node, in axes of its cluster.
 static ct_ex3 branch_vector(struct ct_build *b, int node)
 {
-    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d,
+    const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
+    const ct_ex3 d = ct_edge_motion(b, e)->d,
                  vector = ct_ex33_apply(b->x, &tail_of(b, node)->S, d);
     return b->T.sign[node] < 0 ? ct_ex3_neg(b->x, vector) : vector;
 }
 
 void ct_translation_slide_sections(struct ct_build *b)
 {
-    for (int node = 1; node < (int)b->nnode; node++) {
-        const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-        if (e->flexible && is_moving(b, branch_vector(b, node)))
+    for (int node = 1; node < (int)b->topology->nnode; node++) {
+        const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
+        if (e->beam >= 0 && is_moving(b, branch_vector(b, node)))
             slide_section(b, e, tail_of(b, node), b->T.sign[node],
                           &b->anchor[b->placement[node].anchor]);
     }
@@ -137,7 +139,7 @@ void ct_translation_slide_sections(struct ct_build *b)
 static void place_node(struct ct_build *b, int node)
 {
     const int parent = b->T.parent[node], sign = b->T.sign[node];
-    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
     const struct ct_node_placement *tail = tail_of(b, node);
     const struct ct_node_placement p = b->placement[parent];
     struct ct_node_placement *self = &b->placement[node];
@@ -187,9 +189,9 @@ static void anchor_base(struct ct_build *b, int node)
 void ct_translation_derive(struct ct_build *b)
 {
     add_anchor(b, -1, 0, zero3);
-    for (size_t i = 1; i < b->nnode; i++) {
+    for (size_t i = 1; i < b->topology->nnode; i++) {
         place_node(b, b->T.order[i]);
-        const struct ct_flexible *f = ct_flexible_of(b, b->node[b->T.order[i]].body);
+        const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[b->T.order[i]].body);
         if (f && f->base == b->T.order[i])
             anchor_base(b, b->T.order[i]);
     }
@@ -457,7 +459,7 @@ static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct
     bool any_zero = false;
     for (int i = 0; i < 3; i++)
         any_zero = any_zero || ct_ex_is_zero(local.e[i]);
-    if (b->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
+    if (b->topology->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
         return false;
     *sweep = ct_cluster_turn(b, s->cluster, local);
     return true;
@@ -520,8 +522,8 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
     *n = 0;
     for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
         int *const k = T->depth[i] > T->depth[j] ? &i : &j;
-        const struct ct_edge_info *e = &b->edge[T->parent_edge[*k]];
-        const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+        const struct ct_edge_info *e = &b->topology->edge[T->parent_edge[*k]];
+        const ct_ex3 d = ct_edge_motion(b, e)->d;
         if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
             lever[(*n)++] = d;
         *k = T->parent[*k];

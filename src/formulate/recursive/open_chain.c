@@ -214,7 +214,8 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
         t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
     const double known = t[CT_FORMULATION_ARTICULATED].cost;
     const bool by_matrix = e->nu <= CT_SMALL_SYSTEM || !s || least_matrix_cost(b, s) < known;
-    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
+    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED
+        && !b->topology->is_planar)
         t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
     // in space axes of the bodies always need fewer operations than those of ground
     if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))

@@ -88,7 +88,8 @@ static void assemble_rows(struct ct_build *b, ct_ex *r)
 static void derive_rows(struct ct_build *b, ct_ex *r)
 {
     const size_t n = b->eqs->nu;
-    const struct ct_members *s = b->is_planar || b->nflexible ? NULL : ct_members_derive(b);
+    const struct ct_members *s
+        = b->topology->is_planar || b->nflexible ? NULL : ct_members_derive(b);
     for (size_t k = 0; k < n; k++)
         r[k] = ct_sweep_residual(b, (int)k);
     if (!s)
