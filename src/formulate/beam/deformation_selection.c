@@ -120,7 +120,7 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_
     const bool keeps = !asked
                     || (is_across(b, b->model->gravity, b->topology->plane[2])
                         && loads_keep_plane(b, U) && masses_keep_plane(b, U, 1e-9 * longest));
-    *is_spatial = *is_spatial || (keeps && frees && b->keeps_all_deformations);
+    *is_spatial = *is_spatial || (keeps && frees && b->options->keeps_all_deformations);
     return keeps && !*is_spatial;
 }
 
@@ -154,7 +154,7 @@ static bool bends_about_both(const struct ct_flexible *f)
 static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
 {
     return bends_about_both(f)
-        && (b->keeps_all_deformations
+        && (b->options->keeps_all_deformations
             || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, f->beam)));
 }
 
@@ -200,7 +200,7 @@ const char *ct_deformation_no_twist(const struct ct_build *b, const struct ct_fl
     }
     if (!(f->beam->known & CT_BEAM_TORSION))
         return "only bending about both axes twists it, and G or nu, or J, is not given";
-    return ct_ex_is_zero(f->beam->twist_inertia) && !b->keeps_all_deformations
+    return ct_ex_is_zero(f->beam->twist_inertia) && !b->options->keeps_all_deformations
              ? "only bending about both axes twists it, and its sections have no inertia"
              : NULL;
 }

@@ -6,7 +6,7 @@
 
 /// May the beams of a mechanism whose joints keep to the plane b->topology->plane keep to it, too? Each must bend about the normal,
 /// and nothing may push it out of the plane: gravity, loads, inertia and arms lie in it; or the beam is told to deform
-/// there alone. One that is told to leave the plane does, and with b->keeps_all_deformations one that can: then
+/// there alone. One that is told to leave the plane does, and with b->options->keeps_all_deformations one that can: then
 /// *is_spatial is set. U: axes of the nodes at rest (linear_graph.c).
 bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_spatial);
 

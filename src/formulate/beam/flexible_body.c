@@ -115,7 +115,7 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        if (b->keep_all || b->topology->is_spatial_for_beams)
+        if (b->options->keep_all || b->topology->is_spatial_for_beams)
             ct_build_note_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
@@ -130,10 +130,12 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 // Left to the program: as in equations that were made before, else the one that holds further.
 static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 {
-    const struct ct_flexible *like = b->like ? ct_flexible_of(b->like->build, f->body) : NULL;
+    const struct ct_flexible *like
+        = b->options->like ? ct_flexible_of(b->options->like->build, f->body) : NULL;
     f->formulation = like ? like->formulation : CT_BEAM_FORESHORTENING;
-    if (b->is_linear)
-        f->formulation = b->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
+    if (b->options->is_linear)
+        f->formulation
+            = b->options->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
 }
 
 static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
@@ -176,7 +178,7 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
     if (beam->nshape)
         f->deformation &= ct_fields_family(beam);
     need_stiffness(b, f);
-    if (b->is_rigid)
+    if (b->options->is_rigid)
         f->deformation = 0;
     f->axial = f->kinematics = axial_of(b, f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)

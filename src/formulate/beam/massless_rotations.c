@@ -176,7 +176,7 @@ bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_fle
     const bool turns_apart = f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO;
     bool any = false, marked = false;
     memset(follows, 0, (size_t)(NKIND * nnode) * sizeof *follows);
-    if (b->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
+    if (b->options->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
         return false; // analyses do without masses, and then loads count that are not seen here
     for (int axis = 0; axis < NAXIS && f->deformation; axis++) {
         const bool is_massless

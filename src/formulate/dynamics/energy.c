@@ -58,9 +58,10 @@ void ct_energies_derive(struct ct_build *b)
         const ct_ex weight = ct_ex_mul(
             x, body->mass, ct_ex3_dot(x, b->model->gravity, ct_node_position(b, node)));
         kinetic = ct_ex_add(x, kinetic, ct_ex_mul(x, body->mass, ct_ex3_dot(x, v, v)));
-        kinetic = ct_ex_add(x, kinetic,
-                            ct_ex3_dot(x, ct_cluster_velocity(b, b->placement[node].frame),
-                                       ct_body_angular_momentum(b, i)));
+        kinetic = ct_ex_add(
+            x, kinetic,
+            ct_ex3_dot(x, ct_cluster_velocity(b, b->kinematics->placement[node].frame),
+                       ct_body_angular_momentum(b, i)));
         e->potential = ct_ex_sub(x, e->potential, weight);
     }
     e->kinetic = ct_ex_scale(x, 0.5, kinetic);

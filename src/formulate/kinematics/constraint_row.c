@@ -22,10 +22,10 @@ static void add_term(struct ct_build *b, struct ct_linear *l, int speed, int dri
 // One at a time.
 static struct ct_linear linear_zero(struct ct_build *b)
 {
-    if (!b->coefficient)
-        b->coefficient = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    memset(b->coefficient, 0, (b->eqs->nu + 1) * sizeof *b->coefficient);
-    return (struct ct_linear){b->coefficient, CT_EX_ZERO};
+    if (!b->cache.coefficient)
+        b->cache.coefficient = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    memset(b->cache.coefficient, 0, (b->eqs->nu + 1) * sizeof *b->cache.coefficient);
+    return (struct ct_linear){b->cache.coefficient, CT_EX_ZERO};
 }
 
 // p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.  (4.2)-(4.4)
@@ -33,15 +33,16 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
                          bool carried, struct ct_linear *l)
 {
     struct ct_exs *x = b->x;
-    const int from = b->placement[n.tail].frame, to = b->placement[n.head].frame;
-    if (!b->marked)
-        b->marked = CT_NEWN(b->arena, bool, b->ncluster + 1);
-    ct_path_mark(b, n.tail, n.head, b->marked);
-    for (size_t r = 0; r < b->nrotation_axis; r++) {
-        const struct ct_rotation_axis *s = &b->rotation_axis[r];
+    const int from = b->kinematics->placement[n.tail].frame,
+              to = b->kinematics->placement[n.head].frame;
+    if (!b->cache.marked)
+        b->cache.marked = CT_NEWN(b->arena, bool, b->kinematics->ncluster + 1);
+    ct_path_mark(b, n.tail, n.head, b->cache.marked);
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
+        const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[r];
         ct_ex3 sweep;
         ct_ex v = CT_EX_ZERO;
-        if (!b->marked[s->cluster])
+        if (!b->cache.marked[s->cluster])
             continue;
         if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
             v = ct_ex3_dot(x, w->force, sweep);
@@ -55,14 +56,14 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
             add_term(b, l, s->term[k].speed, s->term[k].driver,
                      ct_ex_mul(x, s->term[k].coef, v));
     }
-    for (size_t a = 1; a < b->nanchor && !ct_ex3_is_zero(w->force); a++) {
-        const int side = b->anchor[a].ntranslation_axis
+    for (size_t a = 1; a < b->kinematics->nanchor && !ct_ex3_is_zero(w->force); a++) {
+        const int side = b->kinematics->anchor[a].ntranslation_axis
                            ? ct_path_translation_side(b, n.tail, n.head, (int)a)
                            : 0;
-        for (int k = 0; side && k < b->anchor[a].ntranslation_axis; k++) {
-            const struct ct_translation_axis *s = &b->anchor[a].translation_axis[k];
-            const ct_ex v
-                = ct_ex3_dot(x, w->force, ct_cluster_turn(b, b->anchor[a].cluster, s->p));
+        for (int k = 0; side && k < b->kinematics->anchor[a].ntranslation_axis; k++) {
+            const struct ct_translation_axis *s = &b->kinematics->anchor[a].translation_axis[k];
+            const ct_ex v = ct_ex3_dot(
+                x, w->force, ct_cluster_turn(b, b->kinematics->anchor[a].cluster, s->p));
             add_term(b, l, s->speed, s->driver, side > 0 ? v : ct_ex_neg(x, v));
         }
     }
@@ -115,14 +116,15 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
         row->lever = ct_path_levers(b, n.tail, n.head, carried, &row->nlever);
     const struct ct_multiplier_wrench p
         = {index, n.tail, n.head, joint, w->force, w->torque, carried};
-    CT_PUSH(b->arena, b->multiplier_wrench, b->nmultiplier_wrench, b->multiplier_wrench_cap, p);
+    CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
+            b->rows.multiplier_wrench_cap, p);
 }
 
 const ct_ex *ct_row_coefficients(struct ct_build *b, int row)
 {
     struct ct_linear l = linear_zero(b);
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
         const struct ct_wrench w = {p->force, p->torque};
         if (p->row == row)
             wrench_terms(b, (struct ct_ends){p->tail, p->head}, &w, p->carried, &l);
@@ -170,7 +172,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         const ct_ex f = i ? ct_ex_neg(x, ratio) : CT_EX_ONE;
         if (ct_coordinate_is_known(c)) {
             const struct ct_coupling own = {row, coupled[i], f};
-            CT_PUSH(b->arena, b->coupling, b->ncoupling, b->coupling_cap, own);
+            CT_PUSH(b->arena, b->rows.coupling, b->rows.ncoupling, b->rows.coupling_cap, own);
             continue;
         }
         if (!ct_coordinate_wrench(b, coupled[i], &w))
@@ -182,8 +184,8 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
                                                ct_ex3_scale(x, f, w.force),
                                                ct_ex3_scale(x, f, w.torque),
                                                true};
-        CT_PUSH(b->arena, b->multiplier_wrench, b->nmultiplier_wrench, b->multiplier_wrench_cap,
-                p);
+        CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
+                b->rows.multiplier_wrench_cap, p);
     }
 }
 
@@ -265,8 +267,9 @@ static void planar_angle_row(struct ct_build *b, int edge)
     // wrapped, as one whole turn is as good as none
     const ct_ex phi = ct_ex_fun2(x, CT_OP_ATAN2, ct_ex_fun(x, CT_OP_SIN, diff),
                                  ct_ex_fun(x, CT_OP_COS, diff));
-    const ct_ex3 al = ct_cluster_path_acceleration(b, b->placement[n.tail].frame,
-                                                   b->placement[n.head].frame, CT_BIAS);
+    const ct_ex3 al
+        = ct_cluster_path_acceleration(b, b->kinematics->placement[n.tail].frame,
+                                       b->kinematics->placement[n.head].frame, CT_BIAS);
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.angle", e->name), n, &w, true, phi,
             ct_ex3_dot(x, b->topology->plane[2], al));
 }
@@ -277,7 +280,8 @@ static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
     struct ct_exs *x = b->x;
     const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
-    const int from = b->placement[n.tail].frame, to = b->placement[n.head].frame;
+    const int from = b->kinematics->placement[n.tail].frame,
+              to = b->kinematics->placement[n.head].frame;
     const ct_ex3 s = ct_node_turn(b, n.tail, s_local);
     const ct_ex3 t = ct_node_turn(b, n.head, ct_edge_motion(b, e)->rot_to[i]);
     const struct ct_wrench w = {zero3, ct_ex3_cross(x, t, s)};

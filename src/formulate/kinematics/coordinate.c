@@ -8,7 +8,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static const struct ct_measure *measure_of(const struct ct_build *b,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &b->edge_kinematics[c->edge].motion;
+    const struct ct_motion *m = &b->kinematics->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index >= m->quaternion ? m->quaternion : c->index;
     return &m->measure[k];
 }
@@ -54,7 +54,8 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
 static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const ct_ex3 e1 = b->topology->plane[0], s = ct_ex33_apply(x, &b->placement[node].S, v);
+    const ct_ex3 e1 = b->topology->plane[0],
+                 s = ct_ex33_apply(x, &b->kinematics->placement[node].S, v);
     const ct_ex sine = ct_ex3_dot(x, b->topology->plane[2], ct_ex3_cross(x, e1, s));
     return ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
 }
@@ -72,7 +73,7 @@ static bool is_upward(const struct ct_build *b, const ct_ex3 *direction)
 ct_ex ct_angle_in_plane(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const struct ct_cluster *c = &b->cluster[b->placement[node].frame];
+    const struct ct_cluster *c = &b->kinematics->cluster[b->kinematics->placement[node].frame];
     const ct_ex own = angle_in_frame(b, node, v);
     if (!c->has_angle)
         return own;
@@ -166,7 +167,7 @@ static void measure_quaternion(struct ct_build *b, const struct ct_coordinate *c
     const ct_ex33 A = ct_node_rotation(b, p.tail), B = ct_node_rotation(b, p.head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(b->x, &T, &B);
     const int first = b->topology->edge[c->edge].first_coordinate
-                    + b->edge_kinematics[c->edge].motion.quaternion;
+                    + b->kinematics->edge[c->edge].motion.quaternion;
     ct_ex q[4];
     ct_quaternion_follow(b, c->name, &R, q);
     for (int i = 0; i < 4; i++) {
@@ -223,7 +224,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
         break;
     case CT_MEASURE_QUATERNION: {
         ct_ex3 axis = zero3;
-        const int i = c->index - b->edge_kinematics[c->edge].motion.quaternion;
+        const int i = c->index - b->kinematics->edge[c->edge].motion.quaternion;
         if (i >= 3) // four numbers, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;
@@ -237,7 +238,8 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
 {
     struct ct_exs *x = b->x;
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    const int from = b->kinematics->placement[tail].frame,
+              to = b->kinematics->placement[head].frame;
     ct_ex3 v = ct_path_velocity(b, tail, head);
     if (from)
         v = ct_ex3_sub(x, v,
@@ -263,7 +265,7 @@ ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate)
 ct_ex ct_along_acceleration(struct ct_build *b, struct ct_ends n, ct_ex3 p, enum ct_level level)
 {
     struct ct_exs *x = b->x;
-    const int a = b->placement[n.tail].frame;
+    const int a = b->kinematics->placement[n.tail].frame;
     ct_ex3 sum = ct_path_acceleration(b, n.tail, n.head, level);
     if (a) {
         const ct_ex3 d = ct_path_position(b, n.tail, n.head);
@@ -293,7 +295,8 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
     if (m->kind == CT_MEASURE_LENGTH)
         return ct_along_acceleration(b, p, w.force, level);
     // h . al_rel + h' . w_rel, h = parts fixed in the tail's and in the head's axes
-    const int from = b->placement[p.tail].frame, to = b->placement[p.head].frame;
+    const int from = b->kinematics->placement[p.tail].frame,
+              to = b->kinematics->placement[p.head].frame;
     ct_ex3 turning = ct_cluster_cross_velocity(b, to, w.torque);
     if (m->kind == CT_MEASURE_ANGLE)
         turning = ct_ex3_add(

@@ -29,7 +29,7 @@ static const double same_place = 1e-9; // of the beam's length
 static struct cut cut_at(struct ct_build *b, const struct ct_flexible *f, ct_ex x)
 {
     struct cut c = {.f = f};
-    const int frame = b->placement[f->base].frame;
+    const int frame = b->kinematics->placement[f->base].frame;
     ct_flexible_station(b, f, x, f->kinematics, &c.s);
     c.x = ct_ex_value(b->x, x, b->value);
     c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
@@ -177,7 +177,7 @@ static void add_arms(struct ct_build *b, struct cut *c)
             continue;
         ct_reaction_of_edge(b, (int)i, &force, &torque);
         add_wrench(b, c, ct_node_unturn(b, c->f->base, force),
-                   ct_node_unturn(b, c->f->base, torque), b->edge_kinematics[i].motion.d);
+                   ct_node_unturn(b, c->f->base, torque), b->kinematics->edge[i].motion.d);
     }
 }
 

@@ -56,7 +56,7 @@ void ct_members_add_bodies(struct ct_member_build *w)
         ct_ex33 turned = {{{0}}};
         if (!body->is_particle) {
             const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-            const ct_ex33 *S = &b->placement[node].S, t = ct_ex33_transpose(S);
+            const ct_ex33 *S = &b->kinematics->placement[node].S, t = ct_ex33_transpose(S);
             const ct_ex33 half = ct_ex33_mul(b->x, &own, &t);
             turned = ct_ex33_mul(b->x, S, &half);
         }
@@ -145,8 +145,8 @@ void ct_members_load(struct ct_member_build *w)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    for (size_t i = 0; i < b->nload; i++) {
-        const struct ct_load *l = &b->load[i];
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        const struct ct_load *l = &b->dynamics.load[i];
         ct_ex3 back = l->torque;
         apply_at(w, l->head, l->force, l->torque);
         if (l->tail == 0)

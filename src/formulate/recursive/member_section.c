@@ -17,7 +17,7 @@ static int beam_of(const struct ct_build *b, const struct ct_flexible *f)
 static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
 {
     if (!b->topology->is_planar)
-        return b->placement[f->base].S;
+        return b->kinematics->placement[f->base].S;
     const ct_ex3 n
         = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->plane[2]);
     ct_ex33 A = {{{0}}};
@@ -35,7 +35,7 @@ static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
 // In a plane: axes of the beam's base -> those of the plane.
 static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
 {
-    const struct ct_node_placement *p = &b->placement[f->base];
+    const struct ct_node_placement *p = &b->kinematics->placement[f->base];
     const ct_ex3 x = {{CT_EX_ONE, CT_EX_ZERO, CT_EX_ZERO}};
     const ct_ex3 v = ct_member_express(b, p->frame, ct_ex33_apply(b->x, &p->S, x));
     return (ct_ex33){{v.e[0], v.e[1], CT_EX_ZERO, ct_ex_neg(b->x, v.e[1]), v.e[0], CT_EX_ZERO,
@@ -109,8 +109,8 @@ static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
     const ct_ex33 *A = &w->s->beam[beam_of(b, f)].A;
     ct_ex3 place = ct_ex33_apply(b->x, A, ct_edge_motion(b, e)->d);
     place = sign > 0 ? place : ct_ex3_neg(b->x, place);
-    const int i
-        = ct_member_add(w, from, b->placement[f->base].frame, ct_ex3_add(b->x, r, place));
+    const int i = ct_member_add(w, from, b->kinematics->placement[f->base].frame,
+                                ct_ex3_add(b->x, r, place));
     struct ct_member *m = &w->s->member[i];
     m->beam = beam_of(b, f) + 1;
     m->translates = m->is_ready = true;

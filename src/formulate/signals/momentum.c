@@ -19,7 +19,8 @@ ct_ex3 ct_body_angular_momentum(struct ct_build *b, size_t i)
         return zero3;
     const ct_ex *I = body->inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-    const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, b->placement[node].frame));
+    const ct_ex3 w
+        = ct_node_unturn(b, node, ct_cluster_velocity(b, b->kinematics->placement[node].frame));
     return ct_node_turn(b, node, ct_ex33_apply(b->x, &own, w));
 }
 

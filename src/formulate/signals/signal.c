@@ -46,7 +46,7 @@ static const char *const vector_properties[]
 
 static ct_ex3 frame_vector(struct ct_build *b, int node, int property)
 {
-    const int frame = b->placement[node].frame;
+    const int frame = b->kinematics->placement[node].frame;
     switch (property) {
     case 0:
         return ct_node_position(b, node);
