@@ -1,6 +1,7 @@
 // The pipeline: model file -> equations of motion, stage by stage.
 #include "system.h"
 
+#include "formulate/build.h"
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
@@ -317,8 +318,8 @@ static bool draw(void *task)
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     for (int i = 0; i < e->graph->nedge; i++) {
-        quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
-        marked[i] = strcmp(e->edge_kind[i], "flexible arm") == 0;
+        quiet[i] = ct_edge_is_rigid_arm(&e->build->topology->edge[i]);
+        marked[i] = e->build->topology->edge[i].beam >= 0;
     }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,

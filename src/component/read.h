@@ -116,10 +116,9 @@ extern const double ct_read_full_turn;
 
 // ---- components --------------------------------------------------------------------------------
 
-/// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
+/// The class named by `type`, or the standard class of the family without it; NULL after an error.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_node_pair *p, const char *sort,
-                                               const char *standard);
+                                               const struct ct_node_pair *p, const char *sort);
 /// Allocate the values of all keys, none given.
 void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's

@@ -115,17 +115,17 @@ static void put_terminal(struct writer *w)
     const struct ct_build *b = w->d->e->build;
     ct_stage_terminal(w->d); // the page of this writer is never printed
     ct_json_array(&w->j, "terminal");
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         put_component(w, e->name, w->d->e->edge_kind[i],
-                      e->self       ? e->self->cls->across
-                      : e->flexible ? "d = r, S: place and turn of the section"
-                                    : "d, S constant",
+                      e->self        ? e->self->cls->across
+                      : e->beam >= 0 ? "d = r, S: place and turn of the section"
+                                     : "d, S constant",
                       e->self ? e->self->cls->through : "F, T are reactions");
     }
     for (size_t j = 0; j < w->d->m->njoint; j++) { // gears
         const struct ct_instance *self = &w->d->m->joint[j];
-        if (b->edge_of_joint[j] < 0)
+        if (b->topology->edge_of_joint[j] < 0)
             put_component(w, self->name, self->cls->name, self->cls->across,
                           self->cls->through);
     }

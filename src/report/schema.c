@@ -59,7 +59,7 @@ static void write_class(struct ct_json *j, const struct ct_component_class *c)
     ct_json_end(j);
 }
 
-// if type is NAME then the object is a NAME; a body without type is rigid
+// if type is NAME then the object is a NAME, as it is without type if NAME is the standard class of its family
 static void write_choice(struct ct_json *j, const struct ct_component_class *c)
 {
     char name[64];
@@ -71,7 +71,7 @@ static void write_choice(struct ct_json *j, const struct ct_component_class *c)
     ct_json_text(j, "const", c->name);
     ct_json_end(j);
     ct_json_end(j);
-    if (strcmp(c->name, "rigid") != 0) {
+    if (!c->is_standard) {
         ct_json_array(j, "required");
         ct_json_text(j, NULL, "type");
         ct_json_end(j);

@@ -7,14 +7,15 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 static size_t at(const struct ct_composite_sums *s, int anchor, int cluster)
 {
-    return (size_t)anchor + s->b->nanchor * (size_t)cluster;
+    return (size_t)anchor + s->b->kinematics->nanchor * (size_t)cluster;
 }
 
 ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star)
 {
     if (!s->has_moment[star])
-        s->moment[star] = ct_cluster_turn(s->b, s->b->augmented_body[star].cluster,
-                                          s->b->augmented_body[star].moment);
+        s->moment[star]
+            = ct_cluster_turn(s->b, s->b->dynamics.masses.augmented_body[star].cluster,
+                              s->b->dynamics.masses.augmented_body[star].moment);
     s->has_moment[star] = true;
     return s->moment[star];
 }
@@ -34,7 +35,8 @@ ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
 static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
 {
     for (int k = 0; k < s->nchild; k++)
-        if (!ct_ex_is_zero(b->anchor[b->child[s->first_child + k]].mass))
+        if (!ct_ex_is_zero(
+                b->dynamics.masses.mass[b->dynamics.masses.child[s->first_child + k]]))
             return true;
     return !ct_ex3_is_zero(s->moment);
 }
@@ -42,21 +44,22 @@ static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
 static void count_augmented_bodies(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
-    for (size_t i = 0; i < b->nanchor; i++)
+    for (size_t i = 0; i < b->kinematics->nanchor; i++)
         s->first[i] = -1;
-    for (size_t i = b->naugmented_body; i-- > 0;) {
-        s->next[i] = s->first[b->augmented_body[i].anchor];
-        s->first[b->augmented_body[i].anchor] = (int)i;
-        if (!is_felt(b, &b->augmented_body[i]))
+    for (size_t i = b->dynamics.masses.naugmented_body; i-- > 0;) {
+        s->next[i] = s->first[b->dynamics.masses.augmented_body[i].anchor];
+        s->first[b->dynamics.masses.augmented_body[i].anchor] = (int)i;
+        if (!is_felt(b, &b->dynamics.masses.augmented_body[i]))
             continue;
-        s->nstar[b->augmented_body[i].anchor]++;
-        for (int c = b->augmented_body[i].cluster; c > 0; c = b->cluster[c].parent)
-            s->nturning[at(s, b->augmented_body[i].anchor, c)]++;
+        s->nstar[b->dynamics.masses.augmented_body[i].anchor]++;
+        for (int c = b->dynamics.masses.augmented_body[i].cluster; c > 0;
+             c = b->kinematics->cluster[c].parent)
+            s->nturning[at(s, b->dynamics.masses.augmented_body[i].anchor, c)]++;
     }
-    for (size_t a = b->nanchor; a-- > 1;) {
-        s->nstar[b->anchor[a].parent] += s->nstar[a];
-        for (size_t c = 1; c < b->ncluster; c++)
-            s->nturning[at(s, b->anchor[a].parent, (int)c)]
+    for (size_t a = b->kinematics->nanchor; a-- > 1;) {
+        s->nstar[b->kinematics->anchor[a].parent] += s->nstar[a];
+        for (size_t c = 1; c < b->kinematics->ncluster; c++)
+            s->nturning[at(s, b->kinematics->anchor[a].parent, (int)c)]
                 += s->nturning[at(s, (int)a, (int)c)];
     }
 }
@@ -73,20 +76,21 @@ enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int
 static void find_starts(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
-    for (size_t c = 0; c < b->ncluster; c++)
+    for (size_t c = 0; c < b->kinematics->ncluster; c++)
         s->start[c] = -1;
-    for (size_t i = 0; i < b->naugmented_body; i++)
-        for (int c = b->augmented_body[i].cluster; c > 0 && is_felt(b, &b->augmented_body[i]);
-             c = b->cluster[c].parent) {
-            int other = b->augmented_body[i].anchor;
+    for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++)
+        for (int c = b->dynamics.masses.augmented_body[i].cluster;
+             c > 0 && is_felt(b, &b->dynamics.masses.augmented_body[i]);
+             c = b->kinematics->cluster[c].parent) {
+            int other = b->dynamics.masses.augmented_body[i].anchor;
             if (s->start[c] < 0)
                 s->start[c] = other;
             while (s->start[c] != other) // numbers grow outwards
                 *(s->start[c] > other ? &s->start[c] : &other)
-                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+                    = b->kinematics->anchor[s->start[c] > other ? s->start[c] : other].parent;
         }
-    for (size_t c = 1; c < b->ncluster; c++)
-        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+    for (size_t c = 1; c < b->kinematics->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->kinematics->anchor[a].parent : -1)
             if (ct_composite_sums_turning(s, a, (int)c) == CT_TURNS_ALL)
                 s->start[c] = a;
 }
@@ -97,7 +101,7 @@ ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int clus
     if (anchor == 0)
         return zero3;
     if (!s->has_g[i]) {
-        const struct ct_anchor *a = &s->b->anchor[anchor];
+        const struct ct_anchor *a = &s->b->kinematics->anchor[anchor];
         s->g[i] = ct_composite_sums_reach(s, a->parent, cluster);
         if (ct_composite_sums_turns_with(s, cluster, a->cluster))
             s->g[i] = ct_ex3_add(s->b->x, s->g[i], ct_composite_sums_link(s, anchor));
@@ -113,10 +117,12 @@ ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor)
         ct_ex3 sum = zero3;
         for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
             sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
-            for (int k = 0; k < b->augmented_body[i].nchild; k++)
-                sum = ct_ex3_add(b->x, sum,
-                                 ct_composite_sums_moment(
-                                     s, b->child[b->augmented_body[i].first_child + k]));
+            for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++)
+                sum = ct_ex3_add(
+                    b->x, sum,
+                    ct_composite_sums_moment(
+                        s, b->dynamics.masses
+                               .child[b->dynamics.masses.augmented_body[i].first_child + k]));
         }
         s->all[anchor] = sum;
         s->has_all[anchor] = true;
@@ -136,13 +142,17 @@ ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor,
     if (!s->has_h[at_pair]) {
         ct_ex3 sum = zero3;
         for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
-            if (ct_composite_sums_turns_with(s, cluster, b->augmented_body[i].cluster))
+            if (ct_composite_sums_turns_with(s, cluster,
+                                             b->dynamics.masses.augmented_body[i].cluster))
                 sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
-            for (int k = 0; k < b->augmented_body[i].nchild; k++)
+            for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++)
                 sum = ct_ex3_add(
                     b->x, sum,
                     ct_composite_sums_moment_turning(
-                        s, b->child[b->augmented_body[i].first_child + k], cluster));
+                        s,
+                        b->dynamics.masses
+                            .child[b->dynamics.masses.augmented_body[i].first_child + k],
+                        cluster));
         }
         s->h[at_pair] = sum;
         s->has_h[at_pair] = true;
@@ -164,7 +174,7 @@ static ct_ex33 cross_inertia(struct ct_build *b, ct_ex3 d, ct_ex3 h)
     struct ct_exs *x = b->x;
     const ct_ex twice = ct_ex_scale(x, 2, ct_ex3_dot(x, d, h));
     ct_ex33 X = {{{0}}};
-    if (b->is_planar) {
+    if (b->topology->is_planar) {
         X.e[8] = twice;
         return X;
     }
@@ -184,8 +194,10 @@ static const ct_ex33 *cross_descendants(struct ct_composite_sums *s, int anchor)
     if (!s->has_cross[anchor]) {
         ct_ex33 sum = {{{0}}};
         for (int i = s->first[anchor]; i >= 0; i = s->next[i])
-            for (int k = 0; k < b->augmented_body[i].nchild; k++) {
-                const int child = b->child[b->augmented_body[i].first_child + k];
+            for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++) {
+                const int child
+                    = b->dynamics.masses
+                          .child[b->dynamics.masses.augmented_body[i].first_child + k];
                 const ct_ex33 X = cross_inertia(b, ct_composite_sums_link(s, child),
                                                 ct_composite_sums_moment(s, child));
                 add_tensor(b, &sum, cross_descendants(s, child));
@@ -201,10 +213,11 @@ static const ct_ex33 *cross_descendants(struct ct_composite_sums *s, int anchor)
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
 {
     struct ct_exs *x = b->x;
-    const ct_ex33 *L = &b->cluster[c].L, *R = &b->cluster[c].R;
+    const ct_ex33 *L = &b->dynamics.masses.inertia[c], *R = &b->kinematics->cluster[c].R;
     ct_ex33 out = {{{0}}};
-    if (b->is_planar) {
-        out.e[8] = ct_ex3_dot(x, b->plane[2], ct_ex33_apply(x, L, b->plane[2]));
+    if (b->topology->is_planar) {
+        out.e[8]
+            = ct_ex3_dot(x, b->topology->plane[2], ct_ex33_apply(x, L, b->topology->plane[2]));
         return out;
     }
     const ct_ex33 half = ct_ex33_mul(x, R, L);
@@ -220,12 +233,12 @@ ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
 static void sum_inertias(struct ct_composite_sums *s)
 {
     struct ct_build *b = s->b;
-    for (size_t c = b->ncluster; c-- > 1;) {
+    for (size_t c = b->kinematics->ncluster; c-- > 1;) {
         const ct_ex33 own = ct_cluster_inertia(b, (int)c);
         add_tensor(b, &s->inertia[c], &s->descendants[c]);
         add_tensor(b, &s->inertia[c], &own);
-        if (b->cluster[c].parent > 0)
-            add_tensor(b, &s->descendants[b->cluster[c].parent], &s->inertia[c]);
+        if (b->kinematics->cluster[c].parent > 0)
+            add_tensor(b, &s->descendants[b->kinematics->cluster[c].parent], &s->inertia[c]);
     }
 }
 
@@ -241,14 +254,17 @@ void ct_composite_sums_add_full(struct ct_composite_sums *s, int anchor, int clu
         return;
     }
     for (int i = s->first[anchor]; i >= 0; i = s->next[i])
-        for (int k = 0; k < b->augmented_body[i].nchild; k++)
-            ct_composite_sums_add_full(s, b->child[b->augmented_body[i].first_child + k],
-                                       cluster, sum);
+        for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++)
+            ct_composite_sums_add_full(
+                s,
+                b->dynamics.masses.child[b->dynamics.masses.augmented_body[i].first_child + k],
+                cluster, sum);
 }
 
 struct ct_composite_sums ct_composite_sums_create(struct ct_build *b)
 {
-    const size_t na = b->nanchor, nc = b->ncluster, ns = b->naugmented_body + 1;
+    const size_t na = b->kinematics->nanchor, nc = b->kinematics->ncluster,
+                 ns = b->dynamics.masses.naugmented_body + 1;
     struct ct_composite_sums s = {.b = b};
     s.nstar = CT_NEWN(b->arena, int, na);
     s.nturning = CT_NEWN(b->arena, int, na *nc);
