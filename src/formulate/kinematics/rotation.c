@@ -169,6 +169,12 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 
 // ---- rates ----------------------------------------------------------------------------------------
 
+static bool is_moving(const struct ct_exs *x, ct_ex e, unsigned moving)
+{
+    const struct ct_sym *sym = ct_ex_symbol(x, e);
+    return sym && (moving & 1u << sym->kind);
+}
+
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
 {
     const struct ct_equations *s = b->eqs;
@@ -177,15 +183,17 @@ ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few
-    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1),
-          *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
-    size_t n = 0;
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
+    size_t n = 0;
+    for (size_t i = 0; i < nwalk; i++)
+        n += is_moving(b->x, (ct_ex){b->x->stack[i]}, moving);
+    ct_ex *from = CT_NEWN(b->arena, ct_ex, n + 1), *to = CT_NEWN(b->arena, ct_ex, n + 1);
+    n = 0;
     for (size_t i = 0; i < nwalk; i++) {
         const ct_ex leaf = {b->x->stack[i]};
-        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
-        if (!sym || !(moving & 1u << sym->kind))
+        if (!is_moving(b->x, leaf, moving))
             continue;
+        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
         from[n] = leaf;
         to[n++] = sym->kind == CT_SYM_TIME ? CT_EX_ONE : s->q[sym->index].rate;
     }
