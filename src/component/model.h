@@ -52,6 +52,16 @@ struct ct_parameter {
     bool is_input; // set from outside, also while a motion goes on
 };
 
+/// A state of the user's own, z' = rate: of a controller, an actuator, a filter.
+struct ct_state {
+    const char *name;
+    struct ct_mark mark, rate_mark;
+    ct_ex symbol;     // the SIGNAL that expressions know it by
+    ct_ex rate;       // of time, signals and states
+    ct_ex initial;    // of parameters
+    const char *unit; // of the state; NULL: none was given
+};
+
 /// One entry of `outputs`: a signal, a vector signal (several columns later) or an expression.
 struct ct_output {
     const char *name; // as written
@@ -85,6 +95,8 @@ struct ct_model {
     ct_ex3 gravity; // [m/s^2]
     struct ct_parameter *parameter;
     size_t nparameter, parameter_cap;
+    struct ct_state *state;
+    size_t nstate, state_cap;
     struct ct_frame *frame;
     size_t nframe, frame_cap;
     struct ct_body *body; // [0] is ground
@@ -98,7 +110,7 @@ struct ct_model {
     struct ct_simulation simulation;
     unsigned char *decided; // by symbol: a count depends on it (structural); NULL: none does
     double *value;          // by number of symbol: t (0) and the parameters
-    struct ct_names parameter_index; // names -> indices
+    struct ct_names parameter_index, state_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
 };
 

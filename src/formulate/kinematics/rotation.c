@@ -133,6 +133,22 @@ static void find_station(struct ct_build *b, struct ct_edge_info *e)
     }
 }
 
+// A state of the model, as a speed that moves nothing.
+static void add_state(struct ct_build *b, const char *name)
+{
+    struct ct_equations *s = b->eqs;
+    const uint32_t k = (uint32_t)s->nu;
+    const struct ct_u z
+        = {.name = name,
+           .symbol = ct_ex_sym(b->x, CT_SYM_U, name, k),
+           .derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s'", name), k),
+           .q = -1,
+           .joint = -1,
+           .body = -1};
+    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, z);
+    s->nstate++;
+}
+
 bool ct_unknowns_choose(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nedge; i++) {
@@ -161,6 +177,9 @@ bool ct_unknowns_choose(struct ct_build *b)
     for (size_t i = 0; i < b->nedge; i++)
         if (b->edge[i].flexible)
             find_station(b, &b->edge[i]);
+    b->eqs->nmotion = b->eqs->nu;
+    for (size_t i = 0; i < b->model->nstate; i++)
+        add_state(b, b->model->state[i].name);
     return true;
 }
 
