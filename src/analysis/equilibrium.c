@@ -35,7 +35,7 @@ struct search {
 static void find_turns(struct search *s)
 {
     const struct ct_equations *e = s->l->m->e;
-    for (size_t k = 0; k < e->nu; k++)
+    for (size_t k = 0; k < e->nmotion; k++)
         s->turns[k] = e->u[k].q < 0;
     for (size_t i = 0; i < e->ncoordinate; i++)
         if (e->coordinate[i].u >= 0 && e->coordinate[i].in_rotation
@@ -203,7 +203,7 @@ static void find_step(struct search *s, double *c)
 static double allowed(const struct search *s)
 {
     double part = 1;
-    for (int k = 0; k < s->l->nu; k++) {
+    for (size_t k = 0; k < s->l->m->e->nmotion; k++) {
         const double most = s->turns[k] ? longest_turn : s->length;
         if (fabs(s->dq[k]) * part > most)
             part = most / fabs(s->dq[k]);
@@ -256,6 +256,12 @@ static bool go(struct search *s)
 bool ct_equilibrium_missing(const struct ct_linear *l, int k)
 {
     const struct ct_u *u = &l->m->e->u[k];
+    if (ct_speed_is_state(l->m->e, (size_t)k))
+        return ct_error(l->ctx, l->m->model->state[(size_t)k - l->m->e->nmotion].rate_mark,
+                        CT_E_EQUILIBRIUM,
+                        "no equilibrium is found: the state '%s' goes on to change; its rate, or "
+                        "what it acts on, must come to rest somewhere near the start",
+                        u->name);
     const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
                               : u->body >= 0  ? l->m->model->body[u->body].instance.mark
                                               : (struct ct_mark){.file = l->m->model->file};
@@ -367,6 +373,90 @@ static bool has_no_potential(const struct ct_linear *l)
     return odd > roundoff * largest;
 }
 
+// ---- with states of the model ----------------------------------------------------------------------------------
+//
+// Where z' = 0 as well: what controllers hold has no potential, and nothing goes down. Newton's method with steps of least
+// norm, where nothing tells a state or a place, shortened while the next correction by the same derivatives grows.
+// Source: Deuflhard (2011), 3.2, key deuflhard2011.
+
+// The largest change of dq against the size of what it changes; a place of a state is measured by itself.
+static double relative_size(const struct ct_linear *l, const double *dq)
+{
+    const struct ct_equations *e = l->m->e;
+    double size = ct_vector_largest(dq, e->nmotion) / place_size(l);
+    for (size_t k = e->nmotion; k < e->nu; k++)
+        size = fmax(size, fabs(dq[k]) / (1 + fabs(l->y[e->nq + k])));
+    return size;
+}
+
+// dq (nu, out): the correction for the forces of now, by the derivatives in s->H.
+static void correct(struct search *s, double *dq)
+{
+    struct ct_linear *l = s->l;
+    const int f = l->nfree;
+    memcpy(s->A, s->H, (size_t)f * (size_t)f * sizeof *s->A);
+    for (int i = 0; i < f; i++)
+        s->g[i] = -l->force[i];
+    if (f)
+        ct_lstsq(s->g, s->A, f, f, f, ct_rank_tolerance, l->iwork, l->work);
+    ct_linear_expand(l, dq, s->g);
+}
+
+// Along s->dq to where the next correction is smaller. False if it is nowhere.
+static bool go_nearer(struct search *s, double size)
+{
+    struct ct_linear *l = s->l;
+    const size_t nu = (size_t)l->nu;
+    double part = allowed(s);
+    keep(s, false);
+    for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
+        for (size_t k = 0; k < nu; k++)
+            s->p[k] = part * s->dq[k];
+        ct_linear_retract(l, s->p);
+        if (ct_linear_close(l) && ct_linear_rest(l)) {
+            correct(s, s->scale);
+            if (size <= nearly || relative_size(l, s->scale) <= (1 - part / 4) * size)
+                return true;
+        }
+        if (l->ctx->nerror)
+            return false;
+        keep(s, true);
+    }
+    return false;
+}
+
+// The speed along which forces are left that no step takes off; -1: none is.
+static int unbalanced(struct search *s)
+{
+    find_directions(s);
+    find_forces(s);
+    for (int k = 0; k < s->n; k++)
+        if (fabs(s->p[k]) > balanced * s->scale[k])
+            return s->l->independent[k];
+    return -1;
+}
+
+static bool find_with_states(struct search *s, struct ct_equilibrium_result *out)
+{
+    struct ct_linear *l = s->l;
+    double last = INFINITY;
+    s->length = INFINITY;
+    *out = (struct ct_equilibrium_result){0};
+    if (!ct_linear_rest(l))
+        return false;
+    for (;; out->iterations++) {
+        memcpy(s->H, l->Kr, (size_t)l->nfree * (size_t)l->nfree * sizeof *s->H);
+        correct(s, s->dq);
+        const double size = out->last_step = relative_size(l, s->dq);
+        if (size <= arrived || (size <= nearly && size > last / 2))
+            break;
+        last = size;
+        if (out->iterations == MOST_STEPS || !go_nearer(s, size))
+            return false;
+    }
+    return unbalanced(s) < 0;
+}
+
 bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
                          struct ct_equilibrium_result *out)
 {
@@ -374,6 +464,12 @@ bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
     start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
     start.kept_memory = CT_NEWN(l->arena, double, l->m->e->nmemory + 1);
     keep(&start, false);
+    if (l->m->e->nstate) {
+        if (find_with_states(&s, out))
+            return true;
+        const int left = l->ctx->nerror ? -1 : unbalanced(&s);
+        return !l->ctx->nerror && ct_equilibrium_missing(l, left < 0 ? moves_most(&s) : left);
+    }
     if (!held) {
         if (!ct_linear_rest(l))
             return false;
