@@ -341,7 +341,9 @@ enum ct_quantity {
     CT_Q_COORDINATES, /* nq */
     CT_Q_SPEEDS,      /* nu */
     CT_Q_RATE,        /* nq, q' */
-    CT_Q_PHI_RATE     /* m, d phi/dt = J u + the part by time */
+    CT_Q_PHI_RATE,    /* m, d phi/dt = J u + the part by time */
+    CT_Q_STATES,      /* as CT_STATE */
+    CT_Q_STATE_RATES  /* their rates */
 };
 
 /**

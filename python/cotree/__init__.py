@@ -498,9 +498,9 @@ def _quantity(number, is_matrix=False):
 
 
 class Data:
-    """One state: t, q, u, inputs, parameters, and all that follows. One thread at a time.
+    """One state: t, q, u, states z of the model, inputs, parameters, and all that follows. One thread at a time.
 
-    Arrays are copies that cannot be written to: set the state by d.q = ..., d.u = ..., d.t = ...
+    Arrays are copies that cannot be written to: set the state by d.q = ..., d.u = ..., d.z = ..., d.t = ...
     """
 
     def __init__(self, system, context, pointer):
@@ -512,6 +512,7 @@ class Data:
         self.parameters = _Values(self, "parameter", True)
         self.coordinates = _Values(self, "coordinate", True)
         self.speeds = _Values(self, "speed", True)
+        self.states = _Values(self, "state", True)
         self.outputs = _Values(self, "output", False)
 
     def __del__(self):
@@ -538,6 +539,8 @@ class Data:
 
     q = _quantity(_l.Q_COORDINATES).setter(lambda self, v: self._set(_l.COORDINATE, v))
     u = _quantity(_l.Q_SPEEDS).setter(lambda self, v: self._set(_l.SPEED, v))
+    z = _quantity(_l.Q_STATES).setter(lambda self, v: self._set(_l.STATE, v))
+    z_rate = _quantity(_l.Q_STATE_RATES)
     M = _quantity(_l.Q_M, True)
     Q = _quantity(_l.Q_FORCE)
     J = _quantity(_l.Q_J, True)
