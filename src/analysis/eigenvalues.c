@@ -486,7 +486,7 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
     bool ok = true;
     *how = "no freedoms";
     if (f && l->m->e->nstate) {
-        *how = "general, with states";
+        *how = ct_arena_printf(a, "general (%zu states of the model)", l->m->e->nstate);
         ok = solve_state_space(&list, 0);
     } else if (f) {
         solve_symmetric(a, l->Mr, l->Kr, f, &s);
