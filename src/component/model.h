@@ -50,6 +50,8 @@ struct ct_parameter {
     const char *unit; // that it was given with; NULL: none
     double value;
     bool is_input; // set from outside, also while a motion goes on
+    bool is_played; // a file does so: `played`
+    ct_ex played;   // a function of time
 };
 
 /// A state of the user's own, z' = rate: of a controller, an actuator, a filter.
@@ -114,9 +116,14 @@ struct ct_model {
     struct ct_names frame_index, body_index, joint_index, force_index;
 };
 
-/// An override from the command line: "NAME=VALUE", the value an expression or a quantity.
+/// An override from the command line: "NAME=VALUE", the value an expression or a quantity; or a CSV file that plays inputs.
 struct ct_set {
     const char *text;
+    enum ct_set_kind {
+        CT_SET_VALUE,
+        CT_SET_INPUTS,     // linear between its rows
+        CT_SET_INPUTS_HELD // a row counts from its time on
+    } kind;
 };
 
 /// Read, check and resolve a model file. Reports every problem it can find in one pass, in the

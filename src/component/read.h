@@ -113,6 +113,8 @@ const char *ct_read_path_beside(struct ct_reader *r, const char *file);
 /// any
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
                    ct_ex *e);
+/// The columns of a CSV file as functions of time that inputs of their names are from now on. Errors: E134, E135, E412, E119.
+bool ct_read_played_inputs(struct ct_reader *r, const char *path, bool holds);
 /// [rad] Angles beyond it, written without a unit, are asked about: E152.
 extern const double ct_read_full_turn;
 

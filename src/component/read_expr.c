@@ -133,6 +133,11 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
     if (i < 0)
         return CT_NAME_UNKNOWN;
     *e = r->m->parameter[i].symbol;
+    if (r->m->parameter[i].is_played) {
+        *e = r->m->parameter[i].played;
+        *why = "a file plays this input, and the value is constant in time";
+        return r->flags & (CT_KEY_TIME | CT_KEY_STATE) ? CT_NAME_OK : CT_NAME_FORBIDDEN;
+    }
     return CT_NAME_OK;
 }
 

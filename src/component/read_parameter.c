@@ -110,6 +110,8 @@ static bool parse_override(struct ct_reader *r, const char *text, struct work *w
     if (i < 0)
         return ct_error(r->ctx, none, CT_E_USAGE, "the model has no parameter '%s'%s", name,
                         ct_read_suggestion(r, name, r->known + 1, r->nknown - 1));
+    if (r->m->parameter[i].is_played)
+        return ct_error(r->ctx, none, CT_E_USAGE, "a file plays the input '%s'", name);
     const struct ct_node value
         = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
     w->node[i] = NULL;
@@ -124,6 +126,8 @@ static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_
 {
     bool ok = true;
     for (size_t k = 0; k < nset; k++) {
+        if (set[k].kind != CT_SET_VALUE)
+            continue;
         const size_t first = r->ctx->ndiagnostic;
         ok &= parse_override(r, set[k].text, w);
         move_errors_to_command_line(r, first, set[k].text);
@@ -281,10 +285,14 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     w.order = CT_NEWN(scratch, int, w.n);
     w.is_wrong = CT_NEWN(scratch, bool, w.n);
     r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);
-    for (size_t i = 0; i < w.n; i++) {
-        w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+    for (size_t i = 0; i < w.n; i++)
         if (w.node[i]->kind == CT_NODE_SCALAR)
             r->m->parameter[i].unit = ct_parse_unit(w.node[i]->text);
+    for (size_t k = 0; k < nset; k++)
+        if (set[k].kind != CT_SET_VALUE)
+            ok &= ct_read_played_inputs(r, set[k].text, set[k].kind == CT_SET_INPUTS_HELD);
+    for (size_t i = 0; i < w.n; i++) {
+        w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
         r->m->parameter[i].value = NAN; // until it is known
         r->m->value[1 + i] = NAN;
     }
