@@ -32,7 +32,7 @@ class SystemOptions(Structure):
     _fields_ = [("size", c_size_t), ("set", POINTER(c_char_p)), ("nset", c_size_t),
                 ("tree", c_char_p), ("keep_all", c_bool), ("columns", c_int),
                 ("for_analysis", c_bool), ("beam_elements", c_long),
-                ("beam_formulation", c_char_p)]
+                ("beam_formulation", c_char_p), ("input", c_char_p), ("hold_input", c_bool)]
 
 
 class SimOptions(Structure):

@@ -82,6 +82,8 @@ static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
 // The beam of that kind that a coordinate moves, of a joint one of the two at its ends; else NULL.
 static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
 {
+    if (u->beam <= 0 && u->joint < 0 && u->body < 0) // a state of the model
+        return NULL;
     if (u->beam > 0 || u->joint < 0)
         return bare_beam(m, (size_t)(u->beam > 0 ? u->beam : u->body));
     const struct ct_instance *joint = &m->joint[u->joint];
