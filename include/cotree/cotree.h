@@ -148,6 +148,8 @@ struct ct_system_options {
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
+    const char *input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
+    bool hold_input;   /* a row of it counts from its t on; else it is linear between rows */
 };
 
 /**
@@ -341,7 +343,9 @@ enum ct_quantity {
     CT_Q_COORDINATES, /* nq */
     CT_Q_SPEEDS,      /* nu */
     CT_Q_RATE,        /* nq, q' */
-    CT_Q_PHI_RATE     /* m, d phi/dt = J u + the part by time */
+    CT_Q_PHI_RATE,    /* m, d phi/dt = J u + the part by time */
+    CT_Q_STATES,      /* as CT_STATE */
+    CT_Q_STATE_RATES  /* their rates */
 };
 
 /**

@@ -12,6 +12,7 @@ at a time. Numbers are in SI units and radians.
 import ctypes
 import json
 import os
+import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
@@ -67,7 +68,8 @@ def _number(value):
     return repr(float(value))
 
 
-def _settings(set, tree, columns, beam_elements, beam_formulation, keep_all, for_analysis=False):
+def _settings(set, tree, columns, beam_elements, beam_formulation, keep_all, for_analysis=False,
+              input=None, hold=False):
     """Options of a system, and what must live as long as they do."""
     texts = ["%s=%s" % (k, v if isinstance(v, str) else _number(v))
              for k, v in (set or {}).items()]
@@ -78,7 +80,8 @@ def _settings(set, tree, columns, beam_elements, beam_formulation, keep_all, for
     options = _l.SystemOptions(set=array, nset=len(texts), tree=_l.encode(tree),
                                keep_all=keep_all, columns=words[columns],
                                for_analysis=for_analysis, beam_elements=beam_elements or 0,
-                               beam_formulation=_l.encode(beam_formulation))
+                               beam_formulation=_l.encode(beam_formulation),
+                               input=_l.encode(input), hold_input=hold)
     options.size = ctypes.sizeof(options)
     return options, array
 
@@ -245,10 +248,36 @@ class System:
         values = np.frombuffer(b"".join(row[1] for row in rows)).reshape(len(t), len(self.outputs))
         return Result(self, t, values.copy(), json.loads(summary))
 
-    def simulate(self, until=None, tolerance=None, **options):
-        """Integrate to `until` [s]; options: absolute, step, samples, method, verify, backend, solver."""
+    def simulate(self, until=None, tolerance=None, input=None, hold=False, **options):
+        """Integrate to `until` [s]; options: absolute, step, samples, method, verify, backend, solver.
+
+        input: a CSV file that plays inputs, or the same as columns, {"t": [...], "tau": [...]}; linear between rows,
+        or with hold=True a row counts from its t on.
+        """
+        if input is not None:
+            return self._with_input(input, hold).simulate(until, tolerance, **options)
+        if hold:
+            raise ValueError("hold says how the rows of input count, and there is no input")
         return self._simulate(lib.ct_sim_run,
                               _run_options(until=until, tolerance=tolerance, **options))
+
+    def _with_input(self, input, hold):
+        """The same system with inputs that a table plays."""
+        given = dict(self._given, hold=bool(hold))
+        if isinstance(input, (str, os.PathLike)):
+            return System(self.path, self._text, dict(given, input=os.fspath(input)))
+        names = list(input.keys())
+        columns = [np.asarray(input[name], dtype=float).ravel() for name in names]
+        if len({c.size for c in columns}) > 1:
+            raise ValueError("the columns of input have %s values: they must be as many" % (
+                ", ".join(str(c.size) for c in columns)))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "input.csv")
+            with open(path, "w") as file:
+                file.write(",".join('"%s"' % str(n).replace('"', '""') for n in names) + "\n")
+                for row in zip(*columns):
+                    file.write(",".join(map(_number, row)) + "\n")
+            return System(self.path, self._text, dict(given, input=path))
 
     def inverse(self, until=None, **options):
         """The motion of a system whose freedoms are all driven, and the efforts that it takes."""
@@ -498,9 +527,9 @@ def _quantity(number, is_matrix=False):
 
 
 class Data:
-    """One state: t, q, u, inputs, parameters, and all that follows. One thread at a time.
+    """One state: t, q, u, states z of the model, inputs, parameters, and all that follows. One thread at a time.
 
-    Arrays are copies that cannot be written to: set the state by d.q = ..., d.u = ..., d.t = ...
+    Arrays are copies that cannot be written to: set the state by d.q = ..., d.u = ..., d.z = ..., d.t = ...
     """
 
     def __init__(self, system, context, pointer):
@@ -512,6 +541,7 @@ class Data:
         self.parameters = _Values(self, "parameter", True)
         self.coordinates = _Values(self, "coordinate", True)
         self.speeds = _Values(self, "speed", True)
+        self.states = _Values(self, "state", True)
         self.outputs = _Values(self, "output", False)
 
     def __del__(self):
@@ -538,6 +568,8 @@ class Data:
 
     q = _quantity(_l.Q_COORDINATES).setter(lambda self, v: self._set(_l.COORDINATE, v))
     u = _quantity(_l.Q_SPEEDS).setter(lambda self, v: self._set(_l.SPEED, v))
+    z = _quantity(_l.Q_STATES).setter(lambda self, v: self._set(_l.STATE, v))
+    z_rate = _quantity(_l.Q_STATE_RATES)
     M = _quantity(_l.Q_M, True)
     Q = _quantity(_l.Q_FORCE)
     J = _quantity(_l.Q_J, True)

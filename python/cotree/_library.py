@@ -12,7 +12,7 @@ from ctypes import c_void_p
 
 PARAMETER, INPUT, COORDINATE, SPEED, MULTIPLIER, STATE, OUTPUT, FRAME, COMPONENT = range(9)
 (Q_M, Q_FORCE, Q_J, Q_GAMMA, Q_PHI, Q_ACCELERATION, Q_MULTIPLIERS, Q_OUTPUTS, Q_ENERGY,
- Q_COORDINATES, Q_SPEEDS, Q_RATE, Q_PHI_RATE) = range(13)
+ Q_COORDINATES, Q_SPEEDS, Q_RATE, Q_PHI_RATE, Q_STATES, Q_STATE_RATES) = range(15)
 KINDS = {"output": OUTPUT, "parameter": PARAMETER, "input": INPUT, "coordinate": COORDINATE,
          "speed": SPEED, "multiplier": MULTIPLIER, "state": STATE, "frame": FRAME,
          "component": COMPONENT}
@@ -32,7 +32,7 @@ class SystemOptions(Structure):
     _fields_ = [("size", c_size_t), ("set", POINTER(c_char_p)), ("nset", c_size_t),
                 ("tree", c_char_p), ("keep_all", c_bool), ("columns", c_int),
                 ("for_analysis", c_bool), ("beam_elements", c_long),
-                ("beam_formulation", c_char_p)]
+                ("beam_formulation", c_char_p), ("input", c_char_p), ("hold_input", c_bool)]
 
 
 class SimOptions(Structure):

@@ -59,7 +59,7 @@ static bool judge(struct ct_equilibrium *q)
     size_t n;
     const char *how;
     double *y = CT_NEWN(a, double, l->nfree + 1), *dq = CT_NEWN(a, double, l->nu + 1);
-    q->stiffness = ct_stiffness_least(a, l, y);
+    q->stiffness = q->at.e->nstate ? INFINITY : ct_stiffness_least(a, l, y);
     ct_linear_expand(l, dq, y);
     int most = 0;
     for (int k = 0; k < l->nu; k++)
@@ -197,6 +197,7 @@ static void print_summary(const struct ct_equilibrium *q, FILE *out)
     }
     fprintf(out, "stability     %s",
             q->growth > q->doubt ? "unstable"
+            : q->at.e->nstate    ? (q->growth < -q->doubt ? "stable" : "neutral")
             : q->stiffness > 0   ? "stable"
             : q->stiffness < 0   ? "held by forces without potential alone"
                                  : "neutral");

@@ -260,7 +260,8 @@ static void print_summary(const struct ct_modes *s, FILE *out)
     ct_configuration_print(&s->at, out);
     fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
             s->at.l->nfree ? "freedoms" : "speeds",
-            s->at.l->nfree ? s->at.l->nfree : s->at.l->nu, s->how, s->n, s->all);
+            s->at.l->nfree ? s->at.l->nfree - (int)s->at.e->nstate : s->at.l->nu, s->how, s->n,
+            s->all);
 }
 
 void ct_modes_print_summary(const struct ct_modes *s, FILE *out)

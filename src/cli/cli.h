@@ -19,7 +19,7 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *columns, *view, *about, *inputs, *load, *curve, *elements, *formulations;
+        *plot, *columns, *view, *about, *inputs, *input, *load, *curve, *elements, *formulations;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
@@ -28,7 +28,7 @@ struct cli_args {
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool trace, hold, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 

@@ -9,7 +9,9 @@ struct ct_system_options cli_system_options(const struct cli_args *args)
     return (struct ct_system_options){.set = args->set.text,
                                       .nset = args->set.n,
                                       .tree = args->tree,
-                                      .keep_all = args->keep_all};
+                                      .keep_all = args->keep_all,
+                                      .input = args->input,
+                                      .hold_input = args->hold};
 }
 
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)

@@ -27,12 +27,22 @@ static bool add_output(struct ct_reader *r, struct ct_output output, struct ct_n
     return true;
 }
 
+static bool is_state_or_input(const struct ct_model *m, const char *name)
+{
+    const int i = ct_names_get(&m->parameter_index, name);
+    return ct_names_get(&m->state_index, name) >= 0 || (i >= 0 && m->parameter[i].is_input);
+}
+
 static bool read_signal(struct ct_reader *r, const struct ct_node *node, struct ct_output *o)
 {
     const char *normal;
     o->mark = node->mark;
     if (!ct_read_shape(r, node, CT_NODE_SCALAR, "a signal or {name: NAME, value: EXPRESSION}"))
         return false;
+    if (is_state_or_input(r->m, node->text)) {
+        o->name = ct_arena_strdup(r->a, node->text);
+        return ct_read_expr(r, node, CT_KEY_STATE, NULL, &o->value);
+    }
     if (!ct_parse_is_signal(r->ctx->scratch, node->text, &normal)) {
         if (ct_is_identifier(node->text) && ct_names_get(&r->component, node->text) >= 0)
             return ct_error(

@@ -228,6 +228,7 @@ struct ct_signal_state {
     const ct_ex *from, *to;
     size_t nreplaced;
     int resolving;   // depth of signals within signals
+    bool is_rate;    // of a state, not a force
     bool is_open;    // a reaction was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {

@@ -25,6 +25,10 @@ struct ct_slopes {
     const int *row, *column;
 };
 
+/// What a speed moves that is not the rate of one coordinate: a rotation, of size one, three in a row; nothing, as it is a state of
+/// its own.
+enum ct_no_coordinate { CT_MOVES_ROTATION = -1, CT_MOVES_NOTHING = -2 };
+
 /// The same problem as implicit methods solve it: second order, with constraints.  (formulation 0.4, 8)
 ///
 ///     r(t, q, u, u', lam) = M u' - Q - J' lam = 0,   Phi(q, t) = 0,   v(q, u, t) = J u + Phi_t = 0
@@ -36,7 +40,7 @@ struct ct_dae {
     int nq, nu;    // the states are q, u and perhaps quadratures: their rate feeds nothing back
     int most_rows; // rows there can be
     const int
-        *q_of; // (nu) the coordinate that moves with speed k alone; -1: a rotation, of size one
+        *q_of; // (nu) the coordinate that moves with speed k alone; or of enum ct_no_coordinate
     double scale; // of places: residuals are rounded as where places are at least as large
 
     /// The number of rows now; *version changes when they become other rows. Only `rhs`, `project` and
@@ -70,6 +74,7 @@ struct ct_dae {
     bool
         is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
     bool has_no_power; // rates of quadratures are zero
+    int nstate;        // the last speeds are states of their own, which move no coordinate
 };
 
 /// States that are components of one thing, as those of a vector: all are measured by the largest of them.

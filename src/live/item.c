@@ -36,7 +36,9 @@ size_t ct_system_count(const struct ct_system *sys, enum ct_kind kind)
     case CT_COORDINATE:
         return e->nq;
     case CT_SPEED:
-        return e->nu;
+        return e->nmotion;
+    case CT_STATE:
+        return e->nstate;
     case CT_MULTIPLIER:
         return e->nrow;
     case CT_OUTPUT:
@@ -45,8 +47,6 @@ size_t ct_system_count(const struct ct_system *sys, enum ct_kind kind)
         return sys->model.nframe;
     case CT_COMPONENT: // ground is no component
         return sys->model.nbody - 1 + sys->model.njoint + sys->model.nforce;
-    case CT_STATE:
-        break;
     }
     return 0;
 }
@@ -66,7 +66,8 @@ static const double *find_start(const struct ct_system *sys)
     struct ct_data *d = value ? ct_data_create(ctx, sys, NULL) : NULL;
     for (size_t i = 0; value && i < n; i++)
         value[i] = i < e->nq         ? ct_data_value(d, CT_COORDINATE, i)
-                 : i < e->nq + e->nu ? ct_data_value(d, CT_SPEED, i - e->nq)
+                 : i < e->nq + e->nmotion ? ct_data_value(d, CT_SPEED, i - e->nq)
+                 : i < e->nq + e->nu      ? ct_data_value(d, CT_STATE, i - e->nq - e->nmotion)
                                      : ct_data_value(d, CT_OUTPUT, i - e->nq - e->nu);
     ct_data_destroy(d);
     ct_ctx_destroy(ctx);
@@ -206,12 +207,28 @@ static void describe_speed(const struct ct_system *sys, size_t i, struct ct_item
                               : sys->model.body[u->body].instance.mark);
 }
 
+static void describe_state(const struct ct_system *sys, size_t i, struct ct_item *item)
+{
+    const struct ct_equations *e = &sys->equations;
+    const struct ct_state *z = &sys->model.state[i];
+    item->name = z->name;
+    item->unit = si_unit(z->unit);
+    item->meaning = "state";
+    item->value = start_of(sys, e->nq + e->nmotion + i);
+    place(item, z->mark);
+}
+
 static void describe_output(const struct ct_system *sys, size_t i, struct ct_item *item)
 {
     const struct ct_equations *e = &sys->equations;
     const struct ct_model *m = &sys->model;
     item->name = e->result[i].name;
     item->unit = unit_of_signal(e, item->name);
+    const struct ct_sym *symbol = ct_ex_symbol(e->x, e->result[i].value);
+    if (symbol && symbol->kind == CT_SYM_PARAM)
+        item->unit = si_unit(m->parameter[symbol->index].unit);
+    else if (symbol && symbol->kind == CT_SYM_U && ct_speed_is_state(e, symbol->index))
+        item->unit = si_unit(m->state[symbol->index - e->nmotion].unit);
     item->meaning = "output";
     item->value = start_of(sys, e->nq + e->nu + i);
     for (size_t k = 0; k < m->noutput; k++) // a vector's columns begin with its name
@@ -258,6 +275,9 @@ bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
     case CT_SPEED:
         describe_speed(sys, i, item);
         return true;
+    case CT_STATE:
+        describe_state(sys, i, item);
+        return true;
     case CT_MULTIPLIER:
         item->name = e->row[i].name;
         item->unit = e->row[i].is_length ? "N" : "N*m";
@@ -278,8 +298,6 @@ bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
     case CT_COMPONENT:
         describe_component(sys, i, item);
         return true;
-    case CT_STATE:
-        break;
     }
     return false;
 }

@@ -297,7 +297,7 @@ static void put_unknowns(struct writer *w, const struct ct_reduced *r)
     }
     ct_json_end(&w->j);
     ct_json_array(&w->j, "speeds");
-    for (size_t i = 0; i < e->nu; i++) {
+    for (size_t i = 0; i < e->nmotion; i++) {
         ct_json_object(&w->j, NULL);
         ct_json_text(&w->j, "name", e->u[i].name);
         ct_json_text(&w->j, "coordinate", e->u[i].q >= 0 ? e->q[e->u[i].q].name : NULL);
@@ -305,6 +305,16 @@ static void put_unknowns(struct writer *w, const struct ct_reduced *r)
         ct_json_end(&w->j);
     }
     ct_json_end(&w->j);
+    if (e->nstate)
+        ct_json_array(&w->j, "states");
+    for (size_t i = e->nmotion; i < e->nu; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->u[i].name);
+        ct_json_text(&w->j, "rate", text(w, r->Q[i]));
+        ct_json_end(&w->j);
+    }
+    if (e->nstate)
+        ct_json_end(&w->j);
     ct_json_array(&w->j, "rows");
     for (size_t i = 0; i < e->nrow; i++)
         ct_json_text(&w->j, NULL, e->row[i].name);
@@ -342,8 +352,11 @@ static void put_reduced(struct writer *w)
     put_unknowns(w, &r);
     put_known(w, &r);
     put_definitions(w, &r.definitions);
-    put_matrix(w, "M", e->M, r.M, e->nM);
-    put_vector(w, "Q", r.Q, e->nu);
+    size_t nM = e->nM;
+    while (nM && ct_speed_is_state(e, (size_t)e->M[nM - 1].row)) // behind all others
+        nM--;
+    put_matrix(w, "M", e->M, r.M, nM);
+    put_vector(w, "Q", r.Q, e->nmotion);
     put_matrix(w, "J", e->J, r.J, e->nJ);
     put_vector(w, "phi", r.phi, e->nrow);
     put_vector(w, "gam", r.gam, e->nrow);

@@ -95,7 +95,9 @@ static void write_structure(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
     ct_json_integer(j, "coordinates", (long)e->nq);
-    ct_json_integer(j, "speeds", (long)e->nu);
+    ct_json_integer(j, "speeds", (long)e->nmotion);
+    if (e->nstate)
+        ct_json_integer(j, "states", (long)e->nstate);
     ct_json_integer(j, "constraints", (long)e->nrow);
     ct_json_integer(j, "redundant", ct_sim_redundant(sim));
     ct_json_integer(j, "degrees_of_freedom", ct_sim_freedoms(sim));

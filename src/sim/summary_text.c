@@ -74,8 +74,11 @@ static void print_trees(FILE *out, const struct ct_equations *e)
 static void print_freedoms(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    fprintf(out, "coordinates  %zu, speeds %zu, constraints %zu, redundant %ld, freedoms %ld\n",
-            e->nq, e->nu, e->nrow, ct_sim_redundant(sim), ct_sim_freedoms(sim));
+    fprintf(out, "coordinates  %zu, speeds %zu, constraints %zu, redundant %ld, freedoms %ld",
+            e->nq, e->nmotion, e->nrow, ct_sim_redundant(sim), ct_sim_freedoms(sim));
+    if (e->nstate)
+        fprintf(out, ", states %zu", e->nstate);
+    fputc('\n', out);
 }
 
 // Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
@@ -88,6 +91,13 @@ static void print_start(FILE *out, const struct ct_sim *sim)
     for (size_t i = 0; i < ct_sim_start_count(sim); i++)
         if (ct_sim_start_text(sim, i, text, sizeof text) && n++ < MOST_SHOWN)
             add(&l, text);
+    const struct ct_model *m = &sim->system->model;
+    for (size_t i = 0; i < m->nstate; i++)
+        if (n++ < MOST_SHOWN) {
+            snprintf(text, sizeof text, "%.80s = %.6g", m->state[i].name,
+                     ct_model_number(m, m->state[i].initial));
+            add(&l, text);
+        }
     if (n > MOST_SHOWN) {
         snprintf(text, sizeof text, "%zu more", n - MOST_SHOWN);
         add(&l, text);
@@ -447,18 +457,23 @@ static void print_check(const struct ct_sim *sim, FILE *out)
     const struct ct_model *m = &s->model;
     const struct ct_equations *e = &s->equations;
     const struct ct_evaluator *machine = ct_run_evaluator(sim->run);
+    size_t ninput = 0;
+    for (size_t i = 0; i < m->nparameter; i++)
+        ninput += m->parameter[i].is_input;
     fprintf(out, "%s\n", m->name);
     if (*m->description)
         fprintf(out, "%s\n", m->description);
     const struct part parts[] = {{(long)m->nbody - 1, "body", "bodies"},
                                  {(long)m->njoint, "joint", "joints"},
                                  {(long)m->nforce, "force", "forces"},
-                                 {(long)m->nparameter, "parameter", "parameters"},
-                                 {(long)m->noutput, "output", "outputs"}};
-    print_parts(out, "model", parts, COUNT(parts));
+                                 {(long)(m->nparameter - ninput), "parameter", "parameters"},
+                                 {(long)m->noutput, "output", "outputs"},
+                                 {(long)ninput, "input", "inputs"},
+                                 {(long)m->nstate, "state", "states"}};
+    print_parts(out, "model", parts, m->nstate ? 7 : ninput ? 6 : 5);
     print_freedoms(out, sim);
     fprintf(out, "freedoms     %ld = %zu speeds - rank %d of the constraints\n",
-            ct_sim_freedoms(sim), e->nu, sim->report.rank);
+            ct_sim_freedoms(sim), e->nmotion, sim->report.rank);
     print_redundant(out, sim);
     print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_names(out, "undetermined outputs: ", sim->open.result, e->nresult, result_name, e);

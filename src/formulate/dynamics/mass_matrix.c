@@ -291,6 +291,8 @@ void ct_mass_matrix_derive(struct ct_build *b)
     }
     translation_pairs(b, M);
     ct_flexible_mass(b, M);
+    for (size_t k = e->nmotion; k < e->nmotion + e->nstate; k++)
+        M[k + e->nu * k] = CT_EX_ONE;
     for (size_t i = 0; i < e->nu; i++)
         for (size_t j = 0; j <= i; j++) {
             const struct ct_entry entry = {(int)i, (int)j, M[i + e->nu * j]};

@@ -136,6 +136,22 @@ static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
     }
 }
 
+// A state of the model, as a speed that moves nothing.
+static void add_state(struct ct_build *b, const char *name)
+{
+    struct ct_equations *s = b->eqs;
+    const uint32_t k = (uint32_t)s->nu;
+    const struct ct_u z
+        = {.name = name,
+           .symbol = ct_ex_sym(b->x, CT_SYM_U, name, k),
+           .derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s'", name), k),
+           .q = -1,
+           .joint = -1,
+           .body = -1};
+    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, z);
+    s->nstate++;
+}
+
 void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 {
     kinematics->edge = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
@@ -165,6 +181,9 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
     for (size_t i = 0; i < b->topology->nedge; i++)
         if (b->topology->edge[i].beam >= 0)
             find_station(b, kinematics, &b->topology->edge[i]);
+    b->eqs->nmotion = b->eqs->nu;
+    for (size_t i = 0; i < b->model->nstate; i++)
+        add_state(b, b->model->state[i].name);
 }
 
 // ---- rates ----------------------------------------------------------------------------------------

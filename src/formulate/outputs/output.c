@@ -176,6 +176,9 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     b->signals.in_outputs = true;
     for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
         ok &= coordinate_columns(b, &b->model->joint[j]);
+    for (size_t i = 0;
+         i < b->model->nstate && more == CT_MORE_COORDINATES && b->model->noutput == 0; i++)
+        ok &= new_columns(b, b->model->state[i].name, b->model->state[i].mark);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= effort_columns(b, j);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)

@@ -72,7 +72,7 @@ const char *ct_batch_obstacle(const struct ct_run_options *o)
 static bool tables_reach(const struct ct_exs *x, double end)
 {
     for (size_t i = 0; i < x->ntable; i++)
-        if (x->table[i].x[x->table[i].n - 1] < end)
+        if (!x->table[i].holds && x->table[i].x[x->table[i].n - 1] < end)
             return false;
     return true;
 }
