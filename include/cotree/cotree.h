@@ -460,6 +460,10 @@ struct ct_study_options {
     unsigned long long seed; /* of the random numbers: same seed, same members */
     long threads;            /* at most; 0: all cores. One without OpenMP. */
     long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
+    const char *members; /* a CSV file of members instead of `vary`: its columns are parameters */
+    /** Of so many shards this one, from 1: every shards-th member from it on, with the rows and run numbers that it has in
+     *  the whole sweep. 0: all of it. */
+    long shard, shards;
 };
 
 /** Where rows go. All of it may be zero. */
@@ -516,6 +520,17 @@ CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
 /** The same for programs: a JSON object. Errors: E002. */
 CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
                                    const char *path);
+
+/**
+ * Join the shards of a sweep, in any order, to the file that the whole sweep would have written, byte by byte.
+ *
+ * path  in   FILE.csv; NULL or "-": standard output
+ * part  in   (n) the files of all shards; beside each is PART.settings
+ *
+ * Nothing is written where it fails. Errors: E002, E003, E006; E580 to E582.
+ */
+CT_API bool ct_study_merge(struct ct_ctx *ctx, const char *path, const char *const *part,
+                           size_t n);
 
 /* ---- analyses about a configuration ------------------------------------------------------------------ */
 

@@ -19,13 +19,14 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *columns, *view, *about, *inputs, *load, *curve, *elements, *formulations;
+        *plot, *columns, *view, *about, *inputs, *load, *curve, *elements, *formulations,
+        *members;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
-    } set, vary;
+    } set, vary, take, files; // files: what a command takes in place of a model
     double tolerance, step, until, error, time;
-    long samples, count, sample, threads, lanes, per_decade;
+    long samples, count, sample, threads, lanes, per_decade, shard, shards;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
     bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
@@ -52,6 +53,7 @@ enum cli_use {
     CLI_SWEEP = 32768,
     CLI_COMPLETION = 65536,
     CLI_DRAW = 131072,
+    CLI_MERGE = 262144,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
@@ -69,6 +71,7 @@ struct cli_command {
     enum cli_use use;
     bool takes_model;
     const char *const *words; // what it takes in place of a model, NULL at the end; or NULL
+    const char *files;        // the same where it takes files; or NULL
     const char *more;         // paragraph for its own help
     const char *examples[2];  // to try
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
@@ -76,7 +79,7 @@ struct cli_command {
 
 extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_draw, cli_accuracy,
     cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
-    cli_buckling, cli_sweep, cli_export, cli_components, cli_methods, cli_schema,
+    cli_buckling, cli_sweep, cli_merge, cli_export, cli_components, cli_methods, cli_schema,
     cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
@@ -94,7 +97,8 @@ struct cli_option {
         CLI_TIME,
         CLI_INTEGER,
         CLI_COUNT_OF,
-        CLI_SEED
+        CLI_SEED,
+        CLI_SHARD
     } kind;
     size_t field;
     unsigned use;      // commands it means something to

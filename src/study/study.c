@@ -125,8 +125,20 @@ static int count_threads(const struct ct_study *s, long wanted)
     const long most = (s->plan.nmember + s->lanes - 1) / s->lanes;
     long n = wanted > 0 ? wanted : sysconf(_SC_NPROCESSORS_ONLN);
     n = n > 0 ? n : 1;
-    n = n < most ? n : most;
+    n = n < most ? n : most > 0 ? most : 1;
     return (int)(n < MOST_THREADS ? n : MOST_THREADS);
+}
+
+static bool read_plan(struct ct_study *s, const struct ct_model *m,
+                      const struct ct_study_options *o)
+{
+    if (!o->members)
+        return ct_plan_read(&s->own, m, o->vary, o->nvary, o->sample, o->seed, &s->plan);
+    if (o->nvary || o->sample > 0)
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "the members come either from a file or from --vary: --members goes "
+                        "without --vary and --sample");
+    return ct_plan_read_members(&s->own, m, o->members, &s->plan);
 }
 
 static bool prepare(struct ct_study *s, const struct ct_study_options *o)
@@ -138,7 +150,8 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         set[i].text = so->set[i];
     if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
         || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
-        || !ct_plan_read(&s->own, &file, o->vary, o->nvary, o->sample, o->seed, &s->plan))
+        || !read_plan(s, &file, o)
+        || !ct_plan_take_shard(&s->own, &s->plan, o->shard, o->shards))
         return false;
     s->base = CT_NEWN(s->own.model, double, s->plan.naxis);
     for (size_t i = 0; i < s->plan.naxis; i++)
@@ -152,7 +165,7 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         return false;
     s->threads = count_threads(s, o->threads);
     s->varied = CT_NEWN(s->own.model, double, s->plan.naxis + 1);
-    s->row = calloc((size_t)s->plan.nmember, sizeof *s->row);
+    s->row = calloc((size_t)s->plan.nmember + 1, sizeof *s->row);
     if (!s->row)
         s->own.no_memory = true;
     return s->row;

@@ -90,7 +90,15 @@ bool ct_study_close(struct ct_study *s, bool ok);
 
 /// What the rows of a study depend on, a line for each setting; in s->own.model.
 const char *ct_study_settings(struct ct_study *s);
-/// The first setting that differs in two such texts, for people; NULL: none does.
+/// The first setting that differs in two such texts; NULL: a text does not have it. False: none does.
+struct ct_setting_difference {
+    const char *name, *before, *now;
+};
+bool ct_study_find_difference(struct ct_arena *a, const char *before, const char *now,
+                              struct ct_setting_difference *out);
+/// Is it the checksum of what a file has?
+bool ct_setting_is_file(const char *name);
+/// The same for people, of settings that were and are now; NULL: none differs.
 const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now);
 
 #endif

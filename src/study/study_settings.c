@@ -114,13 +114,20 @@ static void add_plan(struct settings *w, const struct ct_plan *p)
 {
     for (size_t i = 0; i < p->naxis; i++) {
         const struct ct_axis *axis = &p->axis[i];
+        if (axis->kind == CT_AXIS_LIST) {
+            add(w, "member", "%s=%016" PRIx64, axis->name,
+                checksum(offset_basis, axis->value, (size_t)axis->n * sizeof *axis->value));
+            continue;
+        }
         const char *kind = axis->kind == CT_AXIS_NORMAL ? "normal:" : "";
         const char *count = p->is_sampled ? "" : ct_arena_printf(w->a, ":%ld", axis->n);
         add(w, "vary", "%s=%s%s:%s%s", axis->name, kind, shortest(w->a, axis->from),
             shortest(w->a, axis->to), count);
     }
     if (p->is_sampled)
-        add(w, "sample", "%ld, seed %" PRIu64, p->nmember, p->seed);
+        add(w, "sample", "%ld, seed %" PRIu64, p->nall, p->seed);
+    if (p->nshard)
+        add(w, "shard", "%ld of %ld, of %ld members", p->shard, p->nshard, p->nall);
 }
 
 const char *ct_study_settings(struct ct_study *s)
@@ -161,7 +168,8 @@ static const char *value_of(const char *line)
     return strlen(line) > WIDTH ? line + WIDTH + 1 : "";
 }
 
-const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now)
+bool ct_study_find_difference(struct ct_arena *a, const char *before, const char *now,
+                              struct ct_setting_difference *out)
 {
     while (*before || *now) {
         const char *rest = before;
@@ -169,20 +177,38 @@ const char *ct_study_compare_settings(struct ct_arena *a, const char *before, co
         if (strcmp(old, new) == 0)
             continue;
         const char *old_name = name_of(a, old), *new_name = name_of(a, new);
-        if (strcmp(old_name, new_name) == 0) {
-            const bool is_file
-                = strcmp(new_name, "model") == 0 || strcmp(new_name, "tables") == 0;
-            return is_file ? ct_arena_printf(a, "the %s has changed since", new_name)
-                           : ct_arena_printf(a, "'%s' was %s and is %s now", new_name,
-                                             value_of(old), value_of(new));
-        }
+        *out = (struct ct_setting_difference){new_name, value_of(old), value_of(new)};
+        if (strcmp(old_name, new_name) == 0)
+            return true;
         // a line that only one of them has
         const char *name = ct_arena_printf(a, "\n%-*s ", WIDTH, new_name);
-        return *new && !strstr(rest, name)
-                 ? ct_arena_printf(a, "'%s' is %s now and was not given", new_name,
-                                   value_of(new))
-                 : ct_arena_printf(a, "'%s' was %s and is not given now", old_name,
-                                   value_of(old));
+        if (*new && !strstr(rest, name))
+            out->before = NULL;
+        else
+            *out = (struct ct_setting_difference){old_name, value_of(old), NULL};
+        return true;
     }
-    return NULL;
+    return false;
+}
+
+bool ct_setting_is_file(const char *name)
+{
+    return strcmp(name, "model") == 0 || strcmp(name, "tables") == 0
+        || strcmp(name, "member") == 0;
+}
+
+const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now)
+{
+    struct ct_setting_difference d;
+    if (!ct_study_find_difference(a, before, now, &d))
+        return NULL;
+    if (!d.before)
+        return ct_arena_printf(a, "'%s' is %s now and was not given", d.name, d.now);
+    if (!d.now)
+        return ct_arena_printf(a, "'%s' was %s and is not given now", d.name, d.before);
+    if (strcmp(d.name, "member") == 0)
+        return "the members have changed since";
+    return ct_setting_is_file(d.name)
+             ? ct_arena_printf(a, "the %s has changed since", d.name)
+             : ct_arena_printf(a, "'%s' was %s and is %s now", d.name, d.before, d.now);
 }
