@@ -148,6 +148,8 @@ struct ct_system_options {
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
+    const char *const *output; /* "NAME=EXPRESSION": outputs behind those of the file */
+    size_t noutput;
 };
 
 /**
@@ -460,10 +462,15 @@ struct ct_study_options {
     unsigned long long seed; /* of the random numbers: same seed, same members */
     long threads;            /* at most; 0: all cores. One without OpenMP. */
     long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
-    const char *members; /* a CSV file of members instead of `vary`: its columns are parameters */
+    const char
+        *members; /* a CSV file of members instead of `vary`: its columns are parameters */
     /** Of so many shards this one, from 1: every shards-th member from it on, with the rows and run numbers that it has in
      *  the whole sweep. 0: all of it. */
     long shard, shards;
+    /** "NAME=FUNCTION(EXPRESSION)" each: a column behind the outputs, of what the expression, one of outputs, does over the
+     *  run: max, min, mean, rms, final, or time [s], when it first rises through zero (NaN: it does not). */
+    const char *const *take;
+    size_t ntake;
 };
 
 /** Where rows go. All of it may be zero. */

@@ -71,6 +71,9 @@ const struct cli_option cli_options[] = {
      "a member a row, its columns are parameters"},
     {"shard", 0, "I/N", CLI_SHARD, FIELD(shard), CLI_SWEEP, false,
      "every N-th member from the I-th on: one of N parts"},
+    {"take", 0, "NAME=F(EXPR)", CLI_LIST, FIELD(take), CLI_SWEEP, false,
+     "a column of what EXPR does over the run, F being max, min,\n"
+     "mean, rms, final or time (first rise through zero)"},
     {"resume", 0, NULL, CLI_FLAG, FIELD(resume), CLI_SWEEP, false,
      "go on with the rows in FILE.partial"},
     {"threads", 0, "N", CLI_COUNT_OF, FIELD(threads), CLI_SWEEP, false,

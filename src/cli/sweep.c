@@ -37,6 +37,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                                              .threads = args->threads,
                                              .lanes = args->lanes,
                                              .members = args->members,
+                                             .take = args->take.text,
+                                             .ntake = args->take.n,
                                              .shard = args->shard,
                                              .shards = args->shards};
     const struct ct_system_options system = cli_system_options(args);

@@ -105,6 +105,7 @@ struct ct_model {
 /// An override from the command line: "NAME=VALUE", the value an expression or a quantity.
 struct ct_set {
     const char *text;
+    bool is_output; // an output NAME=EXPRESSION behind those of the file
 };
 
 /// Read, check and resolve a model file. Reports every problem it can find in one pass, in the

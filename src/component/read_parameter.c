@@ -115,6 +115,8 @@ static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_
 {
     bool ok = true;
     for (size_t k = 0; k < nset; k++) {
+        if (set[k].is_output)
+            continue;
         const size_t first = r->ctx->ndiagnostic;
         ok &= parse_override(r, set[k].text, w);
         move_errors_to_command_line(r, first, set[k].text);

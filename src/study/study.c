@@ -75,6 +75,10 @@ static void take_options(struct ct_study *s, const char *path,
     s->path = ct_arena_strdup(a, path);
     s->system_options = *system;
     s->system_options.set = set;
+    const char **output = CT_NEWN(a, const char *, system->noutput + 1);
+    for (size_t i = 0; i < system->noutput; i++)
+        output[i] = ct_arena_strdup(a, system->output[i]);
+    s->system_options.output = output;
     s->system_options.tree = copy_text(a, system->tree);
     s->run = o->run;
     s->run.method = copy_text(a, o->run.method);
@@ -150,7 +154,7 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         set[i].text = so->set[i];
     if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
         || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
-        || !read_plan(s, &file, o)
+        || !read_plan(s, &file, o) || !ct_study_read_takes(s, o->take, o->ntake)
         || !ct_plan_take_shard(&s->own, &s->plan, o->shard, o->shards))
         return false;
     s->base = CT_NEWN(s->own.model, double, s->plan.naxis);

@@ -38,6 +38,8 @@ struct ct_study {
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;
+    enum ct_take_kind *take; // over the run, from the last results  (ntake)
+    size_t ntake;
     double *base;             // what the file says of its axes
     struct ct_system *system; // with the values of the file; that of the first worker
     bool is_derived;          // each member needs equations of its own
@@ -73,6 +75,13 @@ struct ct_study {
 void ct_study_run_members(struct ct_study *s);
 /// The system with what varies as numbers, so that all members order their parameters alike.
 struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study *s);
+
+// ---- takes.c --------------------------------------------------------------------------------------------
+
+/// "NAME=FUNCTION(EXPRESSION)" (n) into s->take, and what they are taken from into the outputs of the system. Errors: E003.
+bool ct_study_read_takes(struct ct_study *s, const char *const *text, size_t n);
+/// The word for a kind.
+const char *ct_study_take_name(enum ct_take_kind kind);
 
 // ---- study_file.c -------------------------------------------------------------------------------------
 

@@ -40,7 +40,7 @@ static bool write_row(struct ct_study *s, long member, const double *value)
     for (size_t i = 0; i < s->plan.naxis; i++)
         ct_csv_number(w, ct_plan_value(&s->plan, member, i));
     for (size_t i = 0; i < n; i++)
-        if (value)
+        if (value && !isnan(value[i])) // a time that never comes is none
             ct_csv_number(w, value[i]);
         else
             ct_csv_text(w, "");
@@ -191,8 +191,12 @@ static int read_status(const struct ct_study *s, long member, const char *line)
     bool ok = status >= 0 && read_value(&line, (double)ct_plan_number(&s->plan, member));
     for (size_t i = 0; ok && i < s->plan.naxis; i++)
         ok = read_value(&line, ct_plan_value(&s->plan, member, i));
-    for (size_t i = 0; ok && i < s->system->equations.nresult; i++)
-        ok = status ? read_empty(&line) : read_number(&line);
+    const size_t n = s->system->equations.nresult;
+    for (size_t i = 0; ok && i < n; i++) {
+        const bool may_be_empty
+            = i + s->ntake >= n && s->take[i + s->ntake - n] == CT_TAKE_TIME && *line == ',';
+        ok = status || may_be_empty ? read_empty(&line) : read_number(&line);
+    }
     return ok && strlen(line) == 2 ? status : -1;
 }
 

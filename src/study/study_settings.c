@@ -94,6 +94,8 @@ static void add_system(struct settings *w, const struct ct_system_options *o)
 {
     for (size_t i = 0; i < o->nset; i++)
         add(w, "set", "%s", o->set[i]);
+    for (size_t i = 0; i < o->noutput; i++)
+        add(w, "output", "%s", o->output[i]);
     add_tree(w, o->tree);
     add(w, "keep all", "%s", o->keep_all ? "yes" : "");
     add_number(w, "elements", (double)o->beam_elements);
@@ -140,6 +142,8 @@ const char *ct_study_settings(struct ct_study *s)
     add_system(&w, &s->system_options);
     add_run(&w, &s->run);
     add_plan(&w, &s->plan);
+    for (size_t i = 0; i < s->ntake; i++)
+        add(&w, "take", "%s", ct_study_take_name(s->take[i]));
     return w.text;
 }
 

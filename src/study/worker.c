@@ -119,6 +119,8 @@ static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
         ct_study_record(s, member, NULL, ctx);
         return;
     }
+    sim->run_options.take = s->take;
+    sim->run_options.ntake = s->ntake;
     const bool ok = ct_sim_run(ctx, sim, NULL);
     ct_study_record(s, member, ok ? sim->report.final : NULL, ctx);
     count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
@@ -208,7 +210,8 @@ static void create_groups(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->ngroup = w->s->lanes / CT_LANES;
     for (int g = 0; g < w->ngroup; g++)
-        w->group[g] = ct_batch_create(sim->own.model, &w->system->equations, sim->run);
+        w->group[g]
+            = ct_batch_create(sim->own.model, &w->system->equations, sim->run, w->s->ntake);
     // at the file's own values, which the system still has: the same in each worker
     if (start_member(w))
         for (int g = 0; g < w->ngroup; g++)
@@ -273,6 +276,8 @@ static bool work(void *task)
     }
     ct_own_init(&w->member_ctx);
     ct_own_init(&w->sim.own);
+    w->sim.take = s->take;
+    w->sim.ntake = s->ntake;
     if (!w->system) // text and options are those of the first, which could be loaded
         w->system = ct_study_load_system(&w->sim.own, s);
     if (!w->system || !ct_sim_prepare(&w->sim, w->system, &s->run))
