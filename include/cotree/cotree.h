@@ -680,6 +680,41 @@ CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, c
 /** How the factors were found, for people. */
 CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
 
+/* ---- analyses that vary --------------------------------------------------------------------------------- */
+
+/** Zero: the default. */
+struct ct_vary_options {
+    size_t size; /* 0, or sizeof (struct ct_vary_options) */
+    enum ct_vary_analysis {
+        CT_VARY_MODES,       /* by `modes` */
+        CT_VARY_EQUILIBRIUM, /* by `equilibrium` */
+        CT_VARY_DRIVEN       /* ct_sim_follow, by `run`: kinematics and inverse dynamics */
+    } analysis;
+    /** Members as those of a study. */
+    const char *const *vary;
+    size_t nvary;
+    long sample;
+    unsigned long long seed;
+    const char *members;
+    struct ct_modes_options modes;
+    struct ct_equilibrium_options equilibrium;
+    struct ct_sim_options run;
+    FILE *bar; /* progress is shown there if it is a terminal */
+};
+
+/**
+ * An analysis of each member of a plan as one table: `run`, what varies, then the columns of the analysis.
+ *
+ * Each member is a system of its own. One that fails is a row without results, and a warning (E583).
+ *
+ * out  in   a table (ct_contents); NULL or "-": CSV on standard output
+ *
+ * Errors   those of ct_system_load and of the options; E583 where all members fail
+ */
+CT_API bool ct_vary(struct ct_ctx *ctx, const char *path,
+                    const struct ct_system_options *system,
+                    const struct ct_vary_options *options, const char *out);
+
 /* ---- pictures -------------------------------------------------------------------------------------- */
 
 /** Zero: the start, as it suits the system. */

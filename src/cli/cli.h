@@ -62,6 +62,7 @@ enum cli_use {
     CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
+    CLI_VARIES = CLI_SWEEP | CLI_MODES | CLI_EQUILIBRIUM | CLI_DRIVEN,
     CLI_MODELS
     = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
 };
@@ -124,11 +125,11 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 
 /// What the arguments say about systems.
 struct ct_system_options cli_system_options(const struct cli_args *args);
+/// The same for analyses at a place, with further columns.
+struct ct_system_options cli_analysis_options(const struct cli_args *args,
+                                              enum ct_columns_more columns);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
-/// The same for analyses at a place.
-struct ct_system *cli_load_for_analysis(struct ct_ctx *ctx, const struct cli_args *args,
-                                        enum ct_columns_more columns);
 /// The same with further columns.
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
                                 enum ct_columns_more columns);
@@ -136,6 +137,12 @@ struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
 struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
+
+/// Does the analysis vary? Then the whole of it, and its exit status in *status. Without -o the table goes to the model's
+/// name with `suffix`; NULL: to standard output.
+bool cli_vary(struct ct_ctx *ctx, const struct cli_command *command,
+              const struct cli_args *args, const struct ct_system_options *system,
+              const struct ct_vary_options *analysis, const char *suffix, int *status);
 
 /// The file of --summary, if one is asked for, of a command that runs nothing: what the system is.
 bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);

@@ -3,6 +3,7 @@
 #include "base/entry.h"
 #include "io/sheet.h"
 #include "io/text.h"
+#include "report/number.h"
 
 #include <errno.h>
 #include <math.h>
@@ -211,6 +212,33 @@ bool ct_plan_read_members(struct ct_ctx *ctx, const struct ct_model *m, const ch
     for (size_t i = 0; i < t.ncolumn && ok; i++)
         ok = read_column(ctx, m, &t, out, i);
     return ok;
+}
+
+bool ct_plan_choose(struct ct_ctx *ctx, const struct ct_model *m, const char *members,
+                    const char *const *vary, size_t n, long sample, uint64_t seed,
+                    struct ct_plan *out)
+{
+    if (!members)
+        return ct_plan_read(ctx, m, vary, n, sample, seed, out);
+    if (n || sample > 0)
+        return ct_error(ctx, none, CT_E_USAGE,
+                        "the members come either from a file or from --vary: --members goes "
+                        "without --vary and --sample");
+    return ct_plan_read_members(ctx, m, members, out);
+}
+
+const char **ct_plan_settings(struct ct_arena *a, const struct ct_plan *s, const double *value,
+                              const char *const *set, size_t *n)
+{
+    const char **all = CT_NEWN(a, const char *, *n + s->naxis + 1);
+    for (size_t i = 0; i < *n; i++)
+        all[i] = set[i];
+    for (size_t i = 0; i < s->naxis; i++) {
+        char text[CT_NUMBER_SIZE];
+        all[(*n)++]
+            = ct_arena_printf(a, "%s=%s", s->axis[i].name, ct_number_format(text, value[i]));
+    }
+    return all;
 }
 
 // ---- shards -------------------------------------------------------------------------------------------

@@ -48,6 +48,13 @@ bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *cons
 /// Members from a table of parameters. Errors: E003 for the file and its columns, E135.
 bool ct_plan_read_members(struct ct_ctx *ctx, const struct ct_model *m, const char *path,
                           struct ct_plan *out);
+/// Either, for the library: members NULL: by `vary`. Errors: E003, too, where both are given.
+bool ct_plan_choose(struct ct_ctx *ctx, const struct ct_model *m, const char *members,
+                    const char *const *vary, size_t n, long sample, uint64_t seed,
+                    struct ct_plan *out);
+/// The texts NAME=VALUE of the axes with these values (naxis) behind others; *n (inout): of them, of all.
+const char **ct_plan_settings(struct ct_arena *a, const struct ct_plan *s, const double *value,
+                              const char *const *set, size_t *n);
 /// Keep to shard `shard` (from 1) of nshard; 0, 0: all. Errors: E003.
 bool ct_plan_take_shard(struct ct_ctx *ctx, struct ct_plan *s, long shard, long nshard);
 /// Number of a member that is run (from 0) among all, from 1.

@@ -133,18 +133,6 @@ static int count_threads(const struct ct_study *s, long wanted)
     return (int)(n < MOST_THREADS ? n : MOST_THREADS);
 }
 
-static bool read_plan(struct ct_study *s, const struct ct_model *m,
-                      const struct ct_study_options *o)
-{
-    if (!o->members)
-        return ct_plan_read(&s->own, m, o->vary, o->nvary, o->sample, o->seed, &s->plan);
-    if (o->nvary || o->sample > 0)
-        return ct_error(&s->own, none, CT_E_USAGE,
-                        "the members come either from a file or from --vary: --members goes "
-                        "without --vary and --sample");
-    return ct_plan_read_members(&s->own, m, o->members, &s->plan);
-}
-
 static bool prepare(struct ct_study *s, const struct ct_study_options *o)
 {
     struct ct_model file;
@@ -154,7 +142,9 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         set[i].text = so->set[i];
     if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
         || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
-        || !read_plan(s, &file, o) || !ct_study_read_takes(s, o->take, o->ntake)
+        || !ct_plan_choose(&s->own, &file, o->members, o->vary, o->nvary, o->sample, o->seed,
+                           &s->plan)
+        || !ct_study_read_takes(s, o->take, o->ntake)
         || !ct_plan_take_shard(&s->own, &s->plan, o->shard, o->shards))
         return false;
     s->base = CT_NEWN(s->own.model, double, s->plan.naxis);

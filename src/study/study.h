@@ -5,6 +5,9 @@
 //     study_file.c       rows in order, their file, and how it is resumed
 //     study_settings.c   what rows depend on besides their own values
 //     study_summary.c    what was done
+//     takes.c            what is taken over runs
+//     merge.c            shards become one file
+//     variation.c        analyses for each member, without a study
 #ifndef CT_STUDY_H
 #define CT_STUDY_H
 

@@ -2,7 +2,6 @@
 #include "study/study.h"
 
 #include "base/guard.h"
-#include "report/number.h"
 #include "solve/batch/batch.h"
 
 #include <stdlib.h>
@@ -60,17 +59,11 @@ static const char **member_set(const struct ct_study *s, struct ct_arena *a, lon
                                size_t *n)
 {
     const struct ct_system_options *o = &s->system_options;
-    const char **set = CT_NEWN(a, const char *, o->nset + s->plan.naxis + 1);
-    *n = 0;
-    for (size_t i = 0; i < o->nset; i++)
-        set[(*n)++] = o->set[i];
-    for (size_t i = 0; i < s->plan.naxis; i++) {
-        char text[CT_NUMBER_SIZE];
-        const double value = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
-        set[(*n)++]
-            = ct_arena_printf(a, "%s=%s", s->plan.axis[i].name, ct_number_format(text, value));
-    }
-    return set;
+    double *value = CT_NEWN(a, double, s->plan.naxis + 1);
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        value[i] = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
+    *n = o->nset;
+    return ct_plan_settings(a, &s->plan, value, o->set, n);
 }
 
 // The worker's system takes the values of the member as read by the reader, `simulation` included.
