@@ -471,6 +471,9 @@ struct ct_study_options {
      *  run: max, min, mean, rms, final, or time [s], when it first rises through zero (NaN: it does not). */
     const char *const *take;
     size_t ntake;
+    const char
+        *text; /* ntext bytes of a model instead of the file at path, which names it then */
+    size_t ntext;
 };
 
 /** Where rows go. All of it may be zero. */

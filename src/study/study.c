@@ -86,8 +86,13 @@ static void take_options(struct ct_study *s, const char *path,
     s->run.solver = NULL; // lanes have forms of their own
 }
 
-static bool read_text(struct ct_study *s)
+static bool read_text(struct ct_study *s, const struct ct_study_options *options)
 {
+    if (options->text) {
+        s->ntext = options->ntext;
+        s->text = ct_arena_strndup(s->own.model, options->text, s->ntext);
+        return true;
+    }
     const enum ct_text_result e
         = ct_text_read(s->own.model, s->path, MOST_TEXT, &s->text, &s->ntext);
     return e == CT_TEXT_OK
@@ -140,7 +145,7 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, so->nset + 1);
     for (size_t i = 0; i < so->nset; i++)
         set[i].text = so->set[i];
-    if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
+    if (!read_text(s, o) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
         || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
         || !ct_plan_choose(&s->own, &file, o->members, o->vary, o->nvary, o->sample, o->seed,
                            &s->plan)

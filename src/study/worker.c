@@ -142,7 +142,7 @@ static void run_derived(struct worker *w, long member)
     }
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, member, &o.nset);
-    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    struct ct_system *system = ct_system_load_text(ctx, s->text, s->ntext, s->path, &o);
     run_alone(s, member, ctx, system);
     ct_system_destroy(system);
     ct_ctx_destroy(ctx);
@@ -252,7 +252,7 @@ struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study
 {
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, -1, &o.nset);
-    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    struct ct_system *system = ct_system_load_text(ctx, s->text, s->ntext, s->path, &o);
     if (system)
         system->is_private = true; // members share what is derived later
     return system;
