@@ -59,6 +59,8 @@ CT_API struct ct_ctx *ct_ctx_create(void);
 CT_API void ct_ctx_destroy(struct ct_ctx *ctx);
 /** Errors, warnings and notes so far, as FILE:LINE:COLUMN: error: MESSAGE with the source line. */
 CT_API void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_ctx_diagnostics(const struct ct_ctx *ctx);
 /** The gravest fault among the diagnostics. */
 CT_API enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx);
 
@@ -295,9 +297,9 @@ CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
 /** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
 CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
-/** The text of ct_sim_print_summary, which ct_free frees. */
+/** The texts of ct_sim_print_summary and ct_sim_print_check, and that of ct_sim_write_summary; ct_free frees them. */
 CT_API char *ct_sim_summary(const struct ct_sim *sim);
-/** That of ct_sim_write_summary. */
+CT_API char *ct_sim_check(const struct ct_sim *sim);
 CT_API char *ct_sim_summary_json(const struct ct_sim *sim);
 /** What the run did and how well it kept energy and constraints, for people. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
@@ -445,6 +447,8 @@ CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
 CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path);
 /** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_accuracy_summary(const struct ct_accuracy *a);
 
 /* ---- parameter studies ---------------------------------------------------------------------------- */
 
@@ -527,9 +531,12 @@ CT_API size_t ct_study_column_count(const struct ct_study *study);
 CT_API const char *ct_study_column(const struct ct_study *study, size_t i);
 /** What was done and which members failed, for people. */
 CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_study_summary(const struct ct_study *study);
 /** The same for programs: a JSON object. Errors: E002. */
 CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
                                    const char *path);
+CT_API char *ct_study_summary_json(const struct ct_study *study);
 
 /**
  * Join the shards of a sweep, in any order, to the file that the whole sweep would have written, byte by byte.
@@ -574,6 +581,8 @@ CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium
                                  const char *path);
 /** How good it is and whether it is stable, for people. */
 CT_API void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_equilibrium_summary(const struct ct_equilibrium *q);
 
 struct ct_modes;
 
@@ -616,6 +625,8 @@ CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, con
 CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
 /** What the modes are about, for people. */
 CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_modes_summary(const struct ct_modes *modes);
 
 struct ct_linearization;
 
@@ -651,6 +662,8 @@ CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_lineariza
                                    const char *path);
 /** Where, and the names, for people. */
 CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_linearization_summary(const struct ct_linearization *s);
 
 struct ct_buckling;
 
@@ -682,6 +695,8 @@ CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, c
                                     long count);
 /** How the factors were found, for people. */
 CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_buckling_summary(const struct ct_buckling *s);
 
 /* ---- analyses that vary --------------------------------------------------------------------------------- */
 
@@ -766,6 +781,10 @@ CT_API void ct_components_print(FILE *out);
 CT_API void ct_methods_print(FILE *out);
 /** JSON Schema (draft 2020-12) of the model file. */
 CT_API void ct_schema_print(FILE *out);
+/** The same as texts, which ct_free frees. */
+CT_API char *ct_components_text(void);
+CT_API char *ct_methods_text(void);
+CT_API char *ct_schema_text(void);
 
 #ifdef __cplusplus
 }

@@ -52,8 +52,9 @@ static void write_failures(struct ct_json *j, const struct ct_study *s)
     ct_json_end(j);
 }
 
-static void write_summary(FILE *out, const struct ct_study *s)
+static void write_summary(const void *object, FILE *out)
 {
+    const struct ct_study *s = object;
     struct ct_json j;
     ct_json_init(&j, out);
     ct_json_object(&j, NULL);
@@ -100,7 +101,7 @@ static bool write_file(void *task)
     if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
         || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
-    write_summary(file.stream, w->s);
+    write_summary(w->s, file.stream);
     return ct_outfile_close(w->ctx, &file);
 }
 
@@ -125,8 +126,9 @@ static void print_failures(FILE *out, const struct ct_study *s)
         fprintf(out, "failed       %ld in all; --summary FILE.json lists them\n", s->nfailed);
 }
 
-static void print_summary(const struct ct_study *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_study *s = object;
     fprintf(out, "%s: ", s->system->model.name);
     if (s->plan.nshard)
         fprintf(out, "shard %ld of %ld, ", s->plan.shard, s->plan.nshard);
@@ -150,9 +152,15 @@ static void print_summary(const struct ct_study *s, FILE *out)
 
 void ct_study_print_summary(const struct ct_study *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_study_summary(const struct ct_study *s)
+{
+    return ct_print_text(print_summary, s);
+}
+
+char *ct_study_summary_json(const struct ct_study *s)
+{
+    return ct_print_text(write_summary, s);
 }
