@@ -102,10 +102,12 @@ static bool read_model(struct ct_system *s, const struct source *from,
                        const struct ct_system_options *o)
 {
     const double start = ct_monotonic_time();
-    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
-    size_t n = o->nset;
-    for (size_t i = 0; i < n; i++)
-        set[i].text = o->set[i];
+    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + o->noutput + 1);
+    size_t n = 0;
+    for (size_t i = 0; i < o->nset; i++)
+        set[n++].text = o->set[i];
+    for (size_t i = 0; i < o->noutput; i++)
+        set[n++] = (struct ct_set){o->output[i], CT_SET_OUTPUT};
     if (o->input)
         set[n++] = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
     const bool ok

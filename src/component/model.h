@@ -122,7 +122,8 @@ struct ct_set {
     enum ct_set_kind {
         CT_SET_VALUE,
         CT_SET_INPUTS,     // linear between its rows
-        CT_SET_INPUTS_HELD // a row counts from its time on
+        CT_SET_INPUTS_HELD, // a row counts from its time on
+        CT_SET_OUTPUT       // an output NAME=EXPRESSION behind those of the file
     } kind;
 };
 

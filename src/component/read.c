@@ -153,7 +153,8 @@ static void warn_of_lone_bodies(struct ct_reader *r)
 static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
                        const struct ct_set *set, size_t nset, struct ct_model *m)
 {
-    struct ct_reader r = {.ctx = ctx, .a = ctx->model, .m = m, .root = root};
+    struct ct_reader r
+        = {.ctx = ctx, .a = ctx->model, .m = m, .root = root, .set = set, .nset = nset};
     *m = (struct ct_model){.file = file};
     m->x = CT_NEW(ctx->model, struct ct_exs);
     ct_exs_init(m->x, ctx->model);

@@ -21,6 +21,8 @@ struct ct_reader {
     struct ct_arena *a; // of the model
     struct ct_model *m;
     const struct ct_node *root;
+    const struct ct_set *set; // besides the file  (nset)
+    size_t nset;
     bool parameters_ok; // all have values; else checks that need a missing one are left out
     const char **known; // names for suggestions: t and the parameters
     size_t nknown, known_cap;
