@@ -207,7 +207,8 @@ static void put_programs(struct ct_export_text *t, const struct ct_export *x)
     }
     if (x->solved && x->e->nu)
         put_program(t, "solved", x->solved, 1, true);
-    put_program(t, "parameter_values", x->parameter, 1, true);
+    if (ct_export_has_derived(x))
+        put_program(t, "parameter_values", x->parameter, 1, true);
     put_program(t, "output_values", x->output, 1, true);
     put_program(t, "reaction_values", x->reaction, 1, true);
     put_program(t, "roots", x->root, 1, false);

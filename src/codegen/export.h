@@ -82,6 +82,8 @@ const char *ct_export_header(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_source(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_test(struct ct_arena *a, const struct ct_export *x);
 
+/// Does a parameter follow from others?
+bool ct_export_has_derived(const struct ct_export *x);
 struct ct_export_text;
 /// What does not depend on the model but for sizes: solving, projecting, stepping.
 void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x);

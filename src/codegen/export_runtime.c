@@ -209,28 +209,29 @@ static const char text_least[]
       "{\n"
       "    double *const diagonal = work, *const scale = work + n;\n"
       "    double first = 0;\n"
-      "    int column[($_NU > $_NROW ? $_NU : $_NROW) + 1], i, j, k, rank;\n"
-      "    for (j = 0; j < n; j++)\n"
+      "    enum { most = ($_NU > $_NROW ? $_NU : $_NROW) + 1 };\n"
+      "    int column[most], i, j, k, rank;\n"
+      "    for (j = 0; j < most; j++)\n"
       "        column[j] = j;\n"
       "    for (rank = 0; rank < m && rank < n; rank++) {\n"
-      "        double most = 0, *v;\n"
+      "        double norm = 0, *v;\n"
       "        int best = rank, keep;\n"
       "        for (j = rank; j < n; j++) {\n"
       "            double square = 0;\n"
       "            for (i = rank; i < m; i++)\n"
       "                square += A[i + m * column[j]] * A[i + m * column[j]];\n"
-      "            if (square > most) {\n"
-      "                most = square;\n"
+      "            if (square > norm) {\n"
+      "                norm = square;\n"
       "                best = j;\n"
       "            }\n"
       "        }\n"
-      "        most = sqrt(most);\n"
-      "        first = most > first ? most : first;\n"
-      "        if (!(most > 1e-9 * first))\n"
+      "        norm = sqrt(norm);\n"
+      "        first = norm > first ? norm : first;\n"
+      "        if (!(norm > 1e-9 * first))\n"
       "            break;\n"
       "        keep = column[best], column[best] = column[rank], column[rank] = keep;\n"
       "        v = A + m * column[rank];\n"
-      "        diagonal[rank] = v[rank] > 0 ? -most : most;\n"
+      "        diagonal[rank] = v[rank] > 0 ? -norm : norm;\n"
       "        v[rank] -= diagonal[rank];\n"
       "        scale[rank] = -1 / (diagonal[rank] * v[rank]); /* 2 / v'v */\n"
       "        for (j = rank + 1; j < n; j++) {\n"
@@ -770,6 +771,12 @@ static const char text_parameters[] = "void @_parameters(double *in)\n"
                                       "}\n"
                                       "\n";
 
+static const char text_noparameters[] = "void @_parameters(double *in)\n"
+                                        "{\n"
+                                        "    (void)in;\n"
+                                        "}\n"
+                                        "\n";
+
 static const char text_outputswithout[] = "void @_outputs(const double *in, double *out)\n"
                                           "{\n"
                                           "    @_output_values(in, out);\n"
@@ -976,6 +983,14 @@ size_t ct_export_work(const struct ct_export *x)
     return larger(step, x->ninput + larger(accelerate, multipliers));
 }
 
+bool ct_export_has_derived(const struct ct_export *x)
+{
+    for (size_t i = 0; i < x->parameters.n; i++)
+        if (x->parameters.item[i].is_derived)
+            return true;
+    return false;
+}
+
 void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x)
 {
     put(t, text_helpers);
@@ -991,7 +1006,7 @@ void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x)
     put_memory(t, x->e);
     put_changes(t, x);
     put_step(t, x);
-    put(t, text_parameters);
+    put(t, ct_export_has_derived(x) ? text_parameters : text_noparameters);
     put(t, x->needs_lam ? text_outputswith
            : x->needs_a ? text_outputswitha
                         : text_outputswithout);

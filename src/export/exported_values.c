@@ -118,25 +118,41 @@ bool ct_exported_record_states(struct ct_exported *w)
 
 enum { SAMPLES = 8 };
 
-// q, u at even times (SAMPLES x ny, out). False where the run fails.
-static bool run(struct ct_exported *w, const struct ct_sim_options *o, double duration,
+// A state that is stepped for a recorded motion, with its own diagnostics.
+struct stepper {
+    struct ct_ctx *quiet;
+    struct ct_data *d;
+};
+
+static struct stepper make_stepper(struct ct_exported *w, const struct ct_sim_options *o)
+{
+    struct stepper s = {.quiet = ct_ctx_create()};
+    s.d = s.quiet ? ct_data_create(s.quiet, w->sim->system, o) : NULL;
+    return s;
+}
+
+static void destroy_stepper(struct stepper *s)
+{
+    ct_data_destroy(s->d);
+    ct_ctx_destroy(s->quiet);
+}
+
+// q, u at even times (SAMPLES x ny, out), with nstep calls between them. False where the run fails.
+static bool run(const struct ct_equations *e, struct stepper *s, double duration, long nstep,
                 double *y)
 {
-    const struct ct_equations *e = &w->sim->system->equations;
     const size_t ny = e->nq + e->nu;
-    struct ct_ctx *quiet = ct_ctx_create();
-    struct ct_data *d = quiet ? ct_data_create(quiet, w->sim->system, o) : NULL;
-    bool ok = d != NULL;
+    bool ok = s->d && ct_data_reset(s->quiet, s->d) && ct_data_set_time(s->quiet, s->d, 0);
     for (size_t i = 0; ok && i < SAMPLES; i++) {
-        ok = ct_data_step(quiet, d, duration / SAMPLES);
+        for (long k = 0; ok && k < nstep; k++)
+            ok = ct_data_step(s->quiet, s->d, duration / (double)(SAMPLES * nstep));
         for (size_t k = 0; ok && k < ny; k++) {
-            y[i * ny + k] = ct_data_value(d, k < e->nq ? CT_COORDINATE : CT_SPEED,
+            y[i * ny + k] = ct_data_value(s->d, k < e->nq ? CT_COORDINATE : CT_SPEED,
                                           k < e->nq ? k : k - e->nq);
             ok = isfinite(y[i * ny + k]);
         }
     }
-    ct_data_destroy(d);
-    ct_ctx_destroy(quiet);
+    ct_ctx_clear(s->quiet);
     return ok;
 }
 
@@ -176,12 +192,14 @@ void ct_exported_record_motion(struct ct_exported *w)
     double *want = CT_NEWN(w->ctx->model, double, n),
            *got = CT_NEWN(w->sim->own.scratch, double, n);
     double duration = w->sim->run_options.duration > 0 ? w->sim->run_options.duration : 1;
+    // a call takes one step of its own length
+    struct stepper fixed
+        = make_stepper(w, &(struct ct_sim_options){.method = "rk4", .step = duration}),
+        tight
+        = make_stepper(w, &(struct ct_sim_options){.method = "dopri5", .tolerance = 1e-10});
     r->nstep = count_steps(w);
     for (int k = 0; k < 12 && !r->nsample && ny; k++, duration /= 4) {
-        const struct ct_sim_options fixed
-            = {.method = "rk4", .step = duration / (double)(SAMPLES * r->nstep)},
-            tight = {.method = "dopri5", .tolerance = 1e-10};
-        if (!run(w, &fixed, duration, got) || !run(w, &tight, duration, want))
+        if (!run(e, &fixed, duration, r->nstep, got) || !run(e, &tight, duration, 1, want))
             continue;
         const double error = compare(got, want, ny);
         if (error > wanted)
@@ -191,4 +209,6 @@ void ct_exported_record_motion(struct ct_exported *w)
         r->duration = duration;
         r->tolerance = fmax(10 * error, 1e-9);
     }
+    destroy_stepper(&fixed);
+    destroy_stepper(&tight);
 }
