@@ -556,16 +556,18 @@ static const char text_nojump[] = "static int change(double *in, double *work)\n
                                   "}\n"
                                   "\n";
 
-static const char text_nostops[] = "static double next_stop(double t, double end)\n"
-                                   "{\n"
-                                   "    (void)t;\n"
-                                   "    return end;\n"
-                                   "}\n"
-                                   "\n";
+static const char text_nostops[]
+    = "static double next_stop(double t, double end, int *is_kink)\n"
+      "{\n"
+      "    (void)t;\n"
+      "    *is_kink = 0;\n"
+      "    return end;\n"
+      "}\n"
+      "\n";
 
 static const char text_theknots[]
-    = "/* The next time behind t, up to `end`, where a table has a kink. */\n"
-      "static double next_stop(double t, double end)\n"
+    = "/* The next time behind t, up to `end`, where a table has a kink; else `end`. */\n"
+      "static double next_stop(double t, double end, int *is_kink)\n"
       "{\n"
       "    int low = 0, high = n_knot;\n"
       "    while (low < high) {\n"
@@ -575,7 +577,8 @@ static const char text_theknots[]
       "        else\n"
       "            low = middle + 1;\n"
       "    }\n"
-      "    return low < n_knot && knot[low] < end ? knot[low] : end;\n"
+      "    *is_kink = low < n_knot && knot[low] <= end;\n"
+      "    return *is_kink ? knot[low] : end;\n"
       "}\n"
       "\n";
 
@@ -725,8 +728,8 @@ static const char text_thestep[]
       "    if (!failed && is_contradicted(in, rest)) /* values have been set */\n"
       "        @_switch(in);\n"
       "    while (!failed && in[$_T] < end) {\n"
-      "        const double to = next_stop(in[$_T], end);\n"
-      "        int is_change;\n"
+      "        int is_change, is_kink;\n"
+      "        const double to = next_stop(in[$_T], end, &is_kink);\n"
       "        copy(from, in, $_NINPUT);\n"
       "        failed = try_step(in, from, to, rest);\n"
       "        is_change = !failed && has_changed(in, rest);\n"
@@ -735,7 +738,7 @@ static const char text_thestep[]
       "        else if (is_change)\n"
       "            is_late = 3;\n"
       "        @_memory(in);\n"
-      "        if (!failed && (is_change || to < end))\n"
+      "        if (!failed && (is_change || (is_kink && !(in[$_T] < to))))\n"
       "            failed = change(in, rest);\n"
       "    }\n"
       "    if (failed)\n"

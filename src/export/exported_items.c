@@ -31,7 +31,7 @@ static struct ct_export_items list_parameters(struct ct_exported *w, enum ct_kin
         const size_t k = ct_item_parameter(m, kind, i);
         list.item[i].index = 1 + k;
         list.item[i].is_derived = !ct_ex_is_const(m->x, m->parameter[k].definition, NULL);
-        list.item[i].is_fixed = ct_item_has_decided(w->sim->system, k);
+        list.item[i].is_fixed = ct_item_has_decided(w->sim->system->origin, k);
     }
     return list;
 }
