@@ -239,12 +239,19 @@ static bool export_c(struct ct_exported *w)
         && write_file(w, "_test.c", ct_export_test(a, &w->x)) && write_json(w);
 }
 
+struct task {
+    struct ct_ctx *ctx;
+    struct ct_exported *w;
+};
+
 static bool write_c(void *task)
 {
-    struct ct_exported *w = task;
+    const struct task *t = task;
+    struct ct_exported *w = t->w;
     const bool ok = export_c(w);
     if (w->reaction.listing) // of the caller's stack
         ct_evaluator_remove_program(ct_run_evaluator(w->sim->run), &w->reaction);
+    ct_ctx_hand_over(t->ctx, w->ctx);
     return ok;
 }
 
@@ -257,14 +264,16 @@ bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
 bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                          const char *folder, long lanes)
 {
-    struct ct_exported w = {.ctx = ctx, .sim = sim, .folder = folder, .lanes = (unsigned)lanes};
     if (!ctx || !sim || !folder)
         return false;
+    struct ct_exported w
+        = {.ctx = &sim->own, .sim = sim, .folder = folder, .lanes = (unsigned)lanes};
+    struct task task = {ctx, &w};
     if (format && strcmp(format, "c") != 0)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there is no export format '%s'; there is c", format);
     if (lanes != 0 && lanes != 1 && lanes != 4 && lanes != 8)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there are no %ld lanes; there are 1, 4 and 8", lanes);
-    return ct_enter(ctx, write_c, &w);
+    return ct_enter(ctx, write_c, &task);
 }

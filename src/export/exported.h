@@ -13,7 +13,7 @@
 enum { CT_EXPORT_STATES = 4 };
 
 struct ct_exported {
-    struct ct_ctx *ctx;
+    struct ct_ctx *ctx; // the run's
     struct ct_sim *sim;
     const char *folder;
     unsigned lanes;
