@@ -239,6 +239,7 @@ struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys)
     struct ct_system *s = CT_NEW(a, struct ct_system);
     const struct ct_model *model = ct_model_fork(a, &sys->model);
     s->is_private = true;
+    s->origin = sys;
     s->model = *model;
     s->tree = sys->tree;
     s->read = sys->read;

@@ -13,6 +13,7 @@ struct ct_system {
     struct ct_ctx own;
     bool
         is_private; // of one run, analysis or worker: what is derived later goes into its own equations
+    const struct ct_system *origin; // that it was borrowed from; NULL: it was loaded
     struct ct_model model;
     struct ct_equations equations;
     struct ct_tree_report tree;

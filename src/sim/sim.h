@@ -6,7 +6,6 @@
 //     verify.c        the error, by a second run
 //     result_file.c   results as a file
 //     summary.h       figures, for people and programs
-//     exported.c      the system as C source
 //
 // What always holds: a run owns a context, so that its memory is its alone; what it says is handed over to the caller's
 // context, as copies, before an entry point returns.
