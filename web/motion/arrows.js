@@ -1,19 +1,25 @@
 // Arrows of forces and torques that act from outside, and of what joints transmit.
 //
-// Lengths are proportional to forces, the longest one of the run is `longest`; torques have a scale of their own.
+// Lengths are proportional to forces up to `peak` times the usual one; torques have a scale of their own.
 
 import { ConeGeometry, CylinderGeometry, Group, TorusGeometry, Vector3 } from "three";
 
 const y = new Vector3(0, 1, 0);
-const visible = 2e-3; // of the largest
+const visible = 5e-3; // of the usual size
+const peak = 2; // times it: arrows become no longer
 const direction = new Vector3();
 
-function largest(track, columns) {
-  let most = 0;
+// What is usual for the largest of some vectors: nine of ten samples have no larger one. Peaks as at a start do not make all others
+// vanish.
+export function usualSize(track, columns) {
+  const sizes = [];
   track.scan(400, () => {
+    let most = 0;
     for (const c of columns) most = Math.max(most, Math.hypot(track.linear(c), track.linear(c + 1), track.linear(c + 2)));
+    sizes.push(most);
   });
-  return most;
+  sizes.sort((a, b) => a - b);
+  return sizes[Math.ceil(0.9 * (sizes.length - 1))] || sizes[sizes.length - 1];
 }
 
 // Along y from 0, its length set by `stretch`.
@@ -55,12 +61,12 @@ function inFront(material) {
   return copy;
 }
 
-// forces: [{name, at: [pose, x, y, z], column, torque: column or undefined}]; longest [m].
-// Returns {group, update(), largest [N]}.
+// forces: [{name, at: [pose, x, y, z], column, torque: column or undefined}]; longest [m]: of the
+// force `most` [N].
 export function createArrows({ parts, track, s }, forces, base, longest, most) {
   const material = inFront(base);
   const group = new Group();
-  const mostTorque = largest(track, forces.filter((f) => f.torque !== undefined).map((f) => f.torque));
+  const mostTorque = usualSize(track, forces.filter((f) => f.torque !== undefined).map((f) => f.torque));
   const place = new Float64Array(3);
   const items = forces.flatMap((f) => {
     const one = { at: f.at, column: f.column, most, longest, ...straight(parts, s, material, f.name) };
@@ -81,10 +87,8 @@ export function createArrows({ parts, track, s }, forces, base, longest, most) {
         track.locate(item.at, place);
         item.group.position.set(place[0], place[1], place[2]);
         item.group.quaternion.setFromUnitVectors(y, direction.divideScalar(size));
-        item.stretch((size / item.most) * item.longest);
+        item.stretch(Math.min(peak, size / item.most) * item.longest);
       }
     },
   };
 }
-
-export const largestForce = (track, forces) => largest(track, forces.map((f) => f.column));

@@ -2,7 +2,7 @@
 
 import { Vector3 } from "three";
 
-// items: [{name, at: [pose, x, y, z], kind: "body" or "joint"}]
+// items: [{name, at: [pose, x, y, z], kind: "body" or "joint", color}]
 export function createLabels(element, items, track, camera) {
   const layer = document.createElement("div");
   layer.className = "names";
@@ -11,10 +11,11 @@ export function createLabels(element, items, track, camera) {
   const place = new Float64Array(3);
   const point = new Vector3();
   const boxes = new Float64Array(4 * items.length); // left, top, width, height
-  const spans = items.map(({ name, kind }) => {
+  const spans = items.map(({ name, kind, color }) => {
     const span = document.createElement("span");
     span.className = kind;
     span.dataset.component = name;
+    if (color) span.style.color = color;
     span.textContent = name;
     layer.append(span);
     return span;

@@ -7,7 +7,7 @@
 
 import { Vector2, Vector3 } from "three";
 import { unpack } from "../packed.js";
-import { createArrows, largestForce } from "./arrows.js";
+import { createArrows, usualSize } from "./arrows.js";
 import { createBeam } from "./beams.js";
 import { createCamera } from "./camera.js";
 import { colorOfBody, createColors } from "./colors.js";
@@ -143,6 +143,9 @@ async function addBodies(context, data, size) {
   return beams;
 }
 
+// The same place of the same body?
+const isSamePlace = (a, b, s) => a.body === b.body && a.at[0] === b.at[0] && Math.hypot(...[1, 2, 3].map((k) => a.at[k] - b.at[k])) < 0.1 * s;
+
 function addJoints(context, data, camera) {
   const { track } = context;
   const stretched = [];
@@ -156,7 +159,8 @@ function addJoints(context, data, camera) {
   for (const joint of data.joints) {
     const moving = data.bodies[joint.from.body === 0 ? joint.to.body : joint.from.body];
     const range = isSliding(joint.symbol) ? rangeOf(track, joint) : [0, 0];
-    createJoint(context, joint, { up, facing, toBody: directionTo(track, joint, moving), range });
+    const isHeld = data.joints.some((j) => j !== joint && [j.from, j.to].some((end) => isSamePlace(end, joint.to, context.s)));
+    createJoint(context, joint, { up, facing, toBody: directionTo(track, joint, moving), range, isHeld });
     const kinds = joint.symbol === "rod" ? ["rod"] : [joint.spring && "spring", joint.damper && !joint.spring && "damper"].filter(Boolean);
     if (kinds.length) stretched.push(createStretched(context, [joint.from.at, joint.to.at], kinds, joint.name));
   }
@@ -186,12 +190,14 @@ function tracedPoints(data, track) {
 }
 
 function labelledPlaces(data) {
-  const middle = ({ held, number }) => {
+  const middle = ({ held, number, beam }) => {
+    if (beam) return [number, beam.length / 2, 0, 0];
     const own = held.filter(([pose]) => pose === number);
+    if (!own.length) return [number, 0, 0, 0];
     const sum = own.reduce((s, at) => s.map((v, k) => v + at[k + 1] / own.length), [0, 0, 0]);
     return [number, ...sum];
   };
-  const bodies = data.bodies.slice(1).map((body) => ({ name: body.name, at: middle(body), kind: "body" }));
+  const bodies = data.bodies.slice(1).map((body) => ({ name: body.name, at: middle(body), kind: "body", color: colorOfBody(body.number) }));
   const joints = data.joints.map(({ name, from, to }) => ({ name, at: to.body === 0 ? from.at : to.at, kind: "joint" }));
   return [...bodies, ...joints];
 }
@@ -227,7 +233,10 @@ export async function createMotion(element, data, clock, lights) {
   let places = placesOverRun(track, held, bent);
   let size = sizeOf(places);
   const s = symbolSize(track, data.joints, size);
-  const context = { parts, poses, track, scene, s, light: parts.surface(colors.symbol), dark: parts.surface(colors.support) };
+  const context = { parts, poses, track, scene, s, light: parts.surface(colors.symbol), dark: parts.surface(colors.support),
+    ofBody: (i) => parts.surface(colorOfBody(i)),
+    nameOf: (i) => data.bodies[i].name,
+  };
 
   const beams = await addBodies(context, data, size);
   const shaped = data.bodies.filter((body) => body.solids.length);
@@ -240,7 +249,7 @@ export async function createMotion(element, data, clock, lights) {
   const traces = createTraces(parts, track, tracedPoints(data, track), size);
   const loads = data.forces.filter((f) => f.load !== undefined).map((f) => ({ name: f.name, at: f.to.at, column: f.load, torque: f.load + 3 }));
   const reactions = data.joints.map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
-  const most = Math.max(largestForce(track, loads), largestForce(track, reactions));
+  const most = usualSize(track, [...loads, ...reactions].map((f) => f.column));
   const loadArrows = createArrows(context, loads, parts.surface(colors.load), 0.22 * size, most);
   const reactionArrows = createArrows(context, reactions, parts.surface(colors.reaction), 0.22 * size, most);
   const grid = createGrid(places, data.normal ?? vertical, size, 4 * s, colors.line);

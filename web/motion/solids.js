@@ -4,6 +4,7 @@ import {
   BoxGeometry,
   BufferAttribute,
   BufferGeometry,
+  Color,
   CylinderGeometry,
   Line,
   LineBasicMaterial,
@@ -31,13 +32,16 @@ async function geometryOf(solid) {
   return geometry;
 }
 
+// Large surfaces are lighter than bars of the same colour.
+const tint = (color) => new Color(color).lerp(new Color("#ffffff"), 0.3).getStyle();
+
 // An object in axes of the body.
 export async function createSolid(parts, solid, color, component) {
   const geometry = await geometryOf(solid);
   const object =
     solid.kind === "lines"
       ? parts.own(new Line(geometry, new LineBasicMaterial({ color: solid.color ?? color })), component)
-      : parts.solid(geometry, parts.surface(solid.color ?? color), component, solid.kind !== "sphere");
+      : parts.solid(geometry, parts.surface(tint(solid.color ?? color)), component, solid.kind !== "sphere");
   for (const [angle, ...axis] of solid.turns)
     object.quaternion.multiply(new Quaternion().setFromAxisAngle(new Vector3(...axis), angle));
   object.position.set(...solid.at);

@@ -42,7 +42,7 @@ export function createStretched(context, ends, kinds, name) {
         ? coil(context, name)
         : kind === "damper"
           ? dashpot(context, name)
-          : parts.solid(new CylinderGeometry(0.35 * s, 0.35 * s, 1, 16).translate(0, 0.5, 0), context.light, name);
+          : parts.solid(new CylinderGeometry(0.35 * s, 0.35 * s, 1, 16).translate(0, 0.5, 0), context.dark, name, false);
     if (both && kind === "damper") object.position.x = 2.4 * s;
     group.add(object);
   });

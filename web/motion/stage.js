@@ -6,14 +6,14 @@ import { AmbientLight, DirectionalLight, Group, Quaternion, Scene, Vector3, WebG
 export function createStage(canvas, camera) {
   const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
   const scene = new Scene();
-  const lamp = new DirectionalLight(0xffffff, 2.2);
+  const lamp = new DirectionalLight(0xffffff, 2);
   const listeners = new Set();
   let asked = 0;
   let seen = true;
   let late = false;
   lamp.position.set(-0.3, 0.55, 0.78); // over the left shoulder, as in drawings
   camera.add(lamp);
-  scene.add(camera, new AmbientLight(0xffffff, 1.5));
+  scene.add(camera, new AmbientLight(0xffffff, 2));
 
   function draw() {
     asked = 0;

@@ -6,7 +6,7 @@ import { CylinderGeometry, OctahedronGeometry, SphereGeometry, TorusGeometry, Ve
 
 const slides = (symbol) => symbol === "slider" || symbol === "cylindrical" || symbol === "screw";
 
-// context: {parts, poses, s, light: surface of symbols, dark: of supports}
+// context: {parts, poses, s, light: surface of symbols, dark: of supports, ofBody(number): of a body, nameOf(number)}
 function symbolOf({ parts, s, light, dark }, joint, name) {
   switch (joint.symbol) {
     case "pin":
@@ -79,8 +79,8 @@ export function orient(object, up, axis) {
 
 // A joint's objects, each put into the group of the pose that it moves with.
 //   up, facing: of the standard view [Vector3]; toBody: unit vector at the start from the joint to the moving body;
-//   range: of the displacement of a slider's `to` along its axis [m]
-export function createJoint(context, joint, { up, facing, toBody, range }) {
+//   range: of the displacement of a slider's `to` along its axis [m]; isHeld: another joint is at its `to`
+export function createJoint(context, joint, { up, facing, toBody, range, isHeld }) {
   const { parts, poses, s } = context;
   const { name, from, to } = joint;
   const onGround = from.body === 0 || to.body === 0;
@@ -89,6 +89,10 @@ export function createJoint(context, joint, { up, facing, toBody, range }) {
   const [pose, ...place] = end.at;
   const axis = joint.axes[0] ? poses.convert(joint.axes[0], from.at[0], pose) : new Vector3(0, 0, 1);
 
+  if (isTelescope(joint, range, isHeld, s)) {
+    addTelescope(context, joint, range);
+    return;
+  }
   if (joint.symbol === "universal") {
     const ends = [from, to];
     joint.axes.forEach((direction, k) => {
@@ -123,7 +127,7 @@ function addSupport(context, joint, { up, facing, toBody }) {
   poses.groups[0].add(support);
 }
 
-// What a slider slides on: hatched ground beside it, or a line of the body that guides it.
+// What a slider slides on: hatched ground beside it, or a bar of the body that guides it.
 function addRail(context, joint, { up, facing, range, onGround }) {
   const { parts, poses, s } = context;
   const guide = onGround && joint.to.body === 0 ? joint.to : joint.from;
@@ -131,20 +135,45 @@ function addRail(context, joint, { up, facing, range, onGround }) {
   const axis = poses.convert(joint.axes[0], joint.from.at[0], pose);
   const sign = guide === joint.from ? 1 : -1;
   const ends = [sign * range[0], sign * range[1]].sort((a, b) => a - b);
-  const middle = new Vector3(...at).addScaledVector(axis, (ends[0] + ends[1]) / 2);
-  const length = ends[1] - ends[0] + 7 * s;
+  const along = (x) => new Vector3(...at).addScaledVector(axis, x);
   if (!onGround) {
-    const half = axis.clone().multiplyScalar(length / 2);
-    poses.groups[pose].add(
-      parts.bar(middle.clone().sub(half), middle.clone().add(half), 0.45 * s, context.dark, joint.name),
-    );
+    const [a, b] = [Math.min(0, ends[0] - 4 * s), Math.max(0, ends[1] + 4 * s)];
+    poses.groups[pose].add(parts.bar(along(a), along(b), 0.5 * s, context.ofBody(guide.body), joint.name));
     return;
   }
-  const rail = createHatch(context, length, 2.4 * s, joint.name);
+  const rail = createHatch(context, ends[1] - ends[0] + 7 * s, 2.4 * s, joint.name);
   const out = up.clone().addScaledVector(axis, -up.dot(axis)); // the side that the hatching does not face
   if (out.lengthSq() < 0.1) out.copy(facing).cross(axis);
   orient(rail, out, out.clone().cross(axis));
-  rail.position.copy(middle).addScaledVector(out.normalize(), -1.05 * s);
+  rail.position.copy(along((ends[0] + ends[1]) / 2)).addScaledVector(out.normalize(), -1.05 * s);
   poses.groups[pose].add(rail);
 }
 
+// A slider between two bodies that are held at its ends: a bar of each, the one in a sleeve at the end of the other.
+function addTelescope(context, joint, range) {
+  const { parts, poses, s } = context;
+  const sign = range[0] > 0 ? 1 : -1;
+  const [least, most] = range.map(Math.abs).sort((a, b) => a - b);
+  const length = Math.min(least, 0.5 * most);
+  for (const [end, way] of [
+    [joint.from, sign],
+    [joint.to, -sign],
+  ]) {
+    const [pose, ...at] = end.at;
+    const axis = poses.convert(joint.axes[0], joint.from.at[0], pose).multiplyScalar(way);
+    const foot = new Vector3(...at);
+    const reach = end === joint.from ? length : Math.min(least, most - length + 2 * s);
+    const tip = foot.clone().addScaledVector(axis, reach);
+    poses.groups[pose].add(parts.bar(foot, tip, 0.5 * s, context.ofBody(end.body), context.nameOf(end.body)));
+    if (end === joint.to) continue;
+    const sleeve = parts.stand(tip.toArray(), axis);
+    symbolOf(context, joint, joint.name).forEach((object) => sleeve.add(object));
+    poses.groups[pose].add(sleeve);
+  }
+}
+
+// Does a slider reach from one body to another, far enough to be seen?  isHeld: `to` is held by another joint, too
+function isTelescope(joint, range, isHeld, s) {
+  const isApart = range[0] * range[1] > 0 && Math.min(...range.map(Math.abs)) > 6 * s;
+  return slides(joint.symbol) && joint.from.body > 0 && joint.to.body > 0 && isHeld && isApart;
+}

@@ -8,7 +8,7 @@ const still = 0.002; // of the scene's size: a point that moves less leaves no p
 // points: [{name, color, locate(out, at)}]. Two of them that stay together leave one path.
 export function createTraces(parts, track, points, size) {
   const group = new Group();
-  const n = Math.min(most, track.times.length);
+  const n = Math.min(most, 8 * track.times.length); // smooth between samples that are far apart
   const paths = points.map(() => new Float32Array(3 * n));
   track.scan(n, (row) => points.forEach((point, i) => point.locate(paths[i], 3 * row)));
 

@@ -102,15 +102,13 @@ export function createTrack(poses, times, columns) {
       out[at + 1] = place[3 * p + 1] + y + 2 * (c * i - a * k);
       out[at + 2] = place[3 * p + 2] + z + 2 * (a * j - b * i);
     },
-    // f(row) with the poses at each of some samples, `most` at most, the first and the last among them
-    scan(most, f) {
-      const n = Math.min(most, times.length);
+    // f(i) with the poses at n times, equally spaced, the start and the end among them
+    scan(n, f) {
       for (let i = 0; i < n; i++) {
-        seek(times[n > 1 ? Math.round((i * last) / (n - 1)) : 0]);
+        seek(n > 1 ? times[0] + ((times[last] - times[0]) * i) / (n - 1) : times[0]);
         f(i);
       }
       seek(times[0]);
-      return n;
     },
   };
 }
