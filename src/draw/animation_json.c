@@ -232,6 +232,52 @@ static void write_force(const struct work *w, size_t i)
 
 // ---- samples ----------------------------------------------------------------------------------
 
+// The largest extent of a column of some, over all rows.
+static double extent(const struct ct_animation *m, size_t first, size_t step, size_t n)
+{
+    double most = 0;
+    for (size_t c = first; n-- > 0; c += step) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < m->nrow; i++) {
+            low = fmin(low, m->row[m->ncolumn * i + c]);
+            high = fmax(high, m->row[m->ncolumn * i + c]);
+        }
+        most = fmax(most, high - low);
+    }
+    return most;
+}
+
+// How far places are apart, on bodies and over the motion [m].
+static double size_of(const struct ct_animation *m)
+{
+    double size = 0;
+    for (size_t k = 0; k < 3 && m->npose > 1; k++)
+        size = fmax(size, extent(m, k, 7, m->npose - 1));
+    for (size_t f = 0; f < m->scene.model->nframe; f++)
+        size = fmax(size, sqrt(ct_dot3(m->local[f], m->local[f])));
+    return size;
+}
+
+// What cannot be seen. Deflections of beams may be shown a hundred times as large.
+static double *find_resolution(const struct work *w)
+{
+    const double seen = 1e-6; // of the picture, which so may be enlarged a thousand times
+    const double enlarged = 100;
+    const double seen_force = 1e-4; // of the largest: arrows
+    const struct ct_animation *m = w->m;
+    const size_t beams = ct_animation_beam_column(m, 0),
+                 loads = ct_animation_beam_column(m, m->scene.nbeam);
+    const double place = seen * size_of(m),
+                 force = seen_force * extent(m, loads, 1, m->ncolumn - loads);
+    double *resolution = CT_NEWN(w->a, double, m->ncolumn + 1);
+    for (size_t c = 0; c < m->ncolumn; c++)
+        resolution[c] = c >= loads ? force
+                      : c >= beams ? place / enlarged
+                      : c % 7 < 3  ? place
+                                   : seen;
+    return resolution;
+}
+
 // Every k-th row, as few apart as `most` allows, and the last one.
 static void write_samples(const struct work *w, size_t most)
 {
@@ -248,7 +294,7 @@ static void write_samples(const struct work *w, size_t most)
     }
     ct_json_integer(w->j, "thinned", (long long)k);
     ct_pack_write(w->j, w->a, "times", t, n, 1);
-    ct_pack_write(w->j, w->a, "samples", v, n, m->ncolumn);
+    ct_pack_write_rounded(w->j, w->a, "samples", v, n, m->ncolumn, find_resolution(w));
 }
 
 // Points of moving bodies, the body's own frame where it has none, and both ends of beams, as `draw --trace`.
