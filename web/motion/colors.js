@@ -9,7 +9,7 @@ export const colorOfBody = (i) => (i === 0 ? "#808080" : palette[(i - 1) % palet
 
 // Variables as colours of three.js, which keep their identity when the page turns dark. apply: called after each change.
 export function createColors(element, apply) {
-  const names = ["ink", "paper", "quiet", "line", "lit-line", "load", "reaction", "symbol", "support"];
+  const names = ["edge", "line", "lit-line", "load", "reaction", "symbol", "support"];
   const colors = Object.fromEntries(names.map((name) => [name, new Color()]));
   const probe = document.createElement("span");
   probe.hidden = true;

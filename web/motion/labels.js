@@ -15,7 +15,7 @@ export function createLabels(element, items, track, camera) {
     const span = document.createElement("span");
     span.className = kind;
     span.dataset.component = name;
-    if (color) span.style.color = color;
+    if (color) span.style.color = `color-mix(in srgb, ${color} 75%, var(--ink))`;
     span.textContent = name;
     layer.append(span);
     return span;

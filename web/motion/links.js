@@ -1,7 +1,7 @@
 // Bodies without a shape, drawn from their frames: a bar between two places, a plate through more in a plane, bars from the middle to
 // those that are not; a single place as what it is: a particle, a mass, axes.
 
-import { BufferAttribute, BufferGeometry, Color, SphereGeometry, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, SphereGeometry, Vector3 } from "three";
 
 const distinct = 1e-6; // of the scene's size
 
@@ -80,7 +80,7 @@ function centre(parts, at, r, name) {
     color.fill(middle.x * middle.y * middle.z > 0 ? 0.05 : 1, 3 * i, 3 * i + 9);
   }
   geometry.setAttribute("color", new BufferAttribute(color, 3));
-  const material = parts.surface(new Color("#ffffff")).clone();
+  const material = parts.surface("#ffffff").clone();
   material.vertexColors = true;
   const mesh = parts.solid(geometry, material, name, false);
   mesh.position.copy(at);

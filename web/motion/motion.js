@@ -202,7 +202,7 @@ function labelledPlaces(data) {
   return [...bodies, ...joints];
 }
 
-// element: <div id="motion-panel">, which holds a drawing of the start; it stays where there is no WebGL.
+// element: <div id="motion-panel">, which holds a drawing of the start, for print and where there is no WebGL.
 export async function createMotion(element, data, clock, lights) {
   if (!hasWebGL()) return;
   const [times] = await unpack(data.times);
@@ -222,7 +222,8 @@ export async function createMotion(element, data, clock, lights) {
   const camera = createCamera(data.views, vertical, () => stage.invalidate());
   const stage = createStage(canvas, camera.camera);
   const { scene } = stage;
-  element.replaceChildren(view);
+  element.prepend(view);
+  element.classList.add("has-motion");
   const { colors, read } = createColors(view, () => stage.invalidate());
   const parts = createParts(colors);
   const poses = createPoses(scene, track, data.poses);

@@ -26,19 +26,19 @@ export function createParts(colors) {
   const surfaces = new Map(); // colour -> material
   const ofComponent = new Map(); // name -> objects
   const pickable = [];
-  const edge = new LineBasicMaterial({ color: colors.ink, transparent: true, opacity: 0.75 });
+  const edge = new LineBasicMaterial({ transparent: true, opacity: 0.75 });
   const litSurface = new MeshLambertMaterial({ side: DoubleSide });
   const litEdge = new LineBasicMaterial();
   const ray = new Raycaster();
   ray.params.Line.threshold = 0;
-  edge.color = colors.ink; // shared: they follow the page
+  edge.color = colors.edge; // shared: they follow the page
   litSurface.color = litSurface.emissive = colors["lit-line"];
   litSurface.emissiveIntensity = 0.35;
   litEdge.color = colors["lit-line"];
 
   // color: "#rrggbb", or a Color that is shared
   function surface(color, opacity = 1) {
-    const key = `${color.isColor ? color.uuid ?? Object.keys(colors).find((name) => colors[name] === color) : color} ${opacity}`;
+    const key = `${Object.keys(colors).find((name) => colors[name] === color) ?? color} ${opacity}`;
     if (!surfaces.has(key)) {
       const material = new MeshLambertMaterial({ side: DoubleSide, opacity, transparent: opacity < 1 });
       material.polygonOffset = true; // edges lie before their surface
