@@ -3,6 +3,7 @@ import { createClock } from "./clock.js";
 import { readData } from "./data.js";
 import { createGraph } from "./graph.js";
 import { createLights } from "./lights.js";
+import { createMotion } from "./motion/motion.js";
 import { nameOwnFile } from "./manifest.js";
 import { unpack } from "./packed.js";
 import { createPlots } from "./plots.js";
@@ -20,6 +21,7 @@ nameOwnFile(document.getElementById("command"));
 async function start() {
   const [times] = await unpack(run.times);
   const samples = await unpack(run.samples);
+  await createMotion(document.getElementById("motion-panel"), readData("data-motion"), clock, lights);
   createPlots(document.getElementById("plots"), { ...run, times, samples }, clock, lights);
   const terms = readData("data-terms");
   if (terms) showValues(document, terms, await unpack(terms.times), await unpack(terms.samples), clock);

@@ -4,6 +4,7 @@
 #include "base/sha256.h"
 #include "html/web.h"
 #include "io/text.h"
+#include "report/outfile.h"
 #include "report/packed.h"
 
 #include <stdlib.h>

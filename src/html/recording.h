@@ -4,14 +4,13 @@
 #ifndef CT_HTML_RECORDING_H
 #define CT_HTML_RECORDING_H
 
-#include "draw/picture.h"
+#include "draw/animation.h"
 #include "sim/sim.h"
 
 struct ct_recording {
     struct ct_sim *sim;
-    struct ct_scene scene;
-    struct ct_program places; // of the scene
-    double *first;            // its values at the start
+    struct ct_animation animation; // its rows are those of this
+    double *first;                 // values of its scene at the start
     size_t stride, nsample;   // samples of the run
     size_t nrow, ncolumn;     // ncolumn: outputs
     size_t time_cap, value_cap;

@@ -61,8 +61,7 @@ static void put_column(unsigned char *plane, size_t size, const double *value, s
         const int32_t bend = k - last - slope; // below 2^26
         slope = k - last;
         last = k;
-        const uint32_t z
-            = bend < 0 ? 2 * (uint32_t)(-(bend + 1)) + 1 : 2 * (uint32_t)bend;
+        const uint32_t z = bend < 0 ? 2 * (uint32_t)(-(bend + 1)) + 1 : 2 * (uint32_t)bend;
         for (size_t b = 0; b < 4; b++)
             plane[b * size + i] = (unsigned char)(z >> 8 * b);
     }
@@ -71,12 +70,22 @@ static void put_column(unsigned char *plane, size_t size, const double *value, s
 size_t ct_pack_write(struct ct_json *j, struct ct_arena *a, const char *key,
                      const double *value, size_t nrow, size_t ncolumn)
 {
+    return ct_pack_write_rounded(j, a, key, value, nrow, ncolumn, NULL);
+}
+
+size_t ct_pack_write_rounded(struct ct_json *j, struct ct_arena *a, const char *key,
+                             const double *value, size_t nrow, size_t ncolumn,
+                             const double *resolution)
+{
     struct ct_arena *work = ct_arena_create_under(a);
     const size_t size = nrow * ncolumn;
-    double *low = CT_NEWN(work, double, ncolumn + 1), *step = CT_NEWN(work, double, ncolumn + 1);
+    double *low = CT_NEWN(work, double, ncolumn + 1),
+           *step = CT_NEWN(work, double, ncolumn + 1);
     unsigned char *plane = ct_arena_calloc(work, size + 1, 4);
     for (size_t c = 0; c < ncolumn; c++) {
         find_scale(value + c, nrow, ncolumn, &low[c], &step[c]);
+        if (resolution)
+            step[c] = fmax(step[c], resolution[c]);
         put_column(plane + c * nrow, size, value + c, nrow, ncolumn, low[c], step[c]);
     }
     size_t n;

@@ -21,6 +21,11 @@
 size_t ct_pack_write(struct ct_json *j, struct ct_arena *a, const char *key,
                      const double *value, size_t nrow, size_t ncolumn);
 
+/// The same where less than resolution[c] of column c is of no use: a step is no shorter. NULL: 0.
+size_t ct_pack_write_rounded(struct ct_json *j, struct ct_arena *a, const char *key,
+                             const double *value, size_t nrow, size_t ncolumn,
+                             const double *resolution);
+
 /// n bytes as base64 (RFC 4648), in arena a.
 char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n);
 
