@@ -10,7 +10,7 @@
 //
 //     <math data-equation="main.u" class="equation">
 //       <mrow class="side"> <mrow class="term" data-component="crank rod"> ... </mrow> ... </mrow>
-//       <mrow class="side right"> <mo>=</mo> <mrow class="term" ...> ... </mrow> ... </mrow>
+//       <mrow class="right"> <mo>=</mo> <mrow class="side"> <mrow class="term" ...> ... </mrow> ... </mrow> </mrow>
 //     </math>
 //
 // What always holds: what is written is well-formed as XML in UTF-8. Text of a model is escaped; characters
@@ -38,7 +38,8 @@ void ct_mathml_inline(FILE *out, const char *latex);
 struct ct_mathml_term {
     const char *latex;      ///< with its sign, as of ct_ex_terms: "m \\, g", " - m \\, g"
     const char *components; ///< names separated by blanks; NULL: not known, no attribute
-    const char *value;      ///< text of an element of class `value` after it; NULL: no such element
+    const char *value; ///< text of an element of class `value` after it; NULL: no such element
+    const char *note;  ///< plain words behind all this, of class `note`; NULL: none
 };
 
 struct ct_mathml_side {
