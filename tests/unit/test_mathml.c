@@ -156,7 +156,8 @@ static void wide_terms_break_in_parentheses(void **unused)
           "wide\">"
           "<mrow><mi>m</mi><mo rspace=\".17em\">\u2062</mo><mo form=\"prefix\" "
           "stretchy=\"false\">("
-          "</mo><mn>0.12345678901234</mn></mrow><mrow><mi>\u03B1</mi></mrow><mrow><mo form=\"infix\">+</mo>"
+          "</mo><mn>0.12345678901234</mn></mrow><mrow><mi>\u03B1</mi></mrow><mrow><mo "
+          "form=\"infix\">+</mo>"
           "<mn>0.12345678901234</mn></mrow><mrow><mi>\u03B2</mi><msup><mo form=\"postfix\" "
           "stretchy=\"false\">)</mo><mn>2</mn></msup></mrow></mrow></mrow></math>\n");
 }
