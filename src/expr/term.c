@@ -226,7 +226,8 @@ static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
 
 static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
 {
-    struct ct_term t = {.negative = negative, .number = 1, .divisor = 1};
+    struct ct_term t
+        = {.e = e, .is_subtracted = negative, .negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
     if (pr->p.fractions) {
         t.number = ct_fraction_tidy(t.number);
