@@ -49,6 +49,10 @@ const char *ct_ex_text(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
 const char *ct_ex_text_body(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                             const struct ct_print *p);
 
+/// The terms of e as they stand, with their signs, in the order in which they are printed; one where e is no sum.
+size_t ct_ex_terms(struct ct_arena *a, struct ct_exs *x, ct_ex e, const struct ct_print *p,
+                   ct_ex **out);
+
 /// The shortest decimal that reads back to the same bits.
 const char *ct_number_text(struct ct_arena *a, double v);
 /// A C constant of type double with the same bits.

@@ -18,12 +18,7 @@
 #define CT_REPORT_PROVENANCE_H
 
 #include "report/derivation.h"
-
-/// A body, joint, force, frame or parameter, or `gravity`.
-struct ct_origin {
-    const char *name;
-    int line; // of its key in the model file, from 1; 0: it is not in the file
-};
+#include "report/marked_model.h"
 
 enum ct_equation_kind {
     CT_EQUATION_MOTION,       // M u' = Q + J' lam, one a speed
