@@ -132,17 +132,20 @@ static struct ct_build *derive_marked(struct finder *f)
         return NULL;
     b->T = like->T;
     b->R = like->R;
+
     if (!ct_build_derive(b, true))
         return NULL;
     ct_dynamics_derive(b);
     const struct ct_equations *e = b->eqs, *want = f->d->e;
     const bool is_same = e->nu == want->nu && e->nq == want->nq && e->nrow == want->nrow
-                      && e->ndriver == want->ndriver && e->nswitch == want->nswitch
-                      && e->nmemory == want->nmemory;
+                      && e->ndriver == want->ndriver && e->nswitch <= want->nswitch
+                      && e->nmemory <= want->nmemory; // those of outputs follow
     return is_same && !quiet->nerror ? b : NULL;
 }
 
-static size_t list_symbols(const struct ct_equations *e, ct_ex *s)
+// Symbols of e, with as many switches and memories as `least` has.
+static size_t list_symbols(const struct ct_equations *e, const struct ct_equations *least,
+                           ct_ex *s)
 {
     size_t n = 0;
     for (size_t i = 0; i < e->nq; i++)
@@ -153,9 +156,9 @@ static size_t list_symbols(const struct ct_equations *e, ct_ex *s)
     }
     for (size_t i = 0; i < e->nrow; i++)
         s[n++] = e->row[i].lam;
-    for (size_t i = 0; i < e->nswitch; i++)
+    for (size_t i = 0; i < least->nswitch; i++)
         s[n++] = e->switches[i].symbol;
-    for (size_t i = 0; i < e->nmemory; i++)
+    for (size_t i = 0; i < least->nmemory; i++)
         s[n++] = e->memory[i].symbol;
     return n;
 }
@@ -196,8 +199,8 @@ static void take_marked(struct finder *f, struct ct_build *b)
             m->effort[b->coordinate[i].driver] = ct_driver_effort(b, (int)i);
     const size_t most = e->nq + 2 * e->nu + e->nrow + e->nswitch + e->nmemory;
     ct_ex *from = CT_NEWN(f->a, ct_ex, most + 1), *to = CT_NEWN(f->a, ct_ex, most + 1);
-    list_symbols(own, from);
-    ct_ex_subst_list(b->x, all, n, from, to, list_symbols(e, to));
+    list_symbols(own, own, from);
+    ct_ex_subst_list(b->x, all, n, from, to, list_symbols(e, own, to));
     f->x = b->x;
 }
 
@@ -325,13 +328,13 @@ struct side {
 // An expression of f->x in a store of its own, so that work on it does not depend on the size of that one.
 struct small {
     struct ct_exs x;
-    const struct ct_exs *from;
+    struct ct_exs *from;
     ct_ex *image; // by node of `from`
 };
 
 static ct_ex copy_into(struct small *s, struct ct_arena *a, ct_ex e)
 {
-    struct ct_exs *from = (struct ct_exs *)s->from; // a walk uses its work space
+    struct ct_exs *from = s->from;
     const size_t n = ct_ex_walk(from, &e, 1);
     uint32_t *id = CT_NEWN(a, uint32_t, n + 1);
     memcpy(id, from->stack, n * sizeof *id);
