@@ -110,8 +110,9 @@ struct finder {
     ct_ex *labelled; // by node: marks as labels, and definitions for what they name
     ct_ex *label;    // by set, once needed
     size_t label_cap;
-    ct_ex *definition; // by node of x: the symbol that stands for it; 0: none
-    uint32_t *shown;   // by node of the printed equations: origins of its symbols
+    ct_ex *definition;  // by node: the symbol that stands for it; 0: none
+    double (*value)[2]; // by node: at two points
+    uint32_t *shown;    // by node of the printed equations: origins of its symbols
     uint32_t *with; // by origin: one that is named with it, the body of a frame; itself: none
 };
 
@@ -230,10 +231,7 @@ static ct_ex with_label(struct finder *f, ct_ex e, uint32_t set)
 static ct_ex labelled(struct finder *f, uint32_t id, const struct ct_exnode *n)
 {
     struct ct_exs *x = f->x;
-    const ct_ex definition = f->definition[f->plain[id].id];
     double v;
-    if (!ct_ex_is_zero(definition))
-        return with_label(f, definition, f->set[id]);
     switch (n->op) {
     case CT_OP_ADD:
     case CT_OP_SUB:
@@ -265,39 +263,129 @@ static uint32_t *origin_of_symbols(struct finder *f)
     return origin;
 }
 
-static int by_id(const void *unused, const void *a, const void *b)
+// ---- definitions --------------------------------------------------------------------------------
+
+// A definition by the values of what it names.
+struct named {
+    double value[2];
+    ct_ex symbol;
+};
+
+static int by_size(const void *unused, const void *va, const void *vb)
 {
-    const uint32_t m = *(const uint32_t *)a, n = *(const uint32_t *)b;
+    const struct named *a = va, *b = vb;
     (void)unused;
-    return (m > n) - (m < n);
+    return (fabs(a->value[0]) > fabs(b->value[0])) - (fabs(a->value[0]) < fabs(b->value[0]));
 }
 
-// Which symbol stands for a node; the room is for nodes that come.
-static void list_definitions(struct finder *f, size_t cap)
+// Symbols are given numbers between 1/2 and 3/2, the marks 1.
+static double number_for(const struct finder *f, uint32_t symbol, int point)
+{
+    const uint32_t h = (symbol * 2 + (uint32_t)point + 1) * 0x9E3779B1u;
+    const struct ct_sym *s = &f->x->sym[symbol];
+    const bool is_mark = s->kind == CT_SYM_PARAM && s->index >= f->d->m->nparameter;
+    return is_mark ? 1 : 0.5 + (h ^ h >> 15) % 100003 / 100003.;
+}
+
+static double value_of(const struct finder *f, uint32_t id, int point)
+{
+    const struct ct_exnode n = *ct_ex_node(f->x, (ct_ex){id});
+    double v;
+    if (ct_ex_is_const(f->x, (ct_ex){id}, &v))
+        return v;
+    if (n.op == CT_OP_SYM)
+        return number_for(f, n.a, point);
+    if (n.op == CT_OP_TABLE)
+        return ct_table_value(&f->x->table[n.b], n.c, f->value[n.a][point]);
+    const int narg = ct_op_info[n.op].narg;
+    return ct_op_apply((enum ct_op)n.op, f->value[n.a][point],
+                       narg > 1 ? f->value[n.b][point] : 0,
+                       narg > 2 ? f->value[n.c][point] : 0);
+}
+
+// Sums of some hundred products differ by that much of their size where they are written in another order; that two
+// different expressions agree as well at two points is not to be expected.
+static const double same_value = 1e-10;
+
+static bool is_same(double a, double b)
+{
+    return fabs(a - b) <= same_value * fabs(b);
+}
+
+// The definition of what has these values, with its sign; 0: there is none.
+static ct_ex definition_with(struct finder *f, const struct named *list, size_t n,
+                             const double value[2])
+{
+    size_t low = 0, high = n;
+    const double least = fabs(value[0]) * (1 - same_value);
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (fabs(list[middle].value[0]) < least)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < n && is_same(fabs(list[low].value[0]), fabs(value[0])); low++) {
+        const double sign = signbit(list[low].value[0]) == signbit(value[0]) ? 1 : -1;
+        if (is_same(sign * list[low].value[1], value[1]))
+            return sign > 0 ? list[low].symbol : ct_ex_neg(f->x, list[low].symbol);
+    }
+    return CT_EX_ZERO;
+}
+
+// Definitions of nodes that the marked equations have but for marks, by node; the others by value, in *out.
+static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struct named **out)
 {
     const struct ct_definitions *list = &f->r->definitions;
-    f->definition = CT_NEWN(f->a, ct_ex, cap);
-    for (size_t i = 0; !f->r->is_collected && i < list->n; i++)
+    bool *is_there = CT_NEWN(f->a, bool, f->x->nnode);
+    size_t n = 0;
+    for (size_t k = 0; k < nid; k++)
+        is_there[f->plain[id[k]].id] |= f->set[id[k]] != 0;
+    *out = CT_NEWN(f->a, struct named, list->n + 1);
+    f->definition = CT_NEWN(f->a, ct_ex, f->x->nnode);
+    for (size_t i = 0; !f->r->is_collected && i < list->n; i++) {
+        const double *v = f->value[list->at[i].full.id];
         f->definition[list->at[i].full.id] = list->at[i].symbol;
+        if (!is_there[list->at[i].full.id] && isfinite(v[0]) && isfinite(v[1]) && v[0] != 0)
+            (*out)[n++] = (struct named){{v[0], v[1]}, list->at[i].symbol};
+    }
+    ct_sort(f->a, *out, n, sizeof **out, by_size, NULL);
+    return n;
+}
+
+// Nodes of the marked equations and of what is named, children before parents.
+static size_t list_nodes(struct finder *f, uint32_t **id)
+{
+    const struct ct_equations *e = f->d->e;
+    const size_t nroot = e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver;
+    const struct ct_definitions *list = &f->r->definitions;
+    ct_ex *root = CT_NEWN(f->a, ct_ex, nroot + list->n + 1);
+    memcpy(root, f->m.M, nroot * sizeof *root); // one array (take_marked)
+    for (size_t i = 0; i < list->n; i++)
+        root[nroot + i] = list->at[i].full;
+    const size_t n = ct_ex_walk(f->x, root, nroot + list->n);
+    *id = CT_NEWN(f->a, uint32_t, n + 1);
+    memcpy(*id, f->x->stack, n * sizeof **id);
+    return n;
 }
 
 static void mark_nodes(struct finder *f)
 {
-    const struct ct_equations *e = f->d->e;
-    const size_t nroot = e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver;
-    const size_t n = ct_ex_walk(f->x, f->m.M, nroot), before = f->x->nnode;
-    uint32_t *id = CT_NEWN(f->a, uint32_t, n + 1);
-    memcpy(id, f->x->stack, n * sizeof *id);
-    ct_sort(f->a, id, n, sizeof *id, by_id, NULL);
+    uint32_t *id;
+    const size_t n = list_nodes(f, &id), before = f->x->nnode;
     const uint32_t *origin = origin_of_symbols(f);
+    struct named *named;
     f->set = CT_NEWN(f->a, uint32_t, before);
     f->plain = CT_NEWN(f->a, ct_ex, before);
     f->labelled = CT_NEWN(f->a, ct_ex, before);
+    f->value = ct_arena_calloc(f->a, before, sizeof *f->value);
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = *ct_ex_node(f->x, (ct_ex){id[k]});
         const uint32_t arg[3] = {node.a, node.b, node.c};
         f->plain[id[k]] = (ct_ex){id[k]};
-        if (node.op == CT_OP_SYM && node.a < f->marked.model.x->nsym && origin[node.a]) {
+        for (int i = 0; i < 2; i++)
+            f->value[id[k]][i] = value_of(f, id[k], i);
+        if (node.op == CT_OP_SYM && origin[node.a]) {
             f->set[id[k]] = set_of(&f->sets, origin[node.a] - 1);
             f->plain[id[k]] = CT_EX_ONE;
         }
@@ -306,10 +394,15 @@ static void mark_nodes(struct finder *f)
         if (f->set[id[k]] && ct_op_info[node.op].narg)
             f->plain[id[k]] = ct_ex_rebuild(f->x, node, f->plain);
     }
-    list_definitions(f, f->x->nnode);
+    const size_t nnamed = list_named(f, id, n, &named);
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = *ct_ex_node(f->x, (ct_ex){id[k]});
-        f->labelled[id[k]] = labelled(f, id[k], &node);
+        ct_ex definition = f->definition[f->plain[id[k]].id];
+        if (ct_ex_is_zero(definition) && ct_op_info[node.op].narg)
+            definition = definition_with(f, named, nnamed, f->value[id[k]]);
+        f->labelled[id[k]] = ct_ex_is_zero(definition)
+                               ? labelled(f, id[k], &node)
+                               : with_label(f, definition, f->set[id[k]]);
     }
 }
 
