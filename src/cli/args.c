@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_report, &cli_equations,  &cli_graph,       &cli_draw,   &cli_accuracy,
-       &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,
-       &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export, &cli_components,
-       &cli_methods,  &cli_schema,     &cli_completion,  NULL};
+    = {&cli_simulate,   &cli_report,   &cli_equations,  &cli_graph,       &cli_draw,
+       &cli_accuracy,   &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,
+       &cli_linearize,  &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export,
+       &cli_components, &cli_methods,  &cli_schema,     &cli_completion,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -41,8 +41,8 @@ const struct cli_option cli_options[] = {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_STEPS, true,
      "what evaluates the equations: auto, native or tape", "auto native tape"},
-    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK,
-     false,
+    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver),
+     CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK, false,
      "what finds the accelerations of closed loops: auto,\n"
      "unrolled, one-system, sparse or dense",
      "auto unrolled one-system sparse dense"},
