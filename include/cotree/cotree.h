@@ -174,6 +174,13 @@ CT_API const char *ct_system_name(const struct ct_system *sys);
 CT_API size_t ct_system_column_count(const struct ct_system *sys);
 CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
 
+/**
+ * The cheapest pairs of trees that were weighed, ten at most, and why one was chosen. format: "text" or "json".
+ * Number N is chosen by the option `tree` "N". Errors: E003.
+ */
+CT_API bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                                  FILE *out);
+
 /** The linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
