@@ -312,6 +312,11 @@ CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
 /** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
 /**
+ * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
+ * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ */
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
+/**
  * The equations of motion as source code in a folder, which is made if need be. Before the run.
  *
  * format: "c" or NULL: NAME.h, NAME.c and NAME_test.c, which compares with values computed here; NAME is
