@@ -29,7 +29,7 @@ struct cli_args {
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool trace, trees, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 
