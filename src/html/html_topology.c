@@ -17,7 +17,7 @@ static void put_branches(struct ct_html *h, const bool *is_branch)
 {
     const struct ct_equations *e = &h->sys->equations;
     bool has_any = false;
-    fputs("<td class=\"names\">", h->out);
+    fputs("<td class=\"members\">", h->out);
     for (int i = 0; i < e->graph->nedge; i++) {
         if (!is_branch[i] || e->build->edge[i].kind == CT_EDGE_ARM)
             continue;
@@ -35,8 +35,8 @@ static void put_pair(struct ct_html *h, int number, const struct ct_tree_candida
                      bool is_chosen)
 {
     fprintf(h->out,
-            "<tr%s><td class=\"right\">%s%d</td><td class=\"right\">%zu</td><td "
-            "class=\"right\">%zu</td><td class=\"right\">%.0f</td>",
+            "<tr%s><td class=\"number\">%s%d</td><td class=\"number\">%zu</td><td "
+            "class=\"number\">%zu</td><td class=\"number\">%.0f</td>",
             is_chosen ? " class=\"chosen\"" : "", is_chosen ? "chosen: " : "", number, c->nu,
             c->nrow, c->cost);
     put_branches(h, c->trans);
@@ -56,9 +56,9 @@ static void put_pairs(struct ct_html *h)
         return;
     fputs("<p class=\"note\">The cheapest pairs of trees; arms are branches of both trees. "
           "<code>--tree 2</code> chooses number 2.</p>\n"
-          "<div class=\"wide\"><table>\n<thead><tr><th class=\"right\">pair</th><th "
-          "class=\"right\">unknowns</th><th class=\"right\">rows</th><th "
-          "class=\"right\">operations</th><th>branches of translation</th><th>branches of "
+          "<div class=\"wide\"><table>\n<thead><tr><th class=\"number\">pair</th><th "
+          "class=\"number\">unknowns</th><th class=\"number\">rows</th><th "
+          "class=\"number\">operations</th><th>branches of translation</th><th>branches of "
           "rotation</th></tr></thead>\n<tbody>\n",
           h->out);
     for (int i = 0; i < r->ncandidate; i++)
@@ -108,12 +108,12 @@ static void put_nearest(struct ct_html *h, size_t c)
     const struct ct_recording *r = h->recording;
     size_t at = 0;
     const double least = find_nearest(r, c, &at);
-    fputs("<td class=\"right\">", h->out);
+    fputs("<td class=\"number\">", h->out);
     if (isfinite(least))
         ct_html_put_number(h->out, least);
     else
         fputs("not measured", h->out);
-    fputs("</td><td class=\"right\">", h->out);
+    fputs("</td><td class=\"number\">", h->out);
     if (isfinite(least))
         fprintf(h->out, "%.6g s", r->near_time[at]);
     fputs("</td>", h->out);
@@ -125,7 +125,7 @@ static void put_loop(struct ct_html *h, const struct ct_loop *l, size_t number)
     ct_html_put_components(h->out, edge_components(h, l->name));
     fputs("><td>", h->out);
     ct_html_put(h->out, l->name);
-    fputs("</td><td class=\"names\">", h->out);
+    fputs("</td><td class=\"members\">", h->out);
     for (size_t i = 0; i < l->nmember; i++) {
         fputs(i ? ", <span" : "<span", h->out);
         ct_html_put_components(h->out, edge_components(h, l->member[i]));
@@ -133,7 +133,7 @@ static void put_loop(struct ct_html *h, const struct ct_loop *l, size_t number)
         ct_html_put(h->out, l->member[i]);
         fputs("</span>", h->out);
     }
-    fprintf(h->out, "</td><td class=\"right\">%zu</td><td class=\"right\">%d</td>", l->nrow,
+    fprintf(h->out, "</td><td class=\"number\">%zu</td><td class=\"number\">%d</td>", l->nrow,
             l->rank);
     put_nearest(h, 1 + number);
     fputs("</tr>\n", h->out);
@@ -144,14 +144,14 @@ static void put_table(struct ct_html *h)
     const struct ct_loops *l = &h->recording->loops;
     fputs(
         "<div class=\"wide\"><table>\n<thead><tr><th>closed by</th><th>circuit</th><th "
-        "class=\"right\">rows</th><th class=\"right\">rank</th><th class=\"right\">nearest to "
-        "singular</th><th class=\"right\">at</th></tr></thead>\n<tbody>\n",
+        "class=\"number\">rows</th><th class=\"number\">rank</th><th class=\"number\">nearest to "
+        "singular</th><th class=\"number\">at</th></tr></thead>\n<tbody>\n",
         h->out);
     for (size_t i = 0; i < l->nloop; i++)
         put_loop(h, &l->loop[i], i);
     fprintf(h->out,
-            "<tr><td>all loops</td><td></td><td class=\"right\">%zu</td><td "
-            "class=\"right\">%d</td>",
+            "<tr><td>all loops</td><td></td><td class=\"number\">%zu</td><td "
+            "class=\"number\">%d</td>",
             h->sys->equations.nrow, l->rank);
     put_nearest(h, 0);
     fputs("</tr>\n</tbody></table></div>\n", h->out);
