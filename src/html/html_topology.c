@@ -183,7 +183,7 @@ static void put_releases(struct ct_html *h)
     if (!l->nrelease)
         return;
     fputs("<h3>What to release</h3>\n<p>Each of these makes one row less redundant; those in "
-          "bold together remove all redundancy.</p>\n<ul>\n",
+          "bold together remove all redundancy.</p>\n<ul class=\"releases\">\n",
           h->out);
     for (size_t i = 0; i < l->nrelease; i++) {
         fputs("<li", h->out);
