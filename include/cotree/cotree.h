@@ -180,6 +180,13 @@ CT_API const char *ct_system_name(const struct ct_system *sys);
 CT_API size_t ct_system_column_count(const struct ct_system *sys);
 CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
 
+/**
+ * The cheapest pairs of trees that were weighed, ten at most, and why one was chosen. format: "text" or "json".
+ * Number N is chosen by the option `tree` "N". Errors: E003.
+ */
+CT_API bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                                  FILE *out);
+
 /** The linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
@@ -310,6 +317,11 @@ CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
                                  const char *path);
 /** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
+/**
+ * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
+ * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ */
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
 /**
  * The equations of motion as source code in a folder, which is made if need be. Before the run.
  *
@@ -757,6 +769,28 @@ struct ct_draw_options {
  */
 CT_API bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
                            const struct ct_draw_options *options);
+
+/** Zero: the run that the model asks for. */
+struct ct_report_options {
+    size_t size; /* 0, or sizeof (struct ct_report_options) */
+    struct ct_sim_options run;
+    const char *path; /* FILE.html; NULL: standard output */
+    FILE *progress;   /* a bar is shown there if it is a terminal */
+    /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
+    const char *const *command;
+    size_t ncommand;
+};
+
+/**
+ * A system, its equations and its motion as one HTML file that needs nothing else. docs/report.md says what is on it.
+ *
+ * The run is always verified. Without an end time the page shows the start. The same system and options give the same
+ * bytes.
+ *
+ * Errors: E002; E530 where the library was built without the page; those of assembly and of runs.
+ */
+CT_API bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,
+                             const struct ct_report_options *options);
 
 struct ct_plot;
 

@@ -24,12 +24,14 @@ struct cli_args {
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
-    } set, vary, take, files; // files: what a command takes in place of a model
+    } set, vary, take,
+        files, // what a command takes in place of a model
+        given; // options as they were written, but for those of files that are written and of what is shown
     double tolerance, step, until, error, time;
     long samples, count, sample, threads, lanes, per_decade, shard, shards;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold, hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool trace, trees, hold, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 
@@ -54,17 +56,18 @@ enum cli_use {
     CLI_COMPLETION = 65536,
     CLI_DRAW = 131072,
     CLI_MERGE = 262144,
+    CLI_REPORT = 524288,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
-    CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
+    CLI_STEPS = CLI_RUNS | CLI_DRAW | CLI_REPORT, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
     CLI_VARIES = CLI_SWEEP | CLI_MODES | CLI_EQUILIBRIUM | CLI_DRIVEN,
-    CLI_MODELS
-    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT
+               | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -78,9 +81,10 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_draw, cli_accuracy,
-    cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
-    cli_buckling, cli_sweep, cli_merge, cli_export, cli_components, cli_methods, cli_schema,
+extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
+    cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
+    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_components, cli_methods,
+    cli_schema,
     cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
