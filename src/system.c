@@ -118,7 +118,8 @@ static bool read_model(struct ct_system *s, const struct source *from,
     for (size_t i = 0; i < o->noutput; i++)
         set[n++] = (struct ct_set){o->output[i], CT_SET_OUTPUT};
     if (o->input)
-        set[n++] = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
+        set[n++]
+            = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
     s->text = from->text ? ct_arena_strndup(s->own.model, from->text, from->n) : NULL;
     const bool ok
         = (s->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name), s->text,

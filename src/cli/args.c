@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_report,     &cli_equations, &cli_graph,       &cli_draw,
-       &cli_accuracy,   &cli_sweep,      &cli_merge,     &cli_check,       &cli_equilibrium,
-       &cli_modes,      &cli_linearize,  &cli_buckling,  &cli_kinematics,  &cli_inverse,
-       &cli_export,     &cli_components, &cli_methods,   &cli_schema,      &cli_completion,
+    = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
+       &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
+       &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
+       &cli_export,   &cli_components, &cli_methods,   &cli_schema,     &cli_completion,
        NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
@@ -497,9 +497,8 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
                               .files.text = calloc(n, sizeof(char *)),
                               .given.text = calloc(n, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    const bool has_room
-        = args->set.text && args->vary.text && args->take.text && args->files.text
-        && args->given.text;
+    const bool has_room = args->set.text && args->vary.text && args->take.text
+                       && args->files.text && args->given.text;
     bool ok = has_room || (fputs("cotree: error: out of memory [E001]\n", stderr), false);
     args->no_memory = !has_room;
     ok = ok && parse_all(&p);

@@ -19,8 +19,8 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *columns, *view, *about, *inputs, *input, *load, *curve, *elements, *formulations,
-        *members;
+        *plot, *columns, *view, *about, *inputs, *input, *load, *curve, *elements,
+        *formulations, *members;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
@@ -84,8 +84,7 @@ struct cli_command {
 extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
     cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
     cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_components, cli_methods,
-    cli_schema,
-    cli_completion;
+    cli_schema, cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 

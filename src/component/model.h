@@ -49,7 +49,7 @@ struct ct_parameter {
     ct_ex definition; // in terms of parameters before it
     const char *unit; // that it was given with; NULL: none
     double value;
-    bool is_input; // set from outside, also while a motion goes on
+    bool is_input;  // set from outside, also while a motion goes on
     bool is_played; // a file does so: `played`
     ct_ex played;   // a function of time
 };
@@ -122,7 +122,7 @@ struct ct_set {
     const char *text;
     enum ct_set_kind {
         CT_SET_VALUE,
-        CT_SET_INPUTS,     // linear between its rows
+        CT_SET_INPUTS,      // linear between its rows
         CT_SET_INPUTS_HELD, // a row counts from its time on
         CT_SET_OUTPUT       // an output NAME=EXPRESSION behind those of the file
     } kind;

@@ -128,8 +128,10 @@ static struct ct_build *derive_marked(struct finder *f)
                                            .gaps = like->options->has_offsets,
                                            .like = f->d->e};
     quiet->model = quiet->scratch = f->a;
-    struct ct_build *b = ct_build_create(quiet, f->a, &f->marked.model, &o, like->options->is_linear);
-    if (quiet->nerror || b->topology->nedge != like->topology->nedge || b->topology->nnode != like->topology->nnode)
+    struct ct_build *b
+        = ct_build_create(quiet, f->a, &f->marked.model, &o, like->options->is_linear);
+    if (quiet->nerror || b->topology->nedge != like->topology->nedge
+        || b->topology->nnode != like->topology->nnode)
         return NULL;
     b->T = like->T;
     b->R = like->R;
