@@ -5,10 +5,15 @@
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    if (args->format && strcmp(args->format, "c") != 0)
-        return cli_complain(&cli_export, "--format is '%s'; there is c", args->format);
+    static const char *const formats[] = {"c", "fmu2", "fmu3"};
+    bool is_known = !args->format;
+    for (size_t i = 0; i < CLI_COUNT(formats) && !is_known; i++)
+        is_known = strcmp(args->format, formats[i]) == 0;
+    if (!is_known)
+        return cli_complain(&cli_export, "--format is '%s'; there are c, fmu2 and fmu3",
+                            args->format);
     if (!args->output || strcmp(args->output, "-") == 0)
-        return cli_complain(&cli_export, "-o FOLDER says where the files go");
+        return cli_complain(&cli_export, "-o says where the files go: a folder, or NAME.fmu");
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_sim *sim = cli_sim(ctx, sys, args);
     bool ok = ct_sim_export_lanes(ctx, sim, args->format, args->output, args->lanes);
