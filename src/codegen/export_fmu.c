@@ -29,6 +29,8 @@ static const char *const text_core[] = {
     "struct state {\n"
     "    double in[$_NINPUT];\n"
     "    double next_step; /* of co-simulation [s]; 0: none was made yet */\n"
+    "    double next_kink; /* of model exchange: up to its event mode what holds before it "
+    "counts, also at its very time */\n"
     "    double is_initialized, is_set; /* is_set: something that others follow from */\n"
     "};\n"
     "\n"
@@ -66,6 +68,7 @@ static const char *const text_core[] = {
     "{\n"
     "    copy(s->now.in, @_start, $_NINPUT);\n"
     "    s->now.next_step = 0;\n"
+    "    s->now.next_kink = INFINITY;\n"
     "    s->now.is_initialized = 0;\n"
     "    s->now.is_set = 1;\n"
     "    s->is_evaluated = 0;\n"
@@ -113,15 +116,20 @@ static const char *const text_core[] = {
     "{\n"
     "    double *const in = s->now.in;\n"
     "    const enum problem p = settle(s);\n"
+    "    const double t = in[$_T];\n"
     "    double rate[n_state];\n"
     "    if (p || s->is_evaluated)\n"
     "        return p;\n"
+    "    if (t >= s->now.next_kink)\n"
+    "        in[$_T] = before_end(s->now.next_kink);\n"
     "    derive(in, rate, s->work);\n"
     "    copy(s->derivative, rate, n_x);\n"
-    "    if (!are_finite(s->derivative, n_x))\n"
-    "        return no_value;\n"
     "    @_outputs(in, s->output);\n"
     "    @_roots(in, s->root);\n"
+    "    separate_roots(in, s->root);\n"
+    "    in[$_T] = t;\n"
+    "    if (!are_finite(s->derivative, n_x))\n"
+    "        return no_value;\n"
     "    s->is_evaluated = 1;\n"
     "    return no_problem;\n"
     "}\n"
@@ -170,10 +178,10 @@ static const char *const text_core[] = {
     "        s->now.is_initialized = 1;\n"
     "    return p;\n"
     "}\n"
-    "\n"
+    "\n",
     "/* ---- continuous time "
     "------------------------------------------------------------------------ */\n"
-    "\n",
+    "\n"
     "static void set_time(struct instance *s, double t)\n"
     "{\n"
     "    s->now.in[$_T] = t;\n"
@@ -224,13 +232,18 @@ static const char *const text_core[] = {
     "static enum problem handle_event(struct instance *s, int *has_moved)\n"
     "{\n"
     "    double *const in = s->now.in, *const before = s->two;\n"
-    "    int i, failed = 0;\n"
+    "    const double t = in[$_T];\n"
+    "    int i, is_kink, failed = 0;\n"
     "    enum problem p = settle(s);\n"
     "    *has_moved = 0;\n"
     "    if (p)\n"
     "        return p;\n"
     "    copy(before, in, $_NINPUT);\n"
+    "    if (t >= s->now.next_kink)\n"
+    "        in[$_T] = s->now.next_kink;\n"
     "    failed = change(in, s->work);\n"
+    "    in[$_T] = t;\n"
+    "    s->now.next_kink = next_stop(t, INFINITY, &is_kink);\n"
     "    if (!failed && drift(s) > 1e-12)\n"
     "        failed = @_project(in, s->work);\n"
     "    for (i = 0; i < $_NQ + $_NU; i++)\n"
@@ -255,7 +268,7 @@ static const char *const text_core[] = {
     "            return 1;\n"
     "    return 0;\n"
     "}\n"
-    "\n"
+    "\n",
     "/* Of a step done once against two halves of it: the error of the halves against what is "
     "allowed. */\n"
     "static double compare_steps(const struct instance *s)\n"
@@ -269,7 +282,7 @@ static const char *const text_core[] = {
     "    }\n"
     "    return worst;\n"
     "}\n"
-    "\n",
+    "\n"
     "/* To the time `end`: steps of NAME_step, done in two halves as well, whose difference "
     "tells the error and is taken off. */\n"
     "static enum problem step_to(struct instance *s, double end)\n"
@@ -280,6 +293,7 @@ static const char *const text_core[] = {
     "    if (p)\n"
     "        return p;\n"
     "    s->is_evaluated = 0;\n"
+    "    s->now.next_kink = INFINITY; /* steps look for kinks themselves */\n"
     "    while (in[$_T] < end) {\n"
     "        const double t = in[$_T], left = end - t;\n"
     "        const double h = s->now.next_step > 0 && s->now.next_step < left\n"
@@ -439,6 +453,26 @@ static const char text_nostops[]
       "}\n"
       "\n";
 
+static const char text_separate[]
+    = "/* A root that is zero belongs to either side: moved off by a little to the side that "
+      "its switch stands for, it changes its\n"
+      " * sign behind zero, and only once. */\n"
+      "static void separate_roots(const double *in, double *g)\n"
+      "{\n"
+      "    int i;\n"
+      "    for (i = 0; i < $_NROOT; i++)\n"
+      "        g[i] += (in[$_MODE + i] > 0) == (sense[i] > 0) ? 1e-10 : -1e-10;\n"
+      "}\n"
+      "\n";
+
+static const char text_noseparate[]
+    = "static void separate_roots(const double *in, double *g)\n"
+      "{\n"
+      "    (void)in;\n"
+      "    (void)g;\n"
+      "}\n"
+      "\n";
+
 static void put_flags(struct ct_export_text *t, const char *name, const int *v, size_t n)
 {
     ct_export_putf(t, "static const int %s[] = ", name);
@@ -493,6 +527,7 @@ const char *ct_export_fmu(struct ct_arena *a, const struct ct_export *x,
         ct_export_put_named(&t, text_nostops);
         ct_export_put_named(&t, text_noevents);
     }
+    ct_export_put_named(&t, ct_export_has_events(x) ? text_separate : text_noseparate);
     ct_export_put_parts(&t, text_core);
     ct_export_fmi_functions(&t, f->version);
     return ct_export_finish(&t);
