@@ -139,25 +139,39 @@ static bool *parameter_on(struct finder *s, size_t index)
     return on;
 }
 
+// Quaternions count as their direction: what depends on one number of one depends on all four.
+static void complete_quaternions(const struct finder *s, bool *on)
+{
+    bool *q = on + s->f->w->x.at_q;
+    for (size_t i = 0; i < s->e->nq; i++)
+        if (s->e->q[i].quaternion == 0) {
+            const bool any = q[i] || q[i + 1] || q[i + 2] || q[i + 3];
+            q[i] = q[i + 1] = q[i + 2] = q[i + 3] = any;
+        }
+}
+
 void ct_fmu_find_dependencies(struct ct_fmu *f)
 {
     struct finder s = {.f = f, .e = f->w->x.e, .n = f->w->x.ninput};
     find_components(&s);
     for (size_t i = 0; i < f->nvariable; i++) {
         struct ct_fmu_variable *v = &f->variable[i];
+        bool *on = NULL;
         if (v->role == CT_FMU_DERIVATIVE)
-            v->on = derivative_on(&s, v->reference - f->first_derivative);
+            on = derivative_on(&s, v->reference - f->first_derivative);
         else if (v->role == CT_FMU_OUTPUT)
-            v->on = depends_on(&s, s.e->result[v->reference - f->first_output].value);
+            on = depends_on(&s, s.e->result[v->reference - f->first_output].value);
         else if (v->role == CT_FMU_ROOT)
-            v->on = depends_on(&s, s.e->switches[v->reference - f->first_root].g);
+            on = depends_on(&s, s.e->switches[v->reference - f->first_root].g);
         else if (v->role == CT_FMU_DERIVED)
-            v->on = parameter_on(&s, v->reference);
-        else if (v->is_output) { // itself
-            bool *on = CT_NEWN(f->w->ctx->model, bool, s.n + 1);
+            on = parameter_on(&s, v->reference);
+        if (on)
+            complete_quaternions(&s, on);
+        if (v->is_output) { // itself
+            on = CT_NEWN(f->w->ctx->model, bool, s.n + 1);
             on[v->reference] = true;
-            v->on = on;
         }
+        v->on = on;
     }
 }
 
