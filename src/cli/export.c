@@ -1,4 +1,4 @@
-// cotree export: writes the equations as source code.
+// cotree export: writes the model as source code or as an FMU.
 #include "cli/cli.h"
 
 #include <string.h>
@@ -26,15 +26,15 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
 
 const struct cli_command cli_export = {
     .name = "export",
-    .summary = "writes the equations of motion as C source",
+    .summary = "writes the model as C source or as an FMU",
     .use = CLI_EXPORT,
     .takes_model = true,
     .more
     = "\n"
-      "The folder gets NAME.h, NAME.c, NAME_test.c and NAME.json: C99 that needs libm alone, "
-      "what\n"
-      "compares it with values and a motion computed here, and where each number stands.\n",
+      "A folder gets NAME.h, NAME.c, NAME_test.c and NAME.json: C99 that needs libm alone, what\n"
+      "compares it with values and a motion computed here, and where each number stands. An FMU is\n"
+      "one file for other simulators: model exchange and co-simulation, sources and a binary.\n",
     .examples = {"cotree export puma560.yaml --format c -o arm",
-                 "cotree export four_bar.yaml --tree absolute -o bars"},
+                 "cotree export four_bar.yaml --format fmu3 -o four_bar.fmu"},
     .run = run,
 };

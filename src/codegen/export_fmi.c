@@ -2,7 +2,7 @@
 //
 // Templates of C: @ stands for the model's name, $ for the same in capitals.
 //
-// Source: Modelica Association, Functional Mock-up Interface, versions 2.0.5 and 3.0.1; key fmi2022.
+// Source: Modelica Association, Functional Mock-up Interface, versions 2.0 and 3.0; key fmi2022.
 #include "codegen/export.h"
 #include "codegen/export_text.h"
 
