@@ -324,16 +324,16 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
  */
 CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
 /**
- * The equations of motion as source code in a folder, which is made if need be. Before the run.
+ * The model as source code in a folder, which is made if need be, or as an FMU. Before the run.
  *
- * format: "c" or NULL: NAME.h, NAME.c and NAME_test.c, which compares with values computed here; NAME is
- * that of the model. Errors: E002, E003.
+ * format: "c" or NULL: NAME.h, NAME.c, NAME_test.c, which compares with values computed here, and NAME.json; NAME is
+ * that of the model. "fmu2", "fmu3": one file, `place`. Errors: E002, E003, E405, E560. Warning: E561 without a compiler.
  */
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
-                          const char *folder);
+                          const char *place);
 /** The same, with M, Q, J, gam and phi, v for 4 or 8 inputs side by side, too; 1 or 0: without. */
 CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
-                                const char *folder, long lanes);
+                                const char *place, long lanes);
 
 /* ---- one state of a system, step by step ------------------------------------------------------------ */
 

@@ -124,7 +124,7 @@ const struct cli_option cli_options[] = {
      "text, latex, html, c or json", "text latex html c json"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false,
      "text, svg, png, dot or json", "text svg png dot json"},
-    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c", "c"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c, fmu2 or fmu3", "c fmu2 fmu3"},
     {"quiet", 'q', NULL, CLI_FLAG, FIELD(quiet), CLI_MODELS, true,
      "no summary and no progress bar"},
     {"help", 'h', NULL, CLI_FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},

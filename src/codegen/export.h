@@ -82,6 +82,27 @@ const char *ct_export_header(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_source(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_test(struct ct_arena *a, const struct ct_export *x);
 
+/// What the source of an FMU has beside that.
+struct ct_export_fmu {
+    int version;       // of FMI: 2 or 3
+    const char *token; // guid of 2.0, instantiation token of 3.0
+    double tolerance;  // of co-simulation, unless another one is asked for
+    double share;      // of it that steps are held to
+    // by a direction in seeds behind the input, number i for input i: of M u' - Q - J' lam, J u' + gam and q' with u', lam
+    // held; of outputs, roots and the power
+    const struct ct_listing *along, *along_outputs;
+};
+
+/// fmu.c, which includes NAME.c.
+const char *ct_export_fmu(struct ct_arena *a, const struct ct_export *x,
+                          const struct ct_export_fmu *f);
+/// Types, and functions, of a version of FMI, for fmu.c.
+struct ct_export_text;
+void ct_export_fmi_types(struct ct_export_text *t, int version);
+void ct_export_fmi_functions(struct ct_export_text *t, int version);
+
+/// Do steps look for switches or kinks?
+bool ct_export_has_events(const struct ct_export *x);
 /// Does a parameter follow from others?
 bool ct_export_has_derived(const struct ct_export *x);
 struct ct_export_text;

@@ -484,7 +484,7 @@ static const char text_memory[]
       "    int i, k;\n"
       "    @_memory_values(in, value);\n"
       "    for (i = 0; i < $_NMEMORY; i++)\n"
-      "        if (is_updated[i])\n"
+      "        if (is_updated[i] == 1 || is_updated[i] == 2)\n"
       "            in[$_MEMORY + i] = value[i];\n"
       "    for (i = 0; i < $_NMEMORY; i++)\n"
       "        if (is_updated[i] == 2) { /* the first number of a quaternion */\n"
@@ -853,7 +853,7 @@ static void put_integers(struct ct_export_text *t, const char *declaration, cons
     ct_export_put(t, ";\n");
 }
 
-static bool has_events(const struct ct_export *x)
+bool ct_export_has_events(const struct ct_export *x)
 {
     return x->e->nswitch || x->nknot;
 }
@@ -928,7 +928,8 @@ static void put_memory(struct ct_export_text *t, const struct ct_equations *e)
     int *is_updated = CT_NEWN(t->arena, int, e->nmemory + 1);
     for (size_t i = 0; i < e->nmemory; i++) {
         const struct ct_memory *m = &e->memory[i];
-        is_updated[i] = !ct_memory_is_updated(m)                         ? 0
+        is_updated[i] = m->kind == CT_MEMORY_TURNS                       ? 3
+                      : !ct_memory_is_updated(m)                         ? 0
                       : m->kind == CT_MEMORY_QUATERNION && m->index == 0 ? 2
                                                                          : 1;
     }
@@ -940,7 +941,7 @@ static void put_memory(struct ct_export_text *t, const struct ct_equations *e)
 static void put_changes(struct ct_export_text *t, const struct ct_export *x)
 {
     put(t, x->nknot ? text_beforeend : text_atend);
-    if (!has_events(x))
+    if (!ct_export_has_events(x))
         return;
     if (x->nknot) {
         ct_export_putf(t, "enum { n_knot = %zu };\n", x->nknot);
@@ -954,9 +955,9 @@ static void put_step(struct ct_export_text *t, const struct ct_export *x)
 {
     put(t, !x->power ? text_nopower : x->power_needs_lam ? text_powerlam : text_power);
     put(t, text_step);
-    if (has_events(x))
+    if (ct_export_has_events(x))
         put(t, text_locate);
-    put(t, has_events(x) ? text_thestep : text_thesmoothstep);
+    put(t, ct_export_has_events(x) ? text_thestep : text_thesmoothstep);
 }
 
 static size_t larger(size_t a, size_t b)
@@ -1005,7 +1006,7 @@ void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x)
     put(t, text_multipliers);
     put_places(t, x->e);
     put(t, text_project);
-    put_switches(t, x->e, has_events(x));
+    put_switches(t, x->e, ct_export_has_events(x));
     put_memory(t, x->e);
     put_changes(t, x);
     put_step(t, x);

@@ -32,6 +32,12 @@ void ct_export_put_named(struct ct_export_text *t, const char *s)
     }
 }
 
+void ct_export_put_parts(struct ct_export_text *t, const char *const *part)
+{
+    for (; *part; part++)
+        ct_export_put_named(t, *part);
+}
+
 void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n)
 {
     ct_export_put(t, "{");

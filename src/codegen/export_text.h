@@ -16,6 +16,8 @@ void ct_export_putf(struct ct_export_text *t, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 /// s with the name in place of each @, in capitals in place of each $.
 void ct_export_put_named(struct ct_export_text *t, const char *s);
+/// The same for parts of a long text, NULL at the end.
+void ct_export_put_parts(struct ct_export_text *t, const char *const *part);
 /// {1, 2, 3}: n numbers, never an empty list.
 void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n);
 void ct_export_put_integers(struct ct_export_text *t, const int *v, size_t n);

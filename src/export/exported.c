@@ -1,5 +1,5 @@
 // A system as C source in a folder. See exported.h.
-#include "export/exported.h"
+#include "export/fmu.h"
 
 #include "expr/print.h"
 #include "formulate/dynamics/small_motion.h"
@@ -17,7 +17,7 @@
 static bool write_file(struct ct_exported *w, const char *suffix, const char *text)
 {
     struct ct_outfile file;
-    const char *path = ct_arena_printf(w->ctx->model, "%s/%s%s", w->folder, w->x.name, suffix);
+    const char *path = ct_arena_printf(w->ctx->model, "%s/%s%s", w->place, w->x.name, suffix);
     if (!ct_outfile_open(w->ctx, &file, path))
         return false;
     fputs(text, file.stream);
@@ -26,10 +26,10 @@ static bool write_file(struct ct_exported *w, const char *suffix, const char *te
 
 static bool make_folder(struct ct_exported *w)
 {
-    if (mkdir(w->folder, 0777) == 0 || errno == EEXIST)
+    if (mkdir(w->place, 0777) == 0 || errno == EEXIST)
         return true;
     return ct_error(w->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot make the folder '%s': %s",
-                    w->folder, strerror(errno));
+                    w->place, strerror(errno));
 }
 
 // M and Q are what is exported; a run that had no use for them is made again.
@@ -94,8 +94,7 @@ static const struct ct_listing *list_memory(struct ct_exported *w)
     const struct ct_equations *e = w->x.e;
     ct_ex *next = CT_NEWN(w->sim->own.scratch, ct_ex, e->nmemory + 1);
     for (size_t i = 0; i < e->nmemory; i++)
-        next[i]
-            = ct_memory_is_updated(&e->memory[i]) ? e->memory[i].update : e->memory[i].symbol;
+        next[i] = e->memory[i].update;
     return ct_evaluator_list(w->ctx->model, ct_run_evaluator(w->sim->run), e->x, next,
                              e->nmemory);
 }
@@ -222,7 +221,7 @@ static bool write_json(struct ct_exported *w)
 {
     struct ct_outfile file;
     if (!ct_outfile_open(w->ctx, &file,
-                         ct_arena_printf(w->ctx->model, "%s/%s.json", w->folder, w->x.name)))
+                         ct_arena_printf(w->ctx->model, "%s/%s.json", w->place, w->x.name)))
         return false;
     ct_exported_write_json(w, file.stream);
     return ct_outfile_close(w->ctx, &file);
@@ -231,24 +230,32 @@ static bool write_json(struct ct_exported *w)
 static bool export_c(struct ct_exported *w)
 {
     struct ct_arena *a = w->ctx->model;
-    if (!want_dynamics(w->sim) || !gather(w) || !ct_exported_record_states(w))
-        return false;
     ct_exported_record_motion(w);
     return make_folder(w) && write_file(w, ".h", ct_export_header(a, &w->x))
         && write_file(w, ".c", ct_export_source(a, &w->x))
         && write_file(w, "_test.c", ct_export_test(a, &w->x)) && write_json(w);
 }
 
+static bool export_as(struct ct_exported *w, const char *format)
+{
+    if (!want_dynamics(w->sim) || !gather(w) || !ct_exported_record_states(w))
+        return false;
+    return strcmp(format, "c") == 0
+             ? export_c(w)
+             : ct_fmu_write(w, strcmp(format, "fmu3") == 0 ? 3 : 2, w->place);
+}
+
 struct task {
     struct ct_ctx *ctx;
     struct ct_exported *w;
+    const char *format;
 };
 
-static bool write_c(void *task)
+static bool export_task(void *task)
 {
     const struct task *t = task;
     struct ct_exported *w = t->w;
-    const bool ok = export_c(w);
+    const bool ok = export_as(w, t->format);
     if (w->reaction.listing) // of the caller's stack
         ct_evaluator_remove_program(ct_run_evaluator(w->sim->run), &w->reaction);
     ct_ctx_hand_over(t->ctx, w->ctx);
@@ -256,24 +263,29 @@ static bool write_c(void *task)
 }
 
 bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
-                   const char *folder)
+                   const char *place)
 {
-    return ct_sim_export_lanes(ctx, sim, format, folder, 1);
+    return ct_sim_export_lanes(ctx, sim, format, place, 1);
 }
 
 bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
-                         const char *folder, long lanes)
+                         const char *place, long lanes)
 {
-    if (!ctx || !sim || !folder)
+    if (!ctx || !sim || !place)
         return false;
     struct ct_exported w
-        = {.ctx = &sim->own, .sim = sim, .folder = folder, .lanes = (unsigned)lanes};
-    struct task task = {ctx, &w};
-    if (format && strcmp(format, "c") != 0)
+        = {.ctx = &sim->own, .sim = sim, .place = place, .lanes = (unsigned)lanes};
+    struct task task = {ctx, &w, format ? format : "c"};
+    static const char *const formats[] = {"c", "fmu2", "fmu3"};
+    bool is_known = !format;
+    for (size_t i = 0; i < COUNT(formats) && !is_known; i++)
+        is_known = strcmp(format, formats[i]) == 0;
+    if (!is_known)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
-                        "there is no export format '%s'; there is c", format);
+                        "there is no export format '%s'%s", format,
+                        ct_suggest_or_list(ctx->model, format, formats, COUNT(formats)));
     if (lanes != 0 && lanes != 1 && lanes != 4 && lanes != 8)
         return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there are no %ld lanes; there are 1, 4 and 8", lanes);
-    return ct_enter(ctx, write_c, &task);
+    return ct_enter(ctx, export_task, &task);
 }

@@ -15,7 +15,7 @@ enum { CT_EXPORT_STATES = 4 };
 struct ct_exported {
     struct ct_ctx *ctx; // the run's
     struct ct_sim *sim;
-    const char *folder;
+    const char *place; // a folder, or the file of an FMU
     unsigned lanes;
     struct ct_export x;
     struct ct_program reaction; // to be evaluated

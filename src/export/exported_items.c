@@ -23,15 +23,48 @@ static struct ct_export_items list_kind(struct ct_exported *w, enum ct_kind kind
     return list;
 }
 
+static void mark_inputs(bool *used, const struct ct_listing *l)
+{
+    for (size_t v = 0; l && v < l->nvalue; v++)
+        if (l->input[v] != CT_VALUE_NONE)
+            used[l->input[v]] = true;
+}
+
+// Indices of `in` that anything reads, parameters by way of others included. A parameter that nothing reads has decided about
+// the start alone.
+static const bool *find_used(struct ct_exported *w)
+{
+    struct ct_export *x = &w->x;
+    struct ct_model *m = &w->sim->system->model;
+    bool *used = CT_NEWN(w->ctx->model, bool, x->ninput + 1);
+    const struct ct_listing *const all[] = {x->motion, x->constraint, x->output, x->root,
+                                            x->memory, x->power,      x->jump,   x->reaction};
+    for (size_t i = 0; i < COUNT(all); i++)
+        mark_inputs(used, all[i]);
+    for (size_t i = m->nparameter; i-- > 0;) {
+        const struct ct_parameter *p = &m->parameter[i];
+        const size_t n = used[1 + i] ? ct_ex_walk(m->x, &p->definition, 1) : 0;
+        for (size_t k = 0; k < n; k++) {
+            const struct ct_sym *s = ct_ex_symbol(m->x, (ct_ex){m->x->stack[k]});
+            if (s && s->kind == CT_SYM_PARAM)
+                used[1 + s->index] = true;
+        }
+    }
+    return used;
+}
+
 static struct ct_export_items list_parameters(struct ct_exported *w, enum ct_kind kind)
 {
     const struct ct_model *m = &w->sim->system->model;
+    const bool *used = find_used(w);
     struct ct_export_items list = list_kind(w, kind, 0);
     for (size_t i = 0; i < list.n; i++) {
         const size_t k = ct_item_parameter(m, kind, i);
         list.item[i].index = 1 + k;
         list.item[i].is_derived = !ct_ex_is_const(m->x, m->parameter[k].definition, NULL);
-        list.item[i].is_fixed = ct_item_has_decided(w->sim->system->origin, k);
+        list.item[i].is_fixed = kind == CT_PARAMETER
+                             && (ct_item_has_decided(w->sim->system->origin, k)
+                                 || (!list.item[i].is_derived && !used[1 + k]));
     }
     return list;
 }

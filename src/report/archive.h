@@ -53,6 +53,13 @@ void ct_archive_names(struct ct_archive *z, const char *name, const char *const 
 /// Nothing more is to come; the file stays open. Errors: E002 for what the format has no room for.
 bool ct_archive_finish(struct ct_ctx *ctx, struct ct_archive *z);
 
+struct ct_archive_bytes;
+/// A ZIP archive without a format: z has an arena and an open file, all else zero. Files come in the order they are added.
+void ct_archive_add_file(struct ct_archive *z, const char *name,
+                         const struct ct_archive_bytes *content);
+/// The directory; too much for the format: z->is_too_long.
+void ct_archive_finish_files(struct ct_archive *z);
+
 // ---- for the formats -------------------------------------------------------------------------
 
 struct ct_archive_bytes {

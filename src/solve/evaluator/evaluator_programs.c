@@ -14,8 +14,7 @@ struct inputs {
     size_t n;
 };
 
-// Where the value of a symbol stands; false for trial symbols and signals, which do not reach the equations.
-static bool find_slot(const struct ct_evaluator *m, const struct ct_sym *s, size_t *slot)
+bool ct_evaluator_slot(const struct ct_evaluator *m, const struct ct_sym *s, size_t *slot)
 {
     switch (s->kind) {
     case CT_SYM_TIME:
@@ -59,7 +58,8 @@ void ct_evaluator_values(const struct ct_evaluator *m, const struct ct_exs *x, d
 {
     for (size_t k = 0; k < x->nsym; k++) {
         size_t slot;
-        value[k] = find_slot(m, &x->sym[k], &slot) && slot < m->ninput ? m->input[slot] : NAN;
+        value[k] = ct_evaluator_slot(m, &x->sym[k], &slot) && slot < m->ninput ? m->input[slot]
+                                                                               : NAN;
     }
 }
 
@@ -70,7 +70,7 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_evaluator *
     struct inputs in = {CT_NEWN(a, ct_ex, x->nsym + 1), CT_NEWN(a, size_t, x->nsym + 1), 0};
     for (uint32_t id = 0; id < x->nnode; id++) {
         size_t slot;
-        if (x->node[id].op != CT_OP_SYM || !find_slot(m, &x->sym[x->node[id].a], &slot))
+        if (x->node[id].op != CT_OP_SYM || !ct_evaluator_slot(m, &x->sym[x->node[id].a], &slot))
             continue;
         in.symbol[in.n] = (ct_ex){id};
         in.slot[in.n++] = slot;
