@@ -106,7 +106,8 @@ static bool read_model(struct ct_system *s, const struct source *from,
     for (size_t i = 0; i < n; i++)
         set[i].text = o->set[i];
     if (o->input)
-        set[n++] = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
+        set[n++]
+            = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
     const bool ok
         = (from->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name),
                                        ct_arena_strndup(s->own.model, from->text, from->n),

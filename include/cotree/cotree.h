@@ -148,8 +148,9 @@ struct ct_system_options {
     long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
-    const char *input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
-    bool hold_input;   /* a row of it counts from its t on; else it is linear between rows */
+    const char *
+        input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
+    bool hold_input; /* a row of it counts from its t on; else it is linear between rows */
 };
 
 /**

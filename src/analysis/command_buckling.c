@@ -54,11 +54,12 @@ static bool find(void *task)
     if (!s->load)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE, "which load is to grow?");
     if (s->system->model.nstate)
-        return ct_error(&s->own, s->system->model.state[0].mark, CT_E_OF_STATES,
-                        "buckling is a question of stiffness alone, and this model has the state "
-                        "'%s': where a controlled structure gives way show 'modes' and "
-                        "'linearize' about an equilibrium under load",
-                        s->system->model.state[0].name);
+        return ct_error(
+            &s->own, s->system->model.state[0].mark, CT_E_OF_STATES,
+            "buckling is a question of stiffness alone, and this model has the state "
+            "'%s': where a controlled structure gives way show 'modes' and "
+            "'linearize' about an equilibrium under load",
+            s->system->model.state[0].name);
     s->system = ct_system_borrow(&s->own, s->system);
     s->variant = ct_variant_create(&s->own, &s->system->model, 1);
     if (!ct_variant_load(&s->own, s->variant, s->load, &parameter)

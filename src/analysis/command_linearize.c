@@ -207,9 +207,9 @@ static void name_states(struct ct_linearization *s, const struct ct_state_space 
         s->state[i]
             = k < 0 ? ct_arena_printf(a, "place%d", i + 1) : ct_linear_coordinate(e, a, k);
         const bool is_state = k >= 0 && ct_speed_is_state(e, (size_t)k);
-        s->x0[i] = is_state                      ? l->y[e->nq + (size_t)k]
+        s->x0[i] = is_state                 ? l->y[e->nq + (size_t)k]
                  : k >= 0 && e->u[k].q >= 0 ? l->y[e->u[k].q]
-                                                 : 0;
+                                            : 0;
         s->rate0[i] = is_state ? l->a[k] : k >= 0 ? l->y[e->nq + (size_t)k] : 0;
     }
     for (int i = 0; i < x->nspeed; i++) {

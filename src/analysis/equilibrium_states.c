@@ -21,9 +21,9 @@ enum { MOST_STEPS = 200, MOST_HALVINGS = 30 };
 
 struct search {
     struct ct_linear *l;
-    bool *turns;                    // nu: coordinates that are angles
-    double *K, *A, *x;              // nfree x nfree, twice; nfree
-    double *dq, *part, *next;       // steps: nu
+    bool *turns;              // nu: coordinates that are angles
+    double *K, *A, *x;        // nfree x nfree, twice; nfree
+    double *dq, *part, *next; // steps: nu
     double *kept_y, *kept_memory;
 };
 
@@ -108,8 +108,7 @@ static bool go(struct search *s, double size)
         ct_linear_retract(l, s->part);
         if (ct_linear_close(l) && ct_linear_rest(l)) {
             find_step(s, s->next);
-            if (size <= CT_EQUILIBRIUM_FINE
-                || step_size(l, s->next) <= (1 - part / 4) * size)
+            if (size <= CT_EQUILIBRIUM_FINE || step_size(l, s->next) <= (1 - part / 4) * size)
                 return true;
         }
         if (l->ctx->nerror)

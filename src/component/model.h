@@ -49,7 +49,7 @@ struct ct_parameter {
     ct_ex definition; // in terms of parameters before it
     const char *unit; // that it was given with; NULL: none
     double value;
-    bool is_input; // set from outside, also while a motion goes on
+    bool is_input;  // set from outside, also while a motion goes on
     bool is_played; // a file does so: `played`
     ct_ex played;   // a function of time
 };

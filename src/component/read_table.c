@@ -35,11 +35,10 @@ static bool read_csv(struct ct_reader *r, struct ct_mark mark, const char *path,
         return ct_error(r->ctx, mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
                         strerror(errno));
     case CT_TEXT_TOO_BIG:
-        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB",
-                        path, max_bytes >> 20);
+        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB", path,
+                        max_bytes >> 20);
     case CT_TEXT_ENDLESS:
-        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is no regular file",
-                        path);
+        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is no regular file", path);
     case CT_TEXT_OK:
         break;
     }
@@ -363,15 +362,15 @@ static bool read_played(struct ct_reader *r, const struct ct_sheet *csv, size_t 
     struct ct_unit own = {.si = 1};
     size_t at;
     double factor = 1;
-    if (unit
-        && !read_unit(r, csv->field[column], unit, csv->mark[column], p->unit, &factor))
+    if (unit && !read_unit(r, csv->field[column], unit, csv->mark[column], p->unit, &factor))
         return false;
     if (!unit && p->unit && ct_unit_parse(p->unit, strlen(p->unit), &own, &at) == CT_UNIT_OK
         && own.si != 1)
-        ct_warning(r->ctx, csv->mark[column], CT_E_UNIT,
-                   "the column '%s' has no unit and is read in SI units, while the input is given "
-                   "in %s: write '%s [%s]' if that is meant",
-                   p->name, p->unit, p->name, p->unit);
+        ct_warning(
+            r->ctx, csv->mark[column], CT_E_UNIT,
+            "the column '%s' has no unit and is read in SI units, while the input is given "
+            "in %s: write '%s [%s]' if that is meant",
+            p->name, p->unit, p->name, p->unit);
     if (!read_column(r, csv, column, y))
         return false;
     for (size_t i = 0; i + 1 < csv->nrow; i++)

@@ -96,7 +96,8 @@ struct ct_table {
     size_t n;
     const double *x, *y; // x strictly increasing
     const double *m; // slopes at the points (cubic Hermite of the natural spline), NULL: linear
-    bool holds;      // y[i] counts from x[i] on, up to the next one; y[0] before, the last one after all
+    bool
+        holds; // y[i] counts from x[i] on, up to the next one; y[0] before, the last one after all
 };
 
 struct ct_exs {

@@ -35,12 +35,12 @@ enum ct_elastic_kind {
 };
 
 struct ct_u {
-    const char *name;          // "crank.u"
-    ct_ex symbol;              // speed
-    ct_ex derivative;          // the symbol u'
-    int q;                     // the coordinate whose rate it is; -1: angular velocities, states
-    int joint, body;           // whose it is; the other is -1
-    int beam;                  // body whose elastic coordinate it belongs to; 0: none
+    const char *name; // "crank.u"
+    ct_ex symbol;     // speed
+    ct_ex derivative; // the symbol u'
+    int q;            // the coordinate whose rate it is; -1: angular velocities, states
+    int joint, body;  // whose it is; the other is -1
+    int beam;         // body whose elastic coordinate it belongs to; 0: none
     enum ct_elastic_kind kind; // of those
     bool is_rotation;          // [rad/s]
 };
@@ -203,7 +203,8 @@ struct ct_equations {
     size_t nq, q_cap;
     struct ct_u *u;
     size_t nu, u_cap;
-    size_t nmotion, nstate; // of these: speeds of joints and beams; behind them the model's states, in its order
+    size_t nmotion,
+        nstate; // of these: speeds of joints and beams; behind them the model's states, in its order
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
     ct_ex *solution; // u' of an open system in closed form (nu), or NULL

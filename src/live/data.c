@@ -343,7 +343,9 @@ static bool set(void *task)
         d->known = 0;
         return true;
     }
-    const size_t first = s->kind == CT_COORDINATE ? 0 : s->kind == CT_SPEED ? d->nq : d->nq + d->nu;
+    const size_t first = s->kind == CT_COORDINATE ? 0
+                       : s->kind == CT_SPEED      ? d->nq
+                                                  : d->nq + d->nu;
     double *y = d->y + first + one;
     d->is_moved |= memcmp(y, s->value, s->n * sizeof *y) != 0;
     memcpy(y, s->value, s->n * sizeof *y);

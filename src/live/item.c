@@ -65,10 +65,10 @@ static const double *find_start(const struct ct_system *sys)
     struct ct_ctx *ctx = ct_ctx_create();
     struct ct_data *d = value ? ct_data_create(ctx, sys, NULL) : NULL;
     for (size_t i = 0; value && i < n; i++)
-        value[i] = i < e->nq         ? ct_data_value(d, CT_COORDINATE, i)
+        value[i] = i < e->nq              ? ct_data_value(d, CT_COORDINATE, i)
                  : i < e->nq + e->nmotion ? ct_data_value(d, CT_SPEED, i - e->nq)
                  : i < e->nq + e->nu      ? ct_data_value(d, CT_STATE, i - e->nq - e->nmotion)
-                                     : ct_data_value(d, CT_OUTPUT, i - e->nq - e->nu);
+                                          : ct_data_value(d, CT_OUTPUT, i - e->nq - e->nu);
     ct_data_destroy(d);
     ct_ctx_destroy(ctx);
     if (!value || atomic_compare_exchange_strong(&sys->published->start, &nothing, value))

@@ -455,8 +455,9 @@ static void refuse(struct ct_build *b, const struct ct_signal *s)
     ct_error(b->ctx, s->mark, CT_E_SIGNAL_USE,
              "a %s cannot depend on '%s': accelerations, reactions, energies and work %s",
              b->signals.is_rate ? "rate" : "force", s->name,
-             b->signals.is_rate ? "are found after it; use positions, speeds, applied forces, states"
-                                : "follow from it");
+             b->signals.is_rate
+                 ? "are found after it; use positions, speeds, applied forces, states"
+                 : "follow from it");
 }
 
 // The signal e, in an expression of a force.

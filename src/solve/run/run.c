@@ -250,6 +250,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->pending = INFINITY;
     r->m = ct_evaluator_create(a, model, e);
     r->s = ct_partition_create(a, ctx, r->m);
+    r->s->pending = &r->pending;
     r->singular = ct_rank_monitor_create(a, r->m, r->s, &r->pending);
     r->singularities = ct_singular_hooks(r->singular);
     r->singular_dense_output = ct_singular_dense_output_create(a, r->singular);
