@@ -47,7 +47,7 @@ static void print_bash_command(FILE *out, const struct cli_command *c)
     for (size_t i = 0; i < cli_noption; i++)
         if (is_offered(&cli_options[i], c))
             fprintf(out, "--%s ", cli_options[i].name);
-    fprintf(out, "'\n      files=%d ;;\n    esac ;;\n", c->takes_model);
+    fprintf(out, "'\n      files=%d ;;\n    esac ;;\n", c->takes_model || c->takes_file);
 }
 
 static void print_bash(FILE *out)
@@ -133,7 +133,10 @@ static void print_zsh_command(FILE *out, const struct cli_command *c)
             fprintf(out, "%s%s", w == c->words ? "" : " ", *w);
         fputs(")'", out);
     } else {
-        fprintf(out, "      %s", c->takes_model ? "'1:model:_files -g \"*.(yaml|yml)\"'" : "");
+        fprintf(out, "      %s",
+                c->takes_model  ? "'1:model:_files -g \"*.(yaml|yml)\"'"
+                : c->takes_file ? "'1:file:_files'"
+                                : "");
     }
     fputs(" ;;\n", out);
 }
