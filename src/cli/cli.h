@@ -70,7 +70,7 @@ struct cli_command {
     const char *name, *summary; // one line
     enum cli_use use;
     bool takes_model;
-    const char *takes_file; // the name of another kind of file in its place; or NULL
+    const char *takes_file;   // the name of another kind of file in its place; or NULL
     const char *const *words; // what it takes in place of a model, NULL at the end; or NULL
     const char *more;         // paragraph for its own help
     const char *examples[2];  // to try
