@@ -64,13 +64,13 @@ static void go_back(const struct search *s)
     memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
-// The largest change of a coordinate against the largest of them, or of a state against itself.
-static double step_size(const struct ct_linear *l, const double *dq)
+// The largest change of a coordinate against the largest of them in y, or of a state against itself.
+static double step_size(const struct ct_linear *l, const double *y, const double *dq)
 {
     const struct ct_equations *e = l->m->e;
-    double size = ct_vector_largest(dq, e->nmotion) / (1 + ct_vector_largest(l->y, e->nq));
+    double size = ct_vector_largest(dq, e->nmotion) / (1 + ct_vector_largest(y, e->nq));
     for (size_t k = e->nmotion; k < e->nu; k++)
-        size = fmax(size, fabs(dq[k]) / (1 + fabs(l->y[e->nq + k])));
+        size = fmax(size, fabs(dq[k]) / (1 + fabs(y[e->nq + k])));
     return size;
 }
 
@@ -131,7 +131,8 @@ static bool go(struct search *s, double size)
         ct_linear_retract(l, s->part);
         if (ct_linear_close(l) && ct_linear_rest(l)) {
             find_step(s, s->next);
-            if (size <= CT_EQUILIBRIUM_FINE || step_size(l, s->next) <= (1 - part / 4) * size)
+            if (size <= CT_EQUILIBRIUM_FINE
+                || step_size(l, s->kept_y, s->next) <= (1 - part / 4) * size)
                 return true;
         }
         if (l->ctx->nerror)
@@ -202,7 +203,7 @@ bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_
     for (double last = INFINITY;; out->iterations++) {
         memcpy(s.K, l->Kr, (size_t)l->nfree * (size_t)l->nfree * sizeof *s.K);
         find_step(&s, s.dq);
-        const double size = out->last_step = step_size(l, s.dq);
+        const double size = out->last_step = step_size(l, l->y, s.dq);
         if (size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2))
             break;
         last = size;

@@ -27,6 +27,34 @@ say buckling position.yaml --load slide.effort
 sed 's/effort: force/motion: t/' position.yaml >driven.yaml
 say kinematics driven.yaml
 
+echo "-- an equilibrium far off, and what states are counted in"
+cat >arm.yaml <<'END'
+cotree: 1
+gravity: [0, -9.81, 0]
+states:
+  integral: {rate: 2.5 - arm.q, unit: rad*s}
+bodies:
+  link: {mass: 1.5, inertia: 0.02, com: [0.8, 0, 0]}
+joints:
+  arm: {type: revolute, from: ground, to: link, effort: 30*(2.5 - arm.q) + 20*integral - 4*arm.u, initial: {q: -1.2}}
+outputs: [arm.q, integral]
+END
+"$COTREE" equilibrium arm.yaml -q -o - | awk -F, 'NR > 1 { e = $2 - 2.5; f = 20*$3 - 1.5*9.81*0.8*cos(2.5); print e*e + f*f < 1e-20 ? "where torques meet" : $0 }'
+for unit in 1 1e6; do # of pressure; eigenvalues are those of [0 1 0; -5000 -10 1e-4; 0 -5.6e9 -84]
+  cat >oil.yaml <<END
+cotree: 1
+parameters: {A: 2e-3, V: 5e-4, bulk: 1.4e9, leak: 3e-11}
+states:
+  p: {rate: bulk/V*(1e-5 - A*rod.u - leak*$unit*p)/$unit}
+bodies:
+  mass: {mass: 20}
+joints:
+  rod: {type: prismatic, from: ground, to: mass, stiffness: 1e5, damping: 200, effort: A*$unit*p}
+outputs: [rod.q]
+END
+  "$COTREE" modes oil.yaml -q | awk -F, 'NR > 1 { printf "%.8f %.8f\n", $3, $4 }'
+done
+
 echo "-- a sweep's rows are those of runs alone"
 say sweep position.yaml --vary Ki=10:50:5 -o rows.csv -q
 for run in 1 3 5; do
