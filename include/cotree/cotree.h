@@ -126,6 +126,17 @@ CT_API FILE *ct_output_stream(const struct ct_output *o);
 /** ok: what was written is whole; else nothing of it stays. True if it is there. Accepts NULL. Errors: E002. */
 CT_API bool ct_output_close(struct ct_ctx *ctx, struct ct_output *o, bool ok);
 
+/**
+ * The text of a model file for a robot description (URDF): links are bodies, joints joints, mimic a gear, visuals shapes.
+ * What is not used is a warning (E574) with its line.
+ *
+ * model   in    the file that the text is for, which decides how it names meshes; NULL: in full
+ *
+ * Errors  E571 to E573, E002
+ * Owner   the caller, until ct_free
+ */
+CT_API char *ct_import_urdf(struct ct_ctx *ctx, const char *path, const char *model);
+
 /* ---- systems: a model and its equations ------------------------------------------------------- */
 
 struct ct_system;

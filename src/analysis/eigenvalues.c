@@ -472,14 +472,45 @@ static bool solve_modal(struct list *list, const struct basis *s)
 
 // ---- all of it ------------------------------------------------------------------------------
 
+// A (n x n) <- D^-1 A D, T (f x n) <- T D with powers of two that make rows as large as columns:
+// what states of the model are counted in then decides about no zeros. Source: Osborne (1960),
+// as in LAPACK's dgebal.
+static void balance(double *A, double *T, int n, int f)
+{
+    enum { MOST_PASSES = 20 };
+    bool is_changed = true;
+    for (int pass = 0; pass < MOST_PASSES && is_changed; pass++) {
+        is_changed = false;
+        for (int k = 0; k < n; k++) {
+            double row = 0, column = 0;
+            for (int i = 0; i < n; i++) {
+                row += i == k ? 0 : fabs(A[k + n * i]);
+                column += i == k ? 0 : fabs(A[i + n * k]);
+            }
+            if (!(row > 0 && column > 0) || (row < 4 * column && column < 4 * row))
+                continue;
+            const double d = ldexp(1, (int)lround(log2(row / column) / 2));
+            for (int i = 0; i < n; i++) {
+                A[i + n * k] *= d;
+                A[k + n * i] /= d;
+            }
+            for (int i = 0; i < f; i++)
+                T[i + f * k] *= d;
+            is_changed = true;
+        }
+    }
+}
+
 // Massless coordinates with dampers, and states of the model: their places are states without speeds.
 static bool solve_state_space(struct list *list, int rigid)
 {
     struct ct_state_space s;
     if (!ct_state_space_create(list->l->ctx, list->a, list->l, &s))
         return false;
-    if (list->l->m->e->nstate)
+    if (list->l->m->e->nstate) {
+        balance(s.A, s.y_x, s.n, list->l->nfree);
         rigid = count_steady(list->a, s.A, s.n);
+    }
     const double zero = roundoff * s.n * ct_vector_largest(s.A, (size_t)s.n * (size_t)s.n);
     return add_general(list, s.A, s.y_x, s.n, zero, rigid);
 }

@@ -21,9 +21,9 @@ enum { MOST_STEPS = 200, MOST_HALVINGS = 30 };
 
 struct search {
     struct ct_linear *l;
-    bool *turns;              // nu: coordinates that are angles
-    double *K, *A, *x;        // nfree x nfree, twice; nfree
-    double *dq, *part, *next; // steps: nu
+    bool *turns;               // nu: coordinates that are angles
+    double *K, *A, *x, *scale; // nfree x nfree, twice; nfree, twice
+    double *dq, *part, *next;  // steps: nu
     double *kept_y, *kept_memory;
 };
 
@@ -36,7 +36,7 @@ static struct search search_create(struct ct_linear *l)
     s.turns = CT_NEWN(a, bool, n);
     s.K = CT_NEWN(a, double, n *n);
     s.A = CT_NEWN(a, double, n *n);
-    double **const vectors[] = {&s.x, &s.dq, &s.part, &s.next};
+    double **const vectors[] = {&s.x, &s.scale, &s.dq, &s.part, &s.next};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
     s.kept_y = CT_NEWN(a, double, e->nq + n);
@@ -64,14 +64,34 @@ static void go_back(const struct search *s)
     memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
-// The largest change of a coordinate against the largest of them, or of a state against itself.
-static double step_size(const struct ct_linear *l, const double *dq)
+// The largest change of a coordinate against the largest of them in y, or of a state against itself.
+static double step_size(const struct ct_linear *l, const double *y, const double *dq)
 {
     const struct ct_equations *e = l->m->e;
-    double size = ct_vector_largest(dq, e->nmotion) / (1 + ct_vector_largest(l->y, e->nq));
+    double size = ct_vector_largest(dq, e->nmotion) / (1 + ct_vector_largest(y, e->nq));
     for (size_t k = e->nmotion; k < e->nu; k++)
-        size = fmax(size, fabs(dq[k]) / (1 + fabs(l->y[e->nq + k])));
+        size = fmax(size, fabs(dq[k]) / (1 + fabs(y[e->nq + k])));
     return size;
+}
+
+// A (n x n), x (n) <- rows, then columns, over the largest of them; scale (n, out) of the columns. Coordinates and states are
+// counted in anything, and ranks are judged against one size.
+static void equilibrate(double *A, double *x, double *scale, int n)
+{
+    for (int by_columns = 0; by_columns < 2; by_columns++)
+        for (int i = 0; i < n; i++) {
+            const int start = by_columns ? n * i : i, step = by_columns ? 1 : n;
+            double most = 0;
+            for (int k = 0; k < n; k++)
+                most = fmax(most, fabs(A[start + step * k]));
+            const double by = most > 0 ? 1 / most : 1;
+            for (int k = 0; k < n; k++)
+                A[start + step * k] *= by;
+            if (by_columns)
+                scale[i] = by;
+            else
+                x[i] *= by;
+        }
 }
 
 // dq (nu, out): the step that forces and rates of now ask for, by the derivatives in s->K.
@@ -82,7 +102,10 @@ static void find_step(struct search *s, double *dq)
     memcpy(s->A, s->K, (size_t)n * (size_t)n * sizeof *s->A);
     for (int i = 0; i < n; i++)
         s->x[i] = -l->force[i];
+    equilibrate(s->A, s->x, s->scale, n);
     ct_lstsq(s->x, s->A, n, n, n, ct_rank_tolerance, l->iwork, l->work);
+    for (int i = 0; i < n; i++)
+        s->x[i] *= s->scale[i];
     ct_linear_expand(l, dq, s->x);
 }
 
@@ -108,7 +131,8 @@ static bool go(struct search *s, double size)
         ct_linear_retract(l, s->part);
         if (ct_linear_close(l) && ct_linear_rest(l)) {
             find_step(s, s->next);
-            if (size <= CT_EQUILIBRIUM_FINE || step_size(l, s->next) <= (1 - part / 4) * size)
+            if (size <= CT_EQUILIBRIUM_FINE
+                || step_size(l, s->kept_y, s->next) <= (1 - part / 4) * size)
                 return true;
         }
         if (l->ctx->nerror)
@@ -179,7 +203,7 @@ bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_
     for (double last = INFINITY;; out->iterations++) {
         memcpy(s.K, l->Kr, (size_t)l->nfree * (size_t)l->nfree * sizeof *s.K);
         find_step(&s, s.dq);
-        const double size = out->last_step = step_size(l, s.dq);
+        const double size = out->last_step = step_size(l, l->y, s.dq);
         if (size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2))
             break;
         last = size;

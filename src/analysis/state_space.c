@@ -104,28 +104,69 @@ static void choose_light(struct split *s)
         }
 }
 
-// Turn N so that dampers act on its first n1 directions alone.
-static void split_by_damping(struct split *s)
+static bool is_state(const struct split *s, int i)
+{
+    return ct_speed_is_state(s->l->m->e, (size_t)s->l->independent[i]);
+}
+
+// The largest entry of A (f x n) but for rows of states of the model, and with n = f columns
+// of theirs: their size is that of whatever they stand for.
+static double largest_of_motion(const struct split *s, const double *A, int n)
+{
+    double largest = 0;
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < s->f; i++)
+            if (!is_state(s, i) && (n < s->f || !is_state(s, j)))
+                largest = fmax(largest, fabs(A[i + s->f * j]));
+    return largest;
+}
+
+// Columns of N and the coordinates in `light` that are states of the model go to the front, in
+// their order. Returns how many there are: z' stands in the row of each, so that they have rates.
+static int put_states_first(struct split *s)
 {
     const int f = s->f, n0 = s->n0;
-    double *CN = matrix(s->a, f, n0), *Cnn = matrix(s->a, n0, n0),
-           *turned = matrix(s->a, f, n0), *value = CT_NEWN(s->a, double, n0 + 1),
-           *work = CT_NEWN(s->a, double, ct_symmetric_eigenvalues_work(n0));
-    ct_matrix_multiply(CN, s->l->Cr, s->N, f, f, n0);
-    ct_matrix_multiply_transposed(Cnn, s->N, CN, n0, f, n0);
-    if (n0)
-        ct_symmetric_eigen(value, Cnn, n0, n0, work);
-    const double size = ct_vector_largest(s->l->Cr, (size_t)f * (size_t)f);
-    for (int j = 0; j < n0; j++)
-        s->n1 += fabs(value[j]) > uncoupled * size;
-    s->n2 = n0 - s->n1;
-    if (!s->n1 || !s->n2)
+    double *N = matrix(s->a, f, n0);
+    int *light = CT_NEWN(s->a, int, n0 + 1), n = 0, nstate = 0;
+    for (int of_states = 1; of_states >= 0; of_states--) {
+        for (int j = 0; j < n0; j++) {
+            if (is_state(s, s->light[j]) != of_states)
+                continue;
+            memcpy(N + (size_t)f * (size_t)n, s->N + (size_t)f * (size_t)j,
+                   (size_t)f * sizeof *N);
+            light[n++] = s->light[j];
+        }
+        nstate = of_states ? n : nstate;
+    }
+    s->N = N;
+    s->light = light;
+    return nstate;
+}
+
+// Turn N so that states of the model, and dampers, act on its first n1 directions alone.
+static void split_by_damping(struct split *s)
+{
+    const int f = s->f, nstate = put_states_first(s), n = s->n0 - nstate;
+    double *N = s->N + (size_t)f * (size_t)nstate;
+    double *CN = matrix(s->a, f, n), *Cnn = matrix(s->a, n, n), *turned = matrix(s->a, f, n),
+           *value = CT_NEWN(s->a, double, n + 1),
+           *work = CT_NEWN(s->a, double, ct_symmetric_eigenvalues_work(n));
+    ct_matrix_multiply(CN, s->l->Cr, N, f, f, n);
+    ct_matrix_multiply_transposed(Cnn, N, CN, n, f, n);
+    if (n)
+        ct_symmetric_eigen(value, Cnn, n, n, work);
+    const double least = uncoupled * largest_of_motion(s, s->l->Cr, f);
+    int damped = 0;
+    for (int j = 0; j < n; j++)
+        damped += fabs(value[j]) > least;
+    s->n1 = nstate + damped;
+    s->n2 = n - damped;
+    if (!damped || !s->n2)
         return;
-    ct_matrix_multiply(turned, s->N, Cnn, f, n0, n0);
-    int first = 0, last = s->n1;
-    for (int j = 0; j < n0; j++)
-        memcpy(s->N
-                   + (size_t)f * (size_t)(fabs(value[j]) > uncoupled * size ? first++ : last++),
+    ct_matrix_multiply(turned, N, Cnn, f, n, n);
+    int first = 0, last = damped;
+    for (int j = 0; j < n; j++)
+        memcpy(N + (size_t)f * (size_t)(fabs(value[j]) > least ? first++ : last++),
                turned + (size_t)f * (size_t)j, (size_t)f * sizeof *turned);
     s->is_mixed = true;
 }
@@ -164,8 +205,7 @@ static bool follow(struct split *s, struct reduced *r)
     if (!n2)
         return true;
     ct_matrix_multiply(CN, C, N2, f, f, n2);
-    if (ct_vector_largest(CN, (size_t)f * (size_t)n2)
-        > uncoupled * ct_vector_largest(C, (size_t)f * (size_t)f))
+    if (largest_of_motion(s, CN, n2) > uncoupled * largest_of_motion(s, C, f))
         return not_held(s);
     ct_matrix_multiply(KN, K, N2, f, f, n2);
     ct_matrix_multiply_transposed(K22, N2, KN, n2, f, n2);

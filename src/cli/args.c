@@ -12,14 +12,14 @@ const struct cli_command *const cli_commands[]
     = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
        &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
        &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
-       &cli_export,   &cli_components, &cli_methods,   &cli_schema,     &cli_completion,
-       NULL};
+       &cli_export,   &cli_import,     &cli_components, &cli_methods,   &cli_schema,
+       &cli_completion, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
 const struct cli_option cli_options[] = {
 #define FIELD(f) offsetof(struct cli_args, f)
-    {"output", 'o', "FILE", CLI_TEXT, FIELD(output), CLI_MODELS | CLI_LISTS, true,
+    {"output", 'o', "FILE", CLI_TEXT, FIELD(output), CLI_MODELS | CLI_LISTS | CLI_IMPORT, true,
      "where results go; the suffix says the type"},
     {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
@@ -390,7 +390,7 @@ static bool parse_plain(struct parser *p, const char *text)
         p->args->files.text[p->args->files.n++] = text;
         return true;
     }
-    if (!p->command->takes_model)
+    if (!p->command->takes_model && !p->command->takes_file)
         return cli_complain(p->command, "'%s' takes no model: '%s'", p->command->name, text),
                false;
     if (p->args->model)
@@ -519,6 +519,10 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
                             p.command->name, p.command->name),
                false;
+    if (p.command->takes_file && !args->model)
+        return cli_complain(p.command, "'%s' needs a file: cotree %s %s", p.command->name,
+                            p.command->name, p.command->takes_file),
+               false;
     return check_words(&p) && check_files(&p);
 }
 
@@ -577,11 +581,12 @@ void cli_print_help(FILE *out, const struct cli_command *command)
         return;
     }
     fprintf(out, "usage: cotree %s%s%s [options]\n\n%s\n%s\n", command->name,
-            command->files ? " " : "",
-            command->takes_model ? " MODEL.yaml"
-            : command->words     ? " SHELL"
-            : command->files     ? command->files
-                                 : "",
+            command->takes_file || command->files ? " " : "",
+            command->takes_file    ? command->takes_file
+            : command->takes_model ? " MODEL.yaml"
+            : command->words       ? " SHELL"
+            : command->files       ? command->files
+                                   : "",
             command->summary, command->more);
     for (size_t i = 0; i < cli_noption; i++)
         if (cli_options[i].use & command->use)

@@ -57,6 +57,7 @@ enum cli_use {
     CLI_DRAW = 131072,
     CLI_MERGE = 262144,
     CLI_REPORT = 524288,
+    CLI_IMPORT = 1048576,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
@@ -74,6 +75,7 @@ struct cli_command {
     const char *name, *summary; // one line
     enum cli_use use;
     bool takes_model;
+    const char *takes_file;   // the name of another kind of file in its place; or NULL
     const char *const *words; // what it takes in place of a model, NULL at the end; or NULL
     const char *files;        // the same where it takes files; or NULL
     const char *more;         // paragraph for its own help
@@ -83,7 +85,7 @@ struct cli_command {
 
 extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
     cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
-    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_components, cli_methods,
+    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_import, cli_components, cli_methods,
     cli_schema, cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];

@@ -218,3 +218,59 @@ def test_sweeps_work_after_a_fork():
 def _sweep_in_child(values):
     m = cotree.load(SYSTEMS / "double_pendulum" / "model.yaml")
     return m.sweep(values, until=0.1, threads=2).values
+
+
+CONTROLLED = """cotree: 1
+inputs: {goal: {value: 1, unit: m}}
+states:
+  integral: {rate: goal - slide.q, unit: m*s}
+  force: {rate: (40*(goal - slide.q) + 30*integral - 8*slide.u - force)/0.05, initial: 2, unit: N}
+bodies: {block: {mass: 2}}
+joints: {slide: {type: prismatic, from: ground, to: block, effort: force}}
+outputs: [slide.q, force, goal]
+"""
+
+
+def test_states_of_the_model():
+    m = cotree.loads(CONTROLLED)
+    assert m.states == ("integral", "force") and m.speeds == ("slide.u",)
+    assert m.item("integral", kind="state").unit == "m*s"
+    assert m.item("force").unit == "N" and m.item("goal").unit == "m"
+    d = m.data(tolerance=1e-10)
+    assert d.M.shape == (1, 1) and d.z.tolist() == [0, 2]
+    assert np.allclose(d.z_rate, [1, (40 - 2) / 0.05])
+    d.states["force"] = 3
+    d.inputs["goal"] = 0.5
+    assert np.allclose(d.z_rate, [0.5, (20 - 3) / 0.05]) and d.acceleration[0] == 1.5
+    d.step(0.3)
+    twin = m.data(tolerance=1e-10)
+    twin.z = [0, 3]
+    twin.inputs["goal"] = 0.5
+    for _ in range(30):
+        twin.step(0.01)
+    assert np.allclose(np.hstack([d.q, d.u, d.z]), np.hstack([twin.q, twin.u, twin.z]), rtol=1e-8)
+    assert d.clone().z.tolist() == d.z.tolist()
+    d.reset()
+    assert d.z.tolist() == [0, 2]
+    lin = m.linearize()
+    assert lin.states == ("slide.q", "integral", "force", "slide.u") and lin.inputs == ("goal",)
+    poles = sorted(np.linalg.eigvals(lin.A).real)
+    assert poles[-1] < 0 and m.equilibrium()["slide.q"] == pytest.approx(1)
+
+
+def test_inputs_from_a_table(tmp_path):
+    m = cotree.loads(CONTROLLED)
+    table = {"t": [0, 1, 2], "goal": [0, 2, 1]}
+    assert m.simulate(until=2, samples=5, input=table)["goal"].tolist() == [0, 1, 2, 1.5, 1]
+    held = m.simulate(until=2, samples=5, input=table, hold=True)
+    assert held["goal"].tolist() == [0, 0, 2, 2, 1]
+    d = m.data(tolerance=1e-10)
+    for goal in (0, 2):
+        d.inputs["goal"] = goal
+        d.step(1)
+    assert held["slide.q"][-1] == pytest.approx(d.q[0], rel=1e-7)
+    (tmp_path / "goal.csv").write_text("t [ms],goal [mm]\n0,1000\n2000,500\n")
+    assert m.simulate(until=2, samples=2, input=tmp_path / "goal.csv")["goal"].tolist() == [1, 0.5]
+    with pytest.raises(cotree.Error) as e:
+        m.simulate(until=2, input={"t": [0, 2], "gaol": [1, 1]})
+    assert e.value.diagnostics[0].line == 1 and "did you mean 'goal'" in str(e.value)

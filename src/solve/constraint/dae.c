@@ -3,6 +3,7 @@
 
 #include "integrate/implicit/newton_sparse.h"
 #include "integrate/stepper.h"
+#include "solve/evaluator/switch_state.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,10 +28,17 @@ static void chart_rate(void *user, const double *d, const double *w, double *rat
     ct_evaluator_chart_rate(s->m, d, w, rate);
 }
 
+// What holds before the event ahead counts up to its very instant, where steps end: a held table jumps there, and the slope of
+// a linear one.
+static double time_before_event(const struct ct_partition *s, double t)
+{
+    return s->pending ? ct_time_just_before(t, *s->pending) : t;
+}
+
 static enum ct_eval start(void *user, double t, const double *y, double *a, double *lam)
 {
     struct ct_partition *s = user;
-    ct_evaluator_set(s->m, t, y);
+    ct_evaluator_set(s->m, time_before_event(s, t), y);
     if (!ct_evaluator_solved(s->m, s->a)) {
         ct_evaluator_dynamics(s->m);
         const enum ct_eval e = ct_partition_accelerate(s);
@@ -60,7 +68,7 @@ static inline void set_input(const struct ct_partition *s, double t, const doubl
 {
     const struct ct_evaluator *m = s->m;
     double *input = m->input;
-    input[0] = t;
+    input[0] = time_before_event(s, t);
     copy_few(input + m->at_q, q, m->nq);
     copy_few(input + m->at_u, u, m->nu);
     copy_few(input + m->at_a, a, m->nu);

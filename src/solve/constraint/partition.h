@@ -24,6 +24,7 @@ struct ct_partition {
     struct ct_evaluator *m;
     struct ct_ctx *ctx;
     struct ct_arena *arena;
+    const double *pending; // time of the event ahead, the run's; NULL: there is no run
     int rank;
     int *row;                   // kept rows, rank of them, then the redundant ones
     int *dependent;             // rank columns

@@ -250,6 +250,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->pending = INFINITY;
     r->m = ct_evaluator_create(a, model, e);
     r->s = ct_partition_create(a, ctx, r->m);
+    r->s->pending = &r->pending;
     r->singular = ct_rank_monitor_create(a, r->m, r->s, &r->pending);
     r->singularities = ct_singular_hooks(r->singular);
     r->singular_dense_output = ct_singular_dense_output_create(a, r->singular);
@@ -555,11 +556,12 @@ static bool looks_at_steps(const struct ct_run *r)
     return r->o->progress || r->o->stiff_method || r->m->base_motion.nout;
 }
 
-// Speeds and places that are followed for themselves; where nothing is told all are.
+// Speeds and places that are followed for themselves; where nothing is told all are. States of the model are no speeds of
+// vibrations and may be of any size, so that energies of errors would tell nothing.
 static void find_requested(struct ct_run *r, struct ct_problem *p)
 {
     ct_evaluator_set(r->m, 0, r->y);
-    if (!r->nroot)
+    if (!r->nroot && !r->e->nstate)
         ct_output_error_find_requested(r->arena, r->e, &p->requested_speeds,
                                        &p->requested_positions);
     for (size_t i = 0; i < r->e->nresult; i++)
