@@ -77,23 +77,16 @@ CT_API void ct_ctx_on_diagnostic(struct ct_ctx *ctx,
                                  void (*callback)(void *user,
                                                   const struct ct_diagnostic *diagnostic),
                                  void *user);
-/** From any thread or signal handler: runs and sweeps that report to this context end at their next step, as if
- *  `progress` had returned false, until ct_ctx_clear. */
+/**
+ * From any thread or signal handler: all work with this context ends at its next accepted step, or between parts of an
+ * analysis, with E005, and so does what begins after it, until ct_ctx_clear. Rows that are complete stay in PATH.partial.
+ */
 CT_API void ct_ctx_cancel(struct ct_ctx *ctx);
+/** Has something been cancelled? */
+CT_API bool ct_ctx_was_interrupted(const struct ct_ctx *ctx);
 
 /** Free a text that the library has made. Accepts NULL. */
 CT_API void ct_free(void *text);
-
-/**
- * How a command is interrupted: long work asks is_wanted(user) now and then, at accepted steps and between parts of an
- * analysis, and ends with E005 when it is true. Rows that are complete stay in PATH.partial. NULL: never.
- *
- * It is asked from any thread that does the work, and has to answer at once: by a flag that a signal or another thread
- * sets. It holds for all that is done with this context.
- */
-CT_API void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *user), void *user);
-/** Has something been interrupted? */
-CT_API bool ct_ctx_was_interrupted(const struct ct_ctx *ctx);
 
 /** The version of this header; of the library, as in "0.1.0". */
 #define CT_VERSION_MAJOR 0

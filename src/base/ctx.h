@@ -45,12 +45,12 @@ struct ct_ctx {
     size_t nerror;  // errors among them
     bool no_memory; // the guard was reached: E001, which needs no room of its own
     // of contexts that callers make
-    atomic_bool is_cancelled; // runs that report here end at their next step
+    atomic_bool is_cancelled;     // work that reports here ends: E005
+    const atomic_bool *cancelled; // the same of the context that it is part of; NULL: of none
     void (*tell)(void *user, const struct ct_diagnostic *diagnostic); // NULL: nobody is told
     void *user;
-    size_t ntold; // diagnostics that have been
-    struct ct_interrupt interrupt;
-    bool was_interrupted; // the guard was reached by it: E005, if no diagnostic says more
+    size_t ntold;         // diagnostics that have been
+    bool was_interrupted; // work was cancelled: E005, if no diagnostic says more
     size_t nunseen;       // diagnostics that were not kept
 };
 

@@ -47,9 +47,18 @@ char *ct_ctx_diagnostics(const struct ct_ctx *ctx)
 
 // ---- diagnostics one by one ---------------------------------------------------------------------------------
 
+// Without a diagnostic that says how far it came.
+static bool is_silently_interrupted(const struct ct_ctx *ctx)
+{
+    bool is_silent = ctx->was_interrupted;
+    for (size_t i = 0; i < ctx->ndiagnostic; i++)
+        is_silent &= ctx->diagnostic[i].code != CT_E_INTERRUPTED;
+    return is_silent;
+}
+
 size_t ct_ctx_count(const struct ct_ctx *ctx)
 {
-    size_t n = ctx && ctx->no_memory;
+    size_t n = ctx ? ctx->no_memory + is_silently_interrupted(ctx) : 0;
     for (size_t i = 0; ctx && i < ctx->ndiagnostic; i++)
         n += ctx->diagnostic[i].severity != CT_SEVERITY_NOTE;
     return n;
@@ -107,12 +116,16 @@ bool ct_ctx_diagnostic(struct ct_ctx *ctx, size_t i, struct ct_diagnostic *diagn
     struct question q = {ctx, i, diagnostic};
     if (!ctx || !diagnostic || i >= ct_ctx_count(ctx))
         return false;
-    if (ct_enter(ctx, find_diagnostic, &q))
+    if (ct_enter_uninterrupted(ctx, find_diagnostic, &q))
         return true;
-    *diagnostic = (struct ct_diagnostic){.severity = CT_SEVERITY_ERROR,
-                                         .code = CT_E_MEMORY,
-                                         .message = "out of memory",
-                                         .notes = ""};
+    // behind those that are kept
+    const bool is_interrupt
+        = is_silently_interrupted(ctx) && !(ctx->no_memory && i + 1 == ct_ctx_count(ctx));
+    *diagnostic
+        = (struct ct_diagnostic){.severity = CT_SEVERITY_ERROR,
+                                 .code = is_interrupt ? CT_E_INTERRUPTED : CT_E_MEMORY,
+                                 .message = is_interrupt ? "interrupted" : "out of memory",
+                                 .notes = ""};
     return true;
 }
 
@@ -123,7 +136,7 @@ void ct_ctx_clear(struct ct_ctx *ctx)
     ct_arena_clear(ctx->model);
     ctx->diagnostic = NULL;
     ctx->ndiagnostic = ctx->diagnostic_cap = ctx->nerror = ctx->ntold = 0;
-    ctx->no_memory = false;
+    ctx->no_memory = ctx->was_interrupted = false;
     atomic_store(&ctx->is_cancelled, false);
 }
 
@@ -257,12 +270,14 @@ void ct_options_take(void *to, const void *from, size_t size)
 }
 
 // Diagnostics are told by the outermost call alone, when they have come to the caller's context.
-static bool enter(struct ct_ctx *ctx, struct ct_interrupt interrupt, bool (*work)(void *task),
+static bool enter(struct ct_ctx *ctx, bool is_uninterrupted, bool (*work)(void *task),
                   void *task)
 {
     struct ct_guard g;
     ct_guard_push(&g);
-    g.interrupt = interrupt;
+    g.cancelled[0] = &ctx->is_cancelled;
+    g.cancelled[1] = ctx->cancelled;
+    g.is_uninterrupted = is_uninterrupted;
     if (setjmp(g.env)) {
         if (ct_guard_is_interrupted())
             ctx->was_interrupted = true;
@@ -288,19 +303,12 @@ bool ct_enter(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
 
 bool ct_enter_plainly(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
 {
-    return enter(ctx, ctx->interrupt.is_wanted ? ctx->interrupt : ct_guard_interrupt(), work,
-                 task);
+    return enter(ctx, false, work, task);
 }
 
 bool ct_enter_uninterrupted(struct ct_ctx *ctx, bool (*work)(void *task), void *task)
 {
-    return enter(ctx, (struct ct_interrupt){0}, work, task);
-}
-
-void ct_ctx_set_interrupt(struct ct_ctx *ctx, bool (*is_wanted)(void *user), void *user)
-{
-    if (ctx)
-        ctx->interrupt = (struct ct_interrupt){is_wanted, user};
+    return enter(ctx, true, work, task);
 }
 
 bool ct_ctx_was_interrupted(const struct ct_ctx *ctx)

@@ -9,7 +9,8 @@ static _Thread_local long fail_after;
 void ct_guard_push(struct ct_guard *g)
 {
     g->outer = innermost;
-    g->interrupt = ct_guard_interrupt();
+    g->cancelled[0] = g->cancelled[1] = NULL;
+    g->is_uninterrupted = false;
     innermost = g;
 }
 
@@ -25,15 +26,17 @@ _Noreturn void ct_guard_raise(void)
     longjmp(innermost->env, 1);
 }
 
-struct ct_interrupt ct_guard_interrupt(void)
+static bool is_set(const atomic_bool *flag)
 {
-    return innermost ? innermost->interrupt : (struct ct_interrupt){0};
+    return flag && atomic_load_explicit(flag, memory_order_relaxed);
 }
 
 bool ct_guard_is_interrupted(void)
 {
-    const struct ct_interrupt i = ct_guard_interrupt();
-    return i.is_wanted && i.is_wanted(i.user);
+    for (const struct ct_guard *g = innermost; g && !g->is_uninterrupted; g = g->outer)
+        if (is_set(g->cancelled[0]) || is_set(g->cancelled[1]))
+            return true;
+    return false;
 }
 
 void ct_guard_poll(void)

@@ -3,24 +3,22 @@
 // A public entry point that allocates opens a guard; arenas jump to it when the system refuses
 // memory. Guards nest; each thread has its own. Only arena.c and guard.c know longjmp.
 //
-// A guard also holds the caller's interrupt callback. It is polled when arenas grow and once per
-// iteration of long loops. Writers of results poll at accepted steps and stop without a jump.
+// A guard also knows by which flags its work is cancelled: those of its context, and those of the guards around it. They
+// are polled when arenas grow and once per iteration of long loops. Writers of results poll at accepted steps and stop
+// without a jump.
 #ifndef CT_BASE_GUARD_H
 #define CT_BASE_GUARD_H
 
 #include <setjmp.h>
 
+#include <stdatomic.h>
 #include <stdbool.h>
-
-struct ct_interrupt {
-    bool (*is_wanted)(void *user); // NULL: never
-    void *user;
-};
 
 struct ct_guard {
     jmp_buf env;
     struct ct_guard *outer;
-    struct ct_interrupt interrupt; // that of the outer one until it is replaced
+    const atomic_bool *cancelled[2]; // set to cancel the work; NULL: there is none
+    bool is_uninterrupted;           // nothing cancels it
 };
 
 void ct_guard_push(struct ct_guard *g);
@@ -28,9 +26,7 @@ void ct_guard_pop(struct ct_guard *g);
 /// Jump to the innermost guard; aborts if there is none.
 _Noreturn void ct_guard_raise(void);
 
-/// Whom the innermost guard asks, for guards of other threads.
-struct ct_interrupt ct_guard_interrupt(void);
-/// Is an interrupt wanted?
+/// Is the work to be cancelled?
 bool ct_guard_is_interrupted(void);
 /// If it is, jump to the innermost guard.
 void ct_guard_poll(void);

@@ -185,8 +185,10 @@ int cli_check_suffixes(struct ct_ctx *ctx, const struct cli_command *command,
 /// From now on SIGINT and SIGTERM are requests: contexts are told, and within a second the process ends in any case.
 /// Before other threads are made.
 void cli_interrupt_begin(void);
-/// Has a signal come? For ct_ctx_set_interrupt.
-bool cli_is_interrupted(void *unused);
+/// Has a signal come?
+bool cli_is_interrupted(void);
+/// The context that a signal cancels from now on, or has cancelled already; NULL: none.
+void cli_interrupt_cancels(struct ct_ctx *ctx);
 /// What is to be said if work does not end by itself; NULL: nothing.
 void cli_interrupt_explain(const char *what_stays);
 /// The exit status: 128 and the signal where one has come and the work has failed.

@@ -35,7 +35,7 @@ static enum end copy(int in, FILE *out, size_t *n)
     char text[4096];
     for (*n = 0;;) {
         struct pollfd p = {.fd = in, .events = POLLIN};
-        if (cli_is_interrupted(NULL))
+        if (cli_is_interrupted())
             return INTERRUPTED;
         if (time(NULL) - start > MOST_SECONDS)
             return TOO_LONG;
@@ -53,8 +53,7 @@ static bool dot_failed(enum end end, int status, size_t n)
 {
     const bool is_missing
         = end == ENDED && status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127;
-    if (cli_is_interrupted(
-            NULL)) // dot, too, where the signal came from a terminal; said at the end
+    if (cli_is_interrupted()) // dot, too, where the signal came from a terminal; said at the end
         return true;
     if (end == TOO_LONG)
         fprintf(stderr,

@@ -1,6 +1,6 @@
 // Ctrl-C and SIGTERM: the work is asked to end, and keeps what it has.
 //
-//     signal --> thread: a flag --> contexts ask for it at their steps --> files are closed, what is left is said
+//     signal --> thread: cancels the context, which ends at its next step --> files are closed, what is left is said
 //                  `-- patience is over (a long factorization, say) --> the process ends
 //
 // Both signals are blocked in all threads but this one, which waits for them: there is no handler. A signal that was
@@ -18,6 +18,8 @@
 static atomic_int signal_seen;
 static _Atomic(const char *) explanation;
 static sigset_t waited_for, outside;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // of `cancelled`
+static struct ct_ctx *cancelled;                         // by a signal
 
 static void write_text(const char *text)
 {
@@ -46,6 +48,9 @@ static void *wait_for_signal(void *unused)
     if (sigwait(&waited_for, &number) != 0)
         return NULL;
     atomic_store(&signal_seen, number);
+    pthread_mutex_lock(&lock);
+    ct_ctx_cancel(cancelled);
+    pthread_mutex_unlock(&lock);
     struct timespec left = patience;
     while (nanosleep(&left, &left) != 0 && errno == EINTR)
         ;
@@ -78,9 +83,17 @@ void cli_interrupt_end(void)
     pthread_sigmask(SIG_SETMASK, &outside, NULL);
 }
 
-bool cli_is_interrupted(void *unused)
+void cli_interrupt_cancels(struct ct_ctx *ctx)
 {
-    (void)unused;
+    pthread_mutex_lock(&lock);
+    cancelled = ctx;
+    if (cli_is_interrupted())
+        ct_ctx_cancel(ctx);
+    pthread_mutex_unlock(&lock);
+}
+
+bool cli_is_interrupted(void)
+{
     return atomic_load_explicit(&signal_seen, memory_order_relaxed) != 0;
 }
 

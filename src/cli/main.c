@@ -13,12 +13,13 @@ static int run(const struct cli_command *command, const struct cli_args *args)
         fputs("cotree: error: out of memory\n", stderr);
         return CLI_FAILED;
     }
-    ct_ctx_set_interrupt(ctx, cli_is_interrupted, NULL);
+    cli_interrupt_cancels(ctx);
     int status = cli_check_suffixes(ctx, command, args);
     if (status == CLI_DONE)
         status = command->run(ctx, args);
     const int fault = (int)ct_ctx_fault(ctx);
     ct_ctx_print_diagnostics(ctx, stderr);
+    cli_interrupt_cancels(NULL);
     ct_ctx_destroy(ctx);
     return fault ? fault : status;
 }

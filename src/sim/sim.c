@@ -347,8 +347,6 @@ static bool at_progress(void *user, double t, double end)
         ct_progress_update(sim->progress, end > 0 ? t / end : 1);
     if (sim->results->progress && !sim->results->progress(sim->results->user, t, end))
         return false;
-    if (atomic_load_explicit(&sim->caller->is_cancelled, memory_order_relaxed))
-        return false;
     if (ct_guard_is_interrupted())
         sim->is_interrupted = true;
     // a look at the clock costs as much as a step of a small system
@@ -504,9 +502,7 @@ struct work {
 static bool run_and_report(void *task)
 {
     struct work *w = task;
-    w->sim->caller = w->ctx;
     const bool ok = run(w->sim);
-    w->sim->caller = NULL;
     ct_ctx_hand_over(w->ctx, &w->sim->own);
     return ok;
 }

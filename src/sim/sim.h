@@ -58,7 +58,6 @@ struct ct_sim {
     size_t nkept;
     struct ct_estimate estimate; // what it said
     const struct ct_sim_results *results;
-    struct ct_ctx *caller;             // of the run: it may be cancelled
     struct ct_result_file *file;       // result_file.c; NULL: none is written
     long nwritten;                     // rows of it
     struct ct_progress bar, *progress; // NULL: none is shown

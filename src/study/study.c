@@ -237,7 +237,6 @@ static bool run_all(struct ct_study *s)
         ct_progress_init(&s->progress, r->bar, "sweep");
     s->sink.flushed = start;
     ct_study_write_rows(s); // past those taken over
-    s->interrupt = ct_guard_interrupt();
     ct_study_run_members(s);
     ct_progress_finish(&s->progress);
     if (ct_guard_is_interrupted() && s->written < s->plan.nmember)

@@ -52,8 +52,7 @@ struct ct_study {
     const char *method, *backend;
     double tolerance;
     const struct ct_study_results *results;
-    struct ct_ctx *caller;         // of the run: it may be cancelled
-    struct ct_interrupt interrupt; // of the caller, for all threads
+    const struct ct_ctx *caller; // of the run: it may be cancelled
     struct ct_result_sink {
         enum ct_suffix suffix;
         bool is_by_row, is_open, has_failed;

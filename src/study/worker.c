@@ -30,7 +30,7 @@ static long take_member(struct ct_study *s)
     while (s->next < s->plan.nmember && s->row[s->next].state != CT_ROW_PENDING)
         s->next++;
     if (s->next < s->plan.nmember && !s->is_stopped && !s->no_memory
-        && !atomic_load(&s->caller->is_cancelled) && !ct_guard_is_interrupted())
+        && !ct_guard_is_interrupted())
         member = s->next++;
     pthread_mutex_unlock(&s->rows);
     return member;
@@ -293,7 +293,7 @@ static void run_worker(struct ct_study *s, bool is_first)
     struct worker w = {.s = s, .system = is_first ? s->system : NULL};
     struct ct_ctx *ctx = ct_ctx_create();
     if (ctx)
-        ctx->interrupt = s->interrupt;
+        ctx->cancelled = &s->caller->is_cancelled;
     if (!ctx
         || (!ct_enter(ctx, work, &w) && !ctx->was_interrupted && (is_first || ctx->no_memory)))
         lose_memory(s);

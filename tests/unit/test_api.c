@@ -10,6 +10,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -200,6 +202,63 @@ static void a_study_can_be_stopped(void **state)
     ct_ctx_destroy(ctx);
 }
 
+struct sums {
+    double value;
+    long n;
+};
+
+static bool add_row(void *user, long run, const double *varied, const double *value,
+                    const char *message)
+{
+    struct sums *s = user;
+    assert_null(message);
+    s->value += (double)run * varied[0] * value[0];
+    s->n++;
+    return true;
+}
+
+static struct ct_study *two_threads(struct ct_ctx *ctx)
+{
+    static const char *const vary[] = {"l=1:2:24"};
+    return ct_study_create(ctx, path, NULL,
+                           &(struct ct_study_options){.vary = vary, .nvary = 1, .threads = 2});
+}
+
+static struct sums run_two_threads(struct ct_ctx *ctx, struct ct_study *study)
+{
+    struct sums s = {0};
+    assert_non_null(study);
+    assert_true(
+        ct_study_run(ctx, study, &(struct ct_study_results){.row = add_row, .user = &s}));
+    assert_int_equal(s.n, 24);
+    return s;
+}
+
+// As Python's multiprocessing does: of one that has run, one that was made before, one that the child makes.
+static void studies_run_in_a_child_process(void **state)
+{
+    (void)state;
+    struct ct_ctx *ctx = ct_ctx_create();
+    struct ct_study *first = two_threads(ctx), *made = two_threads(ctx);
+    const double want = run_two_threads(ctx, first).value;
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        alarm(60); // what hangs ends
+        struct ct_study *own = two_threads(ctx);
+        const bool ok = run_two_threads(ctx, made).value == want
+                     && run_two_threads(ctx, own).value == want;
+        _exit(ok ? 0 : 1);
+    }
+    int status = -1;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    assert_true(run_two_threads(ctx, made).value == want); // the parent's is its own
+    ct_study_destroy(made);
+    ct_study_destroy(first);
+    ct_ctx_destroy(ctx);
+}
+
 // Everything there is, with the n-th allocation failing; true if all went well.
 static bool use_all(const char *model, long n)
 {
@@ -272,6 +331,7 @@ int main(void)
         cmocka_unit_test(wrong_options_are_refused),
         cmocka_unit_test(members_of_a_study_come_in_order),
         cmocka_unit_test(a_study_can_be_stopped),
+        cmocka_unit_test(studies_run_in_a_child_process),
         cmocka_unit_test(memory_may_run_out_anywhere),
         cmocka_unit_test(memory_may_run_out_in_a_study),
     };

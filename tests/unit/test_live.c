@@ -412,10 +412,20 @@ static void runs_are_cancelled_at_a_step(void **state)
     ct_sim_destroy(sim);
     sim = ct_sim_create(ctx, sys, NULL);
     ct_ctx_cancel(ctx);
-    assert_true(ct_sim_run(ctx, sim, NULL));
+    struct ct_diagnostic d;
+    assert_false(ct_sim_run(ctx, sim, NULL));
     assert_true(ct_sim_time(sim) < 1);
+    assert_true(ct_ctx_was_interrupted(ctx));
+    assert_int_equal(ct_ctx_count(ctx), 1);
+    assert_true(ct_ctx_diagnostic(ctx, 0, &d));
+    assert_int_equal(d.code, 5);
+    assert_null(ct_modes_create(ctx, sys, NULL)); // nothing begins before it is cleared
     ct_ctx_clear(ctx);
+    assert_false(ct_ctx_was_interrupted(ctx));
     ct_sim_destroy(sim);
+    struct ct_modes *modes = ct_modes_create(ctx, sys, NULL);
+    assert_non_null(modes);
+    ct_modes_destroy(modes);
 }
 
 // ---- texts ----------------------------------------------------------------------------------------------------
