@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-// Terms of a sum, about as many as a second multiplies out; longer ones are not read term by term.
-enum { MOST_TERMS = 20000 };
+// Terms of a sum, as many as collecting expands (collect.c): formulas that are printed term by term have fewer.
+enum { MOST_TERMS = 2000 };
 // A multiple of an angle beyond this stays as it is: cos(8 a) has 8 terms.
 enum { MOST_TURNS = 8 };
 

@@ -348,9 +348,12 @@ static void put_known(struct writer *w, const struct ct_reduced *r)
 // Terms of the equations, and what they come from.
 static void put_terms(struct writer *w, const struct ct_reduced *r)
 {
-    static const char *const kind[] = {"motion", "position", "acceleration", "effort"};
+    static const char *const kind[]
+        = {"motion", "position", "acceleration", "effort", "output"};
     struct ct_provenance p;
     ct_provenance_derive(w->d, r, &p);
+    const char **name = CT_NEWN(w->d->a, const char *, p.norigin + 1);
+    double *line = CT_NEWN(w->d->a, double, p.norigin + 1);
     ct_json_array(&w->j, "terms");
     for (size_t i = 0; i < p.nterm; i++) {
         const struct ct_equation_term *t = &p.term[i];
@@ -359,14 +362,12 @@ static void put_terms(struct writer *w, const struct ct_reduced *r)
         ct_json_text(&w->j, "kind", kind[t->kind]);
         ct_json_text(&w->j, "side", t->is_right ? "right" : "left");
         ct_json_text(&w->j, "expression", text(w, t->e));
-        ct_json_array(&w->j, "components");
-        for (size_t k = 0; k < t->norigin; k++)
-            ct_json_text(&w->j, NULL, p.origin[t->origin[k]].name);
-        ct_json_end(&w->j);
-        ct_json_array(&w->j, "lines");
-        for (size_t k = 0; k < t->norigin; k++)
-            ct_json_integer(&w->j, NULL, p.origin[t->origin[k]].line);
-        ct_json_end(&w->j);
+        for (size_t k = 0; k < t->norigin; k++) {
+            name[k] = p.origin[t->origin[k]].name;
+            line[k] = p.origin[t->origin[k]].line;
+        }
+        ct_json_texts(&w->j, "components", name, t->norigin);
+        ct_json_numbers(&w->j, "lines", line, t->norigin);
         ct_json_end(&w->j);
     }
     ct_json_end(&w->j);

@@ -152,3 +152,15 @@ void ct_json_numbers(struct ct_json *j, const char *key, const double *v, size_t
     }
     fputc(']', j->out);
 }
+
+void ct_json_texts(struct ct_json *j, const char *key, const char *const *text, size_t n)
+{
+    start_value(j, key);
+    fputc('[', j->out);
+    for (size_t i = 0; i < n; i++) {
+        if (i)
+            fputs(", ", j->out);
+        quote(j->out, text[i]);
+    }
+    fputc(']', j->out);
+}

@@ -43,5 +43,7 @@ void ct_json_bool(struct ct_json *j, const char *key, bool v);
 void ct_json_text(struct ct_json *j, const char *key, const char *text);
 /// An array of n numbers on one line.
 void ct_json_numbers(struct ct_json *j, const char *key, const double *v, size_t n);
+/// The same of n texts.
+void ct_json_texts(struct ct_json *j, const char *key, const char *const *text, size_t n);
 
 #endif

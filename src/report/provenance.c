@@ -9,6 +9,7 @@
 #include "expr/normal_form.h"
 #include "formulate/build.h"
 #include "formulate/dynamics/dynamics.h"
+#include "formulate/outputs/output.h"
 #include "formulate/stage.h"
 
 #include <math.h>
@@ -135,14 +136,18 @@ static struct ct_build *derive_marked(struct finder *f)
         return NULL;
     b->T = like->T;
     b->R = like->R;
-
     if (!ct_build_derive(b, true))
         return NULL;
     ct_dynamics_derive(b);
+    if (f->r->output)
+        ct_outputs_derive(b);
     const struct ct_equations *e = b->eqs, *want = f->d->e;
-    const bool is_same = e->nu == want->nu && e->nq == want->nq && e->nrow == want->nrow
-                      && e->ndriver == want->ndriver && e->nswitch <= want->nswitch
-                      && e->nmemory <= want->nmemory; // those of outputs follow
+    bool is_same = e->nu == want->nu && e->nq == want->nq && e->nrow == want->nrow
+                && e->ndriver == want->ndriver && e->nswitch <= want->nswitch
+                && e->nmemory <= want->nmemory && e->nresult <= want->nresult;
+    for (size_t i = 0; i < e->nmemory && is_same; i++)
+        is_same = e->memory[i].kind == want->memory[i].kind
+               && e->memory[i].joint == want->memory[i].joint;
     return is_same && !quiet->nerror ? b : NULL;
 }
 
@@ -166,12 +171,26 @@ static size_t list_symbols(const struct ct_equations *e, const struct ct_equatio
     return n;
 }
 
-static ct_ex entry_at(const struct ct_entry *list, size_t n, const struct ct_entry *at)
+// out: the values of `list` (n) where `want` (nwant) has entries. Both are in one order.
+static void take_entries(ct_ex *out, const struct ct_entry *want, size_t nwant,
+                         const struct ct_entry *list, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        if (list[i].row == at->row && list[i].column == at->column)
-            return list[i].value;
-    return CT_EX_ZERO;
+    for (size_t i = 0, next = 0; i < nwant; i++)
+        for (size_t k = 0; k < n; k++) {
+            const struct ct_entry *at = &list[(next + k) % n];
+            if (at->row != want[i].row || at->column != want[i].column)
+                continue;
+            out[i] = at->value;
+            next = (next + k + 1) % n;
+            break;
+        }
+}
+
+// Expressions of the equations, which stand in one array: M, J, Q, phi, gam, effort, output.
+static size_t count_expressions(const struct finder *f)
+{
+    const struct ct_equations *e = f->d->e;
+    return e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver + (f->r->output ? e->nresult : 0);
 }
 
 // The equations of the marked build as those that are printed are listed.
@@ -179,7 +198,7 @@ static void take_marked(struct finder *f, struct ct_build *b)
 {
     const struct ct_equations *e = f->d->e, *own = b->eqs;
     struct ct_reduced *m = &f->m;
-    const size_t n = e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver;
+    const size_t n = count_expressions(f);
     ct_ex *all = CT_NEWN(f->a, ct_ex, n + 1);
     m->M = all;
     m->J = m->M + e->nM;
@@ -187,10 +206,9 @@ static void take_marked(struct finder *f, struct ct_build *b)
     m->phi = m->Q + e->nu;
     m->gam = m->phi + e->nrow;
     m->effort = m->gam + e->nrow;
-    for (size_t i = 0; i < e->nM; i++)
-        m->M[i] = entry_at(own->M, own->nM, &e->M[i]);
-    for (size_t i = 0; i < e->nJ; i++)
-        m->J[i] = entry_at(own->J, own->nJ, &e->J[i]);
+    m->output = m->effort + e->ndriver;
+    take_entries(m->M, e->M, e->nM, own->M, own->nM);
+    take_entries(m->J, e->J, e->nJ, own->J, own->nJ);
     for (size_t i = 0; i < e->nu; i++)
         m->Q[i] = own->Q[i];
     for (size_t i = 0; i < e->nrow; i++) {
@@ -200,6 +218,8 @@ static void take_marked(struct finder *f, struct ct_build *b)
     for (size_t i = 0; i < b->ncoordinate; i++)
         if (b->coordinate[i].driver >= 0)
             m->effort[b->coordinate[i].driver] = ct_driver_effort(b, (int)i);
+    for (size_t i = 0; f->r->output && i < own->nresult; i++)
+        m->output[i] = own->result[i].value;
     const size_t most = e->nq + 2 * e->nu + e->nrow + e->nswitch + e->nmemory;
     ct_ex *from = CT_NEWN(f->a, ct_ex, most + 1), *to = CT_NEWN(f->a, ct_ex, most + 1);
     list_symbols(own, own, from);
@@ -358,8 +378,7 @@ static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struc
 // Nodes of the marked equations and of what is named, children before parents.
 static size_t list_nodes(struct finder *f, uint32_t **id)
 {
-    const struct ct_equations *e = f->d->e;
-    const size_t nroot = e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver;
+    const size_t nroot = count_expressions(f);
     const struct ct_definitions *list = &f->r->definitions;
     ct_ex *root = CT_NEWN(f->a, ct_ex, nroot + list->n + 1);
     memcpy(root, f->m.M, nroot * sizeof *root); // one array (take_marked)
@@ -482,7 +501,7 @@ static uint32_t marks_of_coefficient(const struct finder *f, const struct side *
             return side->set;
         factor = s;
     }
-    if (!factor || side->kind == CT_EQUATION_EFFORT)
+    if (!factor || side->kind == CT_EQUATION_EFFORT || side->kind == CT_EQUATION_OUTPUT)
         return side->set;
     const int i = (int)side->equation, k = (int)factor->index;
     if (side->kind == CT_EQUATION_MOTION && factor->kind == CT_SYM_A) {
@@ -566,6 +585,8 @@ static ct_ex expression_of(struct ct_equations *e, const struct ct_reduced *r,
         return is_right ? ct_ex_neg(e->x, r->gam[i]) : ct_reduced_row_left(e, r, i);
     case CT_EQUATION_EFFORT:
         return r->effort[i];
+    case CT_EQUATION_OUTPUT:
+        return r->output[i];
     }
     return CT_EX_ZERO;
 }
@@ -599,9 +620,10 @@ static size_t list_sides(struct finder *f, struct side **out)
     } kinds[] = {{CT_EQUATION_MOTION, true},
                  {CT_EQUATION_POSITION, false},
                  {CT_EQUATION_ACCELERATION, true},
-                 {CT_EQUATION_EFFORT, false}};
+                 {CT_EQUATION_EFFORT, false},
+                 {CT_EQUATION_OUTPUT, false}};
     const struct ct_equations *e = f->d->e;
-    const size_t count[] = {e->nu, e->nrow, e->nrow, e->ndriver};
+    const size_t count[] = {e->nu, e->nrow, e->nrow, e->ndriver, f->r->output ? e->nresult : 0};
     size_t n = 0, cap = 0;
     *out = NULL;
     for (size_t k = 0; k < COUNT(kinds); k++)
@@ -759,6 +781,8 @@ static uint32_t set_of_side(struct finder *f, const struct side *s)
         return s->is_right ? f->set[f->m.gam[i].id] : set;
     case CT_EQUATION_EFFORT:
         return f->set[f->m.effort[i].id];
+    case CT_EQUATION_OUTPUT:
+        return f->set[f->m.output[i].id];
     }
     return set;
 }
@@ -766,9 +790,8 @@ static uint32_t set_of_side(struct finder *f, const struct side *s)
 // The marked equations with labels, as they are printed.
 static struct ct_reduced with_labels(struct finder *f)
 {
-    const struct ct_equations *e = f->d->e;
     struct ct_reduced r = f->m;
-    const size_t n = e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver;
+    const size_t n = count_expressions(f);
     ct_ex *all = CT_NEWN(f->a, ct_ex, n + 1);
     for (size_t i = 0; i < n; i++)
         all[i] = f->labelled[f->m.M[i].id]; // one array (take_marked)
@@ -778,6 +801,7 @@ static struct ct_reduced with_labels(struct finder *f)
     r.phi = all + (f->m.phi - f->m.M);
     r.gam = all + (f->m.gam - f->m.M);
     r.effort = all + (f->m.effort - f->m.M);
+    r.output = all + (f->m.output - f->m.M);
     return r;
 }
 
@@ -801,12 +825,30 @@ static void find_marks(struct finder *f, struct side *side, size_t nside, uint32
     }
 }
 
+// Outputs that are reactions or accelerations, collected as the equations are; others have no terms to list. NULL: none.
+static ct_ex *list_outputs(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    const unsigned wanted = 1u << CT_SYM_A | 1u << CT_SYM_LAM;
+    struct ct_equations *e = d->e;
+    ct_ex *output = CT_NEWN(d->a, ct_ex, e->nresult + 1);
+    bool any = false;
+    for (size_t i = 0; i < e->nresult && r->is_collected; i++)
+        if (ct_ex_kinds(e->x, e->result[i].value) & wanted
+            && ct_reduced_size(e->x, e->result[i].value, longest) < longest) {
+            output[i] = ct_reduced_collect_force(e, d->a, e->result[i].value);
+            any = true;
+        }
+    return any ? output : NULL;
+}
+
 void ct_provenance_derive(struct ct_derivation *d, const struct ct_reduced *r,
                           struct ct_provenance *p)
 {
     *p = (struct ct_provenance){0};
     struct ct_arena *work = ct_arena_create_under(d->a);
-    struct finder f = {.d = d, .r = r, .out = p, .a = work};
+    struct ct_reduced all = *r;
+    struct finder f = {.d = d, .r = &all, .out = p, .a = work};
+    all.output = list_outputs(d, r);
     struct side *side;
     const size_t nside = list_sides(&f, &side);
     for (size_t i = 0; i < nside; i++)
@@ -839,6 +881,8 @@ const char *ct_provenance_equation(const struct ct_equations *e,
         return e->u[t->equation].name;
     case CT_EQUATION_EFFORT:
         return e->driver[t->equation].name;
+    case CT_EQUATION_OUTPUT:
+        return e->result[t->equation].name;
     default:
         return e->row[t->equation].name;
     }

@@ -25,12 +25,13 @@ enum ct_equation_kind {
     CT_EQUATION_POSITION,     // Phi = 0, one a row
     CT_EQUATION_ACCELERATION, // J u' = -gam, one a row
     CT_EQUATION_EFFORT,       // of drivers: left side = 0
+    CT_EQUATION_OUTPUT, // an output that is a reaction or an acceleration, in terms of u' and lam
 };
 
 /// A top-level term of one side of an equation, with its sign.
 struct ct_equation_term {
     enum ct_equation_kind kind;
-    size_t equation; // speed, row or driver, as the kind says
+    size_t equation; // speed, row, driver or output, as the kind says
     bool is_right;
     ct_ex e;                // as it is printed: may use definitions
     const char *text;       // the same, as it stands behind the terms before it

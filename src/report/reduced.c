@@ -94,7 +94,7 @@ static ct_ex keep_apart(struct ct_equations *e, ct_ex v)
 
 // What is there at rest and what the speeds add, each collected: gravity stays apart from the
 // centrifugal terms, even if both share a factor.
-static ct_ex collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
+ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
 {
     struct ct_exs *x = e->x;
     const ct_ex whole = keep_apart(e, collect(e, v));
@@ -160,13 +160,13 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
     for (size_t i = 0; i < e->nJ; i++)
         r->J[i] = r->is_collected ? collect(e, e->J[i].value) : e->J[i].value;
     for (size_t i = 0; i < e->nu; i++)
-        r->Q[i] = r->is_collected ? collect_force(e, a, e->Q[i]) : e->Q[i];
+        r->Q[i] = r->is_collected ? ct_reduced_collect_force(e, a, e->Q[i]) : e->Q[i];
     for (size_t i = 0; i < e->nrow; i++) {
         r->phi[i] = r->is_collected ? collect(e, e->row[i].phi) : e->row[i].phi;
         r->gam[i] = r->is_collected ? collect(e, e->row[i].gam) : e->row[i].gam;
     }
     for (size_t i = 0; i < e->ndriver && r->is_collected; i++)
-        r->effort[i] = collect_force(e, a, r->effort[i]);
+        r->effort[i] = ct_reduced_collect_force(e, a, r->effort[i]);
     for (size_t i = 0; i < e->nq; i++)
         r->rate[i] = collect(e, e->q[i].rate);
 }

@@ -26,6 +26,8 @@ struct ct_reduced {
     ct_ex *phi, *gam; // nrow
     ct_ex *effort;    // ndriver: of the drivers of branches, in terms of u' and lam
     ct_ex *rate;      // nq: q' in terms of u
+    ct_ex *
+        output; // nresult: outputs whose terms are listed, 0 for others (provenance.h); else NULL
     bool is_collected;
     struct ct_definitions definitions; // none if everything is short
     double size; // of the whole print in characters, about; known once there are definitions
@@ -34,6 +36,9 @@ struct ct_reduced {
 /// Collect if allowed and the system is small enough. No definitions yet.
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r);
+
+/// A force collected, as Q is: what is there at rest stays apart from what the speeds add.
+ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v);
 
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);

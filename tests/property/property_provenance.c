@@ -255,11 +255,76 @@ static void every_body_is_in_the_equations(void **state)
     assert_true(holds_for_shipped(names_all_bodies, 10));
 }
 
+// What the terms of a side sum to; scale: the largest of them.
+static double side_of(const struct ct_provenance *p, const double *value,
+                      enum ct_equation_kind kind, size_t equation, bool is_right, double *scale)
+{
+    double sum = 0;
+    for (size_t i = 0; i < p->nterm; i++) {
+        const struct ct_equation_term *t = &p->term[i];
+        if (t->kind != kind || t->equation != equation || t->is_right != is_right)
+            continue;
+        sum += value[i];
+        *scale = fmax(*scale, fabs(value[i]));
+    }
+    return sum;
+}
+
+static size_t noutput; // terms of outputs that were compared
+
+// Accelerations and multipliers that the equations have there make both sides equal, loops are closed there, and outputs
+// are those of the run.
+static bool sides_are_equal(struct system *s)
+{
+    struct variant v;
+    struct ct_initial_state at;
+    struct ct_derivation d;
+    struct ct_reduced r;
+    struct ct_provenance p;
+    bool ok = true;
+    system_output_reactions(s);
+    variant_open(s, &by_choice, &v);
+    ct_derivation_init(&d, v.arena, &v.e, &s->model, CT_LOOK_TEXT);
+    ct_derivation_reduce(&d, &r);
+    ct_provenance_derive(&d, &r, &p);
+    assert_true(system_random_state(s, 0.2, 0.3, &at));
+    variant_set(&v, &at, 0.2);
+    assert_true(variant_solve(&v));
+    double *symbol = CT_NEWN(v.arena, double, v.e.x->nsym + 1);
+    double *value = CT_NEWN(v.arena, double, p.nterm + 1);
+    ct_evaluator_values(v.m, v.e.x, symbol);
+    ct_ex_values(v.e.x, v.arena, ct_provenance_values(v.arena, &p), p.nterm, symbol, value);
+    for (size_t i = 0; i < p.nterm; i++) {
+        const struct ct_equation_term *t = &p.term[i];
+        double scale = 0;
+        const double left = side_of(&p, value, t->kind, t->equation, false, &scale);
+        const double right = side_of(&p, value, t->kind, t->equation, true, &scale);
+        const char *name = ct_provenance_equation(&v.e, t);
+        noutput += t->kind == CT_EQUATION_OUTPUT;
+        if (t->kind == CT_EQUATION_OUTPUT)
+            ok &= agree(s->name, name, left, v.result[t->equation], scale, 1e-9);
+        else if (t->kind != CT_EQUATION_EFFORT) // whose value is the effort
+            ok &= agree(s->name, name, left, right, fmax(scale, 1), 1e-8);
+    }
+    variant_close(&v);
+    return ok;
+}
+
+static void terms_of_a_side_sum_to_it(void **state)
+{
+    (void)state;
+    chance_start();
+    assert_true(holds_for_mechanisms(sides_are_equal, 0));
+    assert_true(holds_for_shipped(sides_are_equal, 6));
+    assert_true(noutput > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(terms_name_the_components_that_their_parameters_belong_to),
         cmocka_unit_test(every_body_is_in_the_equations),
+        cmocka_unit_test(terms_of_a_side_sum_to_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
