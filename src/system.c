@@ -104,11 +104,11 @@ static bool read_model(struct ct_system *s, const struct source *from,
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
     for (size_t i = 0; i < o->nset; i++)
         set[i].text = o->set[i];
+    s->text = from->text ? ct_arena_strndup(s->own.model, from->text, from->n) : NULL;
     const bool ok
-        = (from->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name),
-                                       ct_arena_strndup(s->own.model, from->text, from->n),
-                                       from->n, set, o->nset, &s->model)
-                      : ct_model_read(&s->own, from->name, set, o->nset, &s->model))
+        = (s->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name), s->text,
+                                    from->n, set, o->nset, &s->model)
+                   : ct_model_read(&s->own, from->name, set, o->nset, &s->model))
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
     s->read = ct_monotonic_time() - start;

@@ -679,6 +679,28 @@ struct ct_draw_options {
 CT_API bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
                            const struct ct_draw_options *options);
 
+/** Zero: the run that the model asks for. */
+struct ct_report_options {
+    size_t size; /* 0, or sizeof (struct ct_report_options) */
+    struct ct_sim_options run;
+    const char *path; /* FILE.html; NULL: standard output */
+    FILE *progress;   /* a bar is shown there if it is a terminal */
+    /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
+    const char *const *command;
+    size_t ncommand;
+};
+
+/**
+ * A system, its equations and its motion as one HTML file that needs nothing else. docs/report.md says what is on it.
+ *
+ * The run is always verified. Without an end time the page shows the start. The same system and options give the same
+ * bytes.
+ *
+ * Errors: E002; E530 where the library was built without the page; those of assembly and of runs.
+ */
+CT_API bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,
+                             const struct ct_report_options *options);
+
 struct ct_plot;
 
 /**

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_equations,  &cli_graph,       &cli_draw,   &cli_accuracy,
+    = {&cli_simulate, &cli_report, &cli_equations,  &cli_graph,       &cli_draw,   &cli_accuracy,
        &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,
        &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export, &cli_components,
        &cli_methods,  &cli_schema,     &cli_completion,  NULL};
@@ -35,13 +35,13 @@ const struct cli_option cli_options[] = {
      "auto dop853 dopri5 rk4 radau5 generalized-alpha generalized-alpha-index3 hht newmark"},
     {"step", 0, "H", CLI_NUMBER, FIELD(step), CLI_STEPS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES | CLI_DRAW, true,
+    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES | CLI_DRAW | CLI_REPORT, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES | CLI_DRAW, true,
+    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES | CLI_DRAW | CLI_REPORT, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_STEPS, true,
      "what evaluates the equations: auto, native or tape", "auto native tape"},
-    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK,
+    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK,
      false,
      "what finds the accelerations of closed loops: auto,\n"
      "unrolled, one-system, sparse or dense",
@@ -73,7 +73,7 @@ const struct cli_option cli_options[] = {
      "at most so many; all cores"},
     {"lanes", 0, "N", CLI_COUNT_OF, FIELD(lanes), CLI_SWEEP | CLI_EXPORT, false,
      "1, 4 or 8 side by side: members in a core, inputs of programs"},
-    {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE, false,
+    {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE | CLI_REPORT, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", CLI_NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
@@ -226,6 +226,7 @@ struct parser {
     int argc, at;
     char **argv;
     const struct cli_command *command;
+    const struct cli_option *option; // the last one
     struct cli_args *args;
 };
 
@@ -270,6 +271,7 @@ static bool unknown_option(const struct parser *p, const char *name)
 
 static bool give(struct parser *p, const struct cli_option *o, const char *value)
 {
+    p->option = o;
     if (o->kind == CLI_FLAG) {
         if (value)
             return cli_complain(p->command, "--%s takes no value", o->name), false;
@@ -366,11 +368,25 @@ static bool parse_plain(struct parser *p, const char *text)
     return true;
 }
 
+// The words of an option, from number `first` on, as they were written: of all that decide about results.
+static void keep_option(struct parser *p, int first)
+{
+    static const char *const other[] = {"output", "summary", "quiet", "help", "version"};
+    struct cli_list *list = &p->args->given;
+    for (size_t i = 0; i < CLI_COUNT(other); i++)
+        if (strcmp(p->option->name, other[i]) == 0)
+            return;
+    for (int i = first; i <= p->at; i++)
+        list->text[list->n++] = p->argv[i];
+}
+
 static bool parse_all(struct parser *p)
 {
     bool options_end = false;
     for (p->at = 1; p->at < p->argc; p->at++) {
         const char *text = p->argv[p->at];
+        const int first = p->at;
+        p->option = NULL;
         bool ok;
         if (options_end || text[0] != '-' || !text[1])
             ok = parse_plain(p, text);
@@ -380,6 +396,8 @@ static bool parse_all(struct parser *p)
             ok = text[1] == '-' ? parse_long(p, text + 2) : parse_short(p, text);
         if (!ok)
             return false;
+        if (p->option)
+            keep_option(p, first);
     }
     return true;
 }
@@ -440,9 +458,10 @@ static bool check_files(const struct parser *p)
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
     *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
-                              .vary.text = calloc((size_t)argc + 1, sizeof(char *))};
+                              .vary.text = calloc((size_t)argc + 1, sizeof(char *)),
+                              .given.text = calloc((size_t)argc + 1, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    const bool has_room = args->set.text && args->vary.text;
+    const bool has_room = args->set.text && args->vary.text && args->given.text;
     bool ok = has_room || (fputs("cotree: error: out of memory [E001]\n", stderr), false);
     args->no_memory = !has_room;
     ok = ok && parse_all(&p);
@@ -466,6 +485,7 @@ void cli_args_finish(struct cli_args *args)
 {
     free(args->set.text);
     free(args->vary.text);
+    free(args->given.text);
 }
 
 // ---- help -----------------------------------------------------------------------------------------------------

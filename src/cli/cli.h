@@ -23,7 +23,8 @@ struct cli_args {
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
-    } set, vary;
+    } set, vary,
+        given; // options as they were written, but for those of files that are written and of what is shown
     double tolerance, step, until, error, time;
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
@@ -52,16 +53,17 @@ enum cli_use {
     CLI_SWEEP = 32768,
     CLI_COMPLETION = 65536,
     CLI_DRAW = 131072,
+    CLI_REPORT = 262144,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
-    CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
+    CLI_STEPS = CLI_RUNS | CLI_DRAW | CLI_REPORT, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
     CLI_MODELS
-    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
+    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -74,7 +76,7 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_draw, cli_accuracy,
+extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw, cli_accuracy,
     cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
     cli_buckling, cli_sweep, cli_export, cli_components, cli_methods, cli_schema,
     cli_completion;

@@ -2,6 +2,7 @@
 #ifndef CT_REPORT_DERIVATION_H
 #define CT_REPORT_DERIVATION_H
 
+#include "graph/graph.h"
 #include "report/page.h"
 #include "report/reduced.h"
 
@@ -67,6 +68,13 @@ struct ct_substituted {
     struct ct_definitions definitions;
 };
 void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
+
+/// F(own) + F(...) - ..., zero, for row i of a cutset matrix (rows: its transpose), that of the branch `own`.
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows, int i,
+                                 int own, const char *letter);
+/// What d or S of a chord is, from the branches on the way from its tail to its head.
+const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
+                                  bool of_rotation);
 
 void ct_stage_terminal(struct ct_derivation *d);
 void ct_stage_graph(struct ct_derivation *d);

@@ -1,0 +1,70 @@
+// See recording.h.
+#include "html/recording.h"
+
+#include <string.h>
+
+enum { MOST_ROWS = 4001 }; // a screen has fewer columns of pixels
+
+void ct_recording_create(struct ct_recording *r, struct ct_system *sys)
+{
+    *r = (struct ct_recording){.stride = 1, .ncolumn = sys->equations.nresult};
+    ct_animation_create(sys, &r->animation);
+}
+
+static void keep(struct ct_recording *r, double t, const double *value)
+{
+    struct ct_arena *a = r->sim->own.model;
+    CT_PUSH(a, r->time, r->nrow, r->time_cap, t);
+    size_t n = (r->nrow - 1) * r->ncolumn;
+    for (size_t k = 0; k < r->ncolumn; k++)
+        CT_PUSH(a, r->value, n, r->value_cap, value[k]);
+    ct_animation_keep(&r->animation, r->sim->run, t);
+}
+
+static bool at_row(void *user, double t, const double *value, size_t n)
+{
+    struct ct_recording *r = user;
+    (void)n;
+    const bool is_last = r->seen + 1 == r->nsample;
+    if (r->seen++ % r->stride == 0 || is_last)
+        keep(r, t, value);
+    return true;
+}
+
+// What there is to see at the start.
+static bool look_at_start(void *task)
+{
+    struct ct_recording *r = task;
+    struct ct_sim *sim = r->sim;
+    struct ct_evaluator *m = ct_run_evaluator(sim->run);
+    const size_t n = r->animation.scene.nvalue;
+    ct_animation_compile(sim->own.model, &r->animation, sim->run);
+    r->first = CT_NEWN(sim->own.model, double, n + 1);
+    ct_evaluator_set(m, 0, ct_run_state(sim->run));
+    ct_program_run(&r->animation.values.program, m->input);
+    memcpy(r->first, r->animation.values.program.out, n * sizeof *r->first);
+    r->nsample = sim->run_options.nsample;
+    r->stride = r->nsample > MOST_ROWS ? (r->nsample + MOST_ROWS - 3) / (MOST_ROWS - 1) : 1;
+    return true;
+}
+
+static bool keep_start(void *task)
+{
+    struct ct_recording *r = task;
+    double *value = CT_NEWN(r->sim->own.model, double, r->ncolumn + 1);
+    ct_run_results(r->sim->run, 0, ct_run_state(r->sim->run), value); // the evaluator stands there now
+    keep(r, 0, r->sim->report.final);
+    return true;
+}
+
+bool ct_recording_run(struct ct_ctx *ctx, struct ct_recording *r, struct ct_sim *sim,
+                      FILE *progress)
+{
+    r->sim = sim;
+    if (!ct_enter(ctx, look_at_start, r))
+        return false;
+    if (!(sim->run_options.duration > 0))
+        return ct_enter(ctx, keep_start, r);
+    const struct ct_sim_results results = {.bar = progress, .row = at_row, .user = r};
+    return ct_sim_run(ctx, sim, &results);
+}
