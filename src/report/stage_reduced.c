@@ -1,5 +1,5 @@
 // The reduced equations as equations of a page.
-#include "report/derivation.h"
+#include "report/provenance.h"
 
 struct sides {
     ct_ex left, right;
@@ -19,14 +19,52 @@ static void add(struct ct_derivation *d, struct group *g, const char *label, con
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
-static void put_group(struct ct_derivation *d, const struct group *g)
+// ---- origins ----------------------------------------------------------------------------------
+
+static const char *names_of(struct ct_derivation *d, const struct ct_provenance *p,
+                            const struct ct_equation_term *t)
+{
+    const char *names = "";
+    for (size_t i = 0; i < t->norigin; i++)
+        names = ct_arena_printf(d->a, "%s%s%s", names, *names ? " " : "",
+                                p->origin[t->origin[i]].name);
+    return *names ? names : "system";
+}
+
+// Components of each term of a side, as many as the page has terms; "system" where there is none.
+static const char *const *components_of(struct ct_derivation *d, const struct ct_provenance *p,
+                                        enum ct_equation_kind kind, size_t equation,
+                                        bool is_right, const char *text)
+{
+    const char **list = NULL;
+    size_t n = 0, cap = 0, nterm = 0;
+    for (; *text; text += ct_page_first_term(text))
+        nterm++;
+    for (size_t i = 0; i < p->nterm; i++) {
+        const struct ct_equation_term *t = &p->term[i];
+        if (t->kind == kind && t->equation == equation && t->is_right == is_right)
+            CT_PUSH(d->a, list, n, cap, names_of(d, p, t));
+    }
+    while (n < nterm)
+        CT_PUSH(d->a, list, n, cap, "system");
+    return list;
+}
+
+// p: of the equations; NULL: not wanted.
+static void put_group(struct ct_derivation *d, const struct group *g,
+                      const struct ct_provenance *p, enum ct_equation_kind kind)
 {
     ct_page_equations(&d->page);
-    for (size_t i = 0; i < g->n; i++)
-        ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
-                         ct_derivation_text(d, g->at[i].right), NULL)
-            ->name
-            = g->at[i].name;
+    for (size_t i = 0; i < g->n; i++) {
+        struct ct_page_equation *e
+            = ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
+                               ct_derivation_text(d, g->at[i].right), NULL);
+        e->name = g->at[i].name;
+        if (p) {
+            e->left_components = components_of(d, p, kind, i, false, e->left);
+            e->right_components = components_of(d, p, kind, i, true, e->right);
+        }
+    }
 }
 
 static const char *speed_label(struct ct_derivation *d, size_t i)
@@ -81,13 +119,18 @@ static void put_kinematic(struct ct_derivation *d, const struct group *g)
     }
 }
 
-static void put_efforts(struct ct_derivation *d, const struct group *g)
+static void put_efforts(struct ct_derivation *d, const struct group *g,
+                        const struct ct_provenance *p)
 {
     ct_page_heading(&d->page, "efforts of the drivers");
     ct_page_equations(&d->page);
-    for (size_t i = 0; i < g->n; i++)
-        ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
-                         ct_derivation_text(d, g->at[i].left), NULL);
+    for (size_t i = 0; i < g->n; i++) {
+        struct ct_page_equation *e
+            = ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
+                               ct_derivation_text(d, g->at[i].left), NULL);
+        if (p)
+            e->right_components = components_of(d, p, CT_EQUATION_EFFORT, i, false, e->right);
+    }
 }
 
 // Does a symbol stand in one of the equations, or in a definition?
@@ -230,8 +273,11 @@ void ct_stage_reduced(struct ct_derivation *d)
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
+    struct ct_provenance origins, *p = d->page.look == CT_LOOK_HTML ? &origins : NULL;
     ct_derivation_reduce(d, &r);
     fill(d, &r, g);
+    if (p)
+        ct_provenance_derive(d, &r, p);
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(
         &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
@@ -242,16 +288,16 @@ void ct_stage_reduced(struct ct_derivation *d)
     if (e->nu) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
-        put_group(d, &g[MOTION]);
+        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION);
     }
     if (e->nrow) {
         ct_page_heading(&d->page, "constraints: Phi = 0");
-        put_group(d, &g[CLOSURE]);
+        put_group(d, &g[CLOSURE], p, CT_EQUATION_POSITION);
         ct_page_heading(&d->page, "constraints, differentiated twice: J u' = -gam");
-        put_group(d, &g[CLOSURE_RATE]);
+        put_group(d, &g[CLOSURE_RATE], p, CT_EQUATION_ACCELERATION);
     }
     if (g[EFFORT].n)
-        put_efforts(d, &g[EFFORT]);
+        put_efforts(d, &g[EFFORT], p);
     put_held(d, g, &r);
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);

@@ -22,8 +22,8 @@ done
 [ "$n" -gt 30 ] && echo systems
 if command -v python3 >/dev/null; then python3 well_formed.py ./*.html; fi && echo 'well-formed'
 
-echo '-- equations have the names of their speeds and rows'
-grep -o 'data-equation="[^"]*"' slider_crank.html
+echo '-- equations have the names of their speeds and rows, terms those of their components'
+grep -o 'data-[a-z]*="[^"]*"' slider_crank.html
 
 echo '-- the name of the model and the column of a table are text'
 printf 't,a</mi><script>alert(1)</script> & ) + (b \\ ^~_{}\342\200\256\n0,0\n1,1\n' >force.csv
