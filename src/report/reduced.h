@@ -28,12 +28,18 @@ struct ct_reduced {
     ct_ex *rate;      // nq: q' in terms of u
     bool is_collected;
     struct ct_definitions definitions; // none if everything is short
+    size_t npart;                      // of these, the first: parts of beams (beam_parts.h)
     double size; // of the whole print in characters, about; known once there are definitions
 };
 
 /// Collect if allowed and the system is small enough. No definitions yet.
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r);
+
+/// Each of n nodes `of` replaced by `by` in expressions that are not collected yet, which are then collected if
+/// allowed and the system is small enough.
+void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r, const ct_ex *of, const ct_ex *by, size_t n);
 
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);

@@ -469,7 +469,7 @@ void ct_beams_put_terminal(struct ct_derivation *d)
         put_element(d, &b->flexible[i]);
         put_index(d, &b->flexible[i]);
         ct_beam_matrices_put_element(d, &b->flexible[i]);
-        ct_beam_matrices_put(d, &b->flexible[i]);
+        ct_beam_matrices_put(d, i);
     }
 }
 

@@ -11,12 +11,9 @@
 
 #include "expr/collect.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
+#include "report/beam_parts.h"
 
 #include <string.h>
-
-// Elastic coordinates of two elements in space, and operators and operands of a matrix before it is collected: about a
-// page. Of what is longer the integrals of the element are printed, and the rest is said.
-enum { MOST_WRITTEN = 12, LONGEST_MATRIX = 3000 };
 
 // Collecting clears work space of the size of the store, 1 ms for 50000 nodes: in a larger one expressions stay as they
 // are.
@@ -77,21 +74,9 @@ static void put_entries(struct ct_derivation *d, const struct matrix *m)
         }
 }
 
-static bool is_longer(const struct ct_derivation *d, const ct_ex *v, size_t n, double most)
-{
-    double size = 0;
-    for (size_t i = 0; i < n && size <= most; i++)
-        size += ct_reduced_size(d->e->x, v[i], most - size + 1);
-    return size > most;
-}
-
 static void put_matrix(struct ct_derivation *d, const struct matrix *m)
 {
     ct_page_heading(&d->page, ct_arena_printf(d->a, "%s %s", m->says, m->number));
-    if (is_longer(d, m->value, m->nrow * m->ncolumn, LONGEST_MATRIX)) {
-        ct_page_sentence(&d->page, "%zu x %zu, longer than a page", m->nrow, m->ncolumn);
-        return;
-    }
     ct_page_matrix(&d->page, m->ncolumn + 1);
     ct_page_cell(&d->page, "");
     for (size_t j = 0; j < m->ncolumn; j++)
@@ -366,16 +351,17 @@ static void put_terminal(struct ct_derivation *d, const struct ct_flexible *f)
 }
 
 // m_rr ... m_thetatheta, of the undivided beam.
-static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f)
+static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f,
+                      const struct ct_beam_parts *p)
 {
-    static const char *const text[] = {"i_11", "i_22", "i_33", "i_12", "i_13", "i_23"};
-    static const char *const latex[]
-        = {"i_{11}", "i_{22}", "i_{33}", "i_{12}", "i_{13}", "i_{23}"};
-    static const int entry[] = {0, 4, 8, 3, 6, 7}; // column-major
     const struct ct_inertia *I = f->inertia;
-    ct_ex3 s = I->moment;
+    struct ct_exs *x = d->e->x;
+    ct_ex3 s;
+    ct_ex value[9];
     for (int i = 0; i < 3; i++)
-        s.e[i] = collect(d, s.e[i]);
+        s.e[i] = ct_beam_parts_name(p, x, I->moment.e[i]);
+    for (int i = 0; i < 9; i++)
+        value[i] = ct_beam_parts_name(p, x, I->inertia.e[i % 3 * 3 + i / 3]); // by rows
     ct_page_equations(&d->page);
     put(d, "m_rr", "\\boldsymbol{m}_{rr}",
         ct_arena_printf(d->a, "%s*1", ct_derivation_text(d, I->mass)),
@@ -384,72 +370,21 @@ static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f)
         "-\\boldsymbol{A} \\, \\tilde{\\boldsymbol{s}}", "A.2; skew(s) v = s x v");
     ct_page_equation(&d->page, NULL, pick(d, "s", "\\boldsymbol{s}"),
                      ct_derivation_vector(d, s), "A.3: first moment, axes of the beam");
-    for (int i = 0; i < 6; i++)
-        if (!ct_ex_is_zero(I->inertia.e[entry[i]]) && (i >= 3 || turns_about(d->e->build, f, i))
-            && !(i >= 3 && d->e->build->is_planar))
-            ct_page_equation(&d->page, NULL, pick(d, text[i], latex[i]),
-                             collected(d, I->inertia.e[entry[i]]),
-                             "entry of m_thetatheta, A.8 to A.10");
-}
-
-// Angular velocity of the frame: symbols along the axes about which it can turn.
-static ct_ex3 turning(struct ct_build *b, const struct ct_flexible *f)
-{
-    ct_ex3 w = ct_flexible_base(b, f, CT_BIAS).w;
-    for (int i = 0; i < 3; i++)
-        if (!ct_ex_is_zero(w.e[i]))
-            w.e[i] = ct_ex_sym(b->x, CT_SYM_LOCAL,
-                               ct_arena_printf(b->x->arena, "w_%s.%s", f->name, xyz[i]),
-                               (uint32_t)i);
-    return w;
-}
-
-// (3.87), (3.120): what the frame's turning and the rates of the coordinates need, to the right side.
-static void put_quadratic_velocity(struct ct_derivation *d, const struct ct_flexible *f)
-{
-    struct ct_build *b = d->e->build;
-    struct ct_exs *x = b->x;
-    const struct ct_inertia *I = f->inertia;
-    const struct ct_base turned = {.w = turning(b, f)};
-    ct_ex3 F, T, lessF, lessT;
-    const struct ct_base m = ct_flexible_felt(b, f, &turned, &lessF, &lessT);
-    I->method->wrench(b, f, &m, CT_BIAS, &F, &T);
-    F = ct_ex3_sub(x, F, lessF);
-    T = ct_ex3_sub(x, T, lessT);
-    F = ct_ex3_add(x, F, ct_ex3_cross(x, turned.w, ct_ex3_cross(x, turned.w, I->moment)));
-    T = ct_ex3_add(x, T, ct_ex3_cross(x, turned.w, ct_ex33_apply(x, &I->inertia, turned.w)));
-    ct_ex *row = CT_NEWN(d->a, ct_ex, d->e->nu + 1);
-    ct_flexible_inertia_rows(b, f, &m, CT_BIAS, row);
-    const bool latex = ct_derivation_is_latex(d);
-    if (is_longer(d, row, d->e->nu, LONGEST_MATRIX) || is_longer(d, T.e, 3, LONGEST_MATRIX))
+    if (!d->e->build->is_planar) {
+        put_matrix(d, &(struct matrix){"m_thetatheta", "\\boldsymbol{m}_{\\theta\\theta}",
+                                       "m_thetatheta", "(A.8), (A.9), (A.10)", xyz, xyz, 3, 3,
+                                       value, true});
         return;
-    for (int i = 0; i < 3; i++)
-        if (!ct_ex_is_zero(F.e[i]))
-            ct_page_equation(
-                &d->page, NULL,
-                ct_arena_printf(d->a,
-                                latex ? "(\\boldsymbol{A}^{T} \\boldsymbol{Q}_{vr})_{%s}"
-                                      : "(A'*Q_vr).%s",
-                                xyz[i]),
-                collected(d, ct_ex_neg(x, F.e[i])), NULL);
-    for (int i = 0; i < 3; i++)
-        if (!ct_ex_is_zero(T.e[i]))
-            ct_page_equation(
-                &d->page, NULL,
-                ct_arena_printf(d->a, latex ? "Q_{v\\theta,%s}" : "Q_vtheta.%s", xyz[i]),
-                collected(d, ct_ex_neg(x, T.e[i])), NULL);
-    for (int k = 0; k < f->nelastic; k++) {
-        const ct_ex v = row[f->elastic[k].u];
-        if (!ct_ex_is_zero(v))
-            ct_page_equation(&d->page, NULL,
-                             ct_arena_printf(d->a,
-                                             latex ? "Q_{vf}\\left(%s\\right)" : "Q_vf(%s)",
-                                             ct_derivation_name(d, f->elastic[k].name)),
-                             collected(d, ct_ex_neg(x, v)), NULL);
     }
+    for (int i = 0; i < 3; i++)
+        if (turns_about(d->e->build, f, i))
+            ct_page_equation(
+                &d->page, NULL, pick(d, "m_thetatheta", "\\boldsymbol{m}_{\\theta\\theta}"),
+                ct_derivation_text(d, value[4 * i]), "A.8 to A.10, about the normal");
 }
 
-static void put_weight(struct ct_derivation *d)
+// (3.87), (3.92), (3.120): to the right side.
+static void put_loads(struct ct_derivation *d)
 {
     ct_page_heading(&d->page,
                     "weight Q_g (3.92) and quadratic velocity forces Q_v (3.87), (3.120)");
@@ -460,10 +395,19 @@ static void put_weight(struct ct_derivation *d)
         "\\boldsymbol{m}_{r\\theta}^{T} \\, \\boldsymbol{g}", NULL);
     put(d, "Q_gf", "\\boldsymbol{Q}_{gf}", "m_rf'*g",
         "\\boldsymbol{m}_{rf}^{T} \\, \\boldsymbol{g}", NULL);
+    put(d, "Q_vr", "\\boldsymbol{Q}_{vr}", "-A*(w x (w x s) + F_v)",
+        "-\\boldsymbol{A} \\, (\\boldsymbol{\\omega} \\times (\\boldsymbol{\\omega} \\times "
+        "\\boldsymbol{s}) + \\boldsymbol{F}_{v})",
+        "w: angular velocity of the frame");
+    put(d, "Q_vtheta", "\\boldsymbol{Q}_{v\\theta}", "-(w x m_thetatheta*w + T_v)",
+        "-(\\boldsymbol{\\omega} \\times \\boldsymbol{m}_{\\theta\\theta} \\, "
+        "\\boldsymbol{\\omega} + \\boldsymbol{T}_{v})",
+        NULL);
 }
 
 // Rows and columns of the elastic coordinates.
-static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f)
+static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
+                        const struct ct_beam_parts *p)
 {
     struct ct_build *b = d->e->build;
     struct ct_exs *x = b->x;
@@ -479,18 +423,16 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f)
         name[k] = ct_derivation_name(d, f->elastic[k].name);
         q[k] = b->eqs->q[f->elastic[k].q].symbol;
         for (size_t i = 0; i < 3; i++) {
-            moved[3 * k + i] = c.moved[k].e[i];
-            swept[3 * k + i] = c.swept[k].e[i];
+            moved[3 * k + i] = ct_beam_parts_name(p, x, c.moved[k].e[i]);
+            swept[3 * k + i] = ct_beam_parts_name(p, x, c.swept[k].e[i]);
         }
     }
-    const ct_ex strain = ct_flexible_strain(b, f);
-    ct_ex_gradient(x, d->a, strain, q, n, force);
+    ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k <= i; k++) {
             const size_t row = (size_t)f->elastic[i].u, column = (size_t)f->elastic[k].u;
-            mff[i * n + k]
-                = M[(row > column ? row : column)
-                    + nu * (row > column ? column : row)]; // column-major, lower triangle
+            mff[i * n + k] = ct_beam_parts_name( // column-major, the lower triangle
+                p, x, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
@@ -505,8 +447,27 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f)
                                    name, name, n, n, K, true});
 }
 
-void ct_beam_matrices_put(struct ct_derivation *d, const struct ct_flexible *f)
+static void put_parts(struct ct_derivation *d, const struct ct_flexible *f,
+                      const struct ct_beam_parts *p)
 {
+    if (!p->definitions.n)
+        return;
+    ct_page_heading(&d->page, ct_arena_printf(d->a, "entries of the matrices of %s", f->name));
+    ct_page_sentence(
+        &d->page,
+        "Q_vf: quadratic velocity force (3.87), (3.120); F_v, T_v: its force and "
+        "torque without those of s and m_thetatheta; V_q: elastic force, K_f q_f where "
+        "it is linear");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < p->definitions.n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, p->definitions.at[i].symbol),
+                         collected(d, p->definitions.at[i].value), NULL);
+}
+
+void ct_beam_matrices_put(struct ct_derivation *d, size_t i)
+{
+    const struct ct_flexible *f = &d->e->build->flexible[i];
+    struct ct_beam_parts p = {0};
     ct_page_heading(
         &d->page,
         ct_arena_printf(d->a, "matrices of %s, numbered as in Liang (2017)", f->name));
@@ -515,15 +476,15 @@ void ct_beam_matrices_put(struct ct_derivation *d, const struct ct_flexible *f)
                      "elastic coordinates q_f; A: rotation of the frame. Q_v stands on the "
                      "right side, so it is minus (3.87)");
     put_terminal(d, f);
-    if (f->nelastic > MOST_WRITTEN || is_longer(d, f->inertia->inertia.e, 9, LONGEST_MATRIX)) {
+    if (!ct_beam_parts_add(d->a, d->e, i, &p)) {
         ct_page_sentence(&d->page,
                          "m_rf, m_thetaf, m_ff and K_f of %d coordinates are not written out; "
                          "they are sums over the elements of the integrals above",
                          f->nelastic);
         return;
     }
-    put_rigid(d, f);
-    put_elastic(d, f);
-    put_weight(d);
-    put_quadratic_velocity(d, f);
+    put_rigid(d, f, &p);
+    put_elastic(d, f, &p);
+    put_loads(d);
+    put_parts(d, f, &p);
 }

@@ -1,4 +1,5 @@
 // The reduced equations as equations of a page.
+#include "report/beam_parts.h"
 #include "report/provenance.h"
 
 struct sides {
@@ -259,13 +260,97 @@ static void share(struct ct_derivation *d, struct ct_reduced *r)
         *r = plain;
 }
 
+static bool is_used(struct ct_exs *x, size_t nwalk, ct_ex symbol)
+{
+    for (size_t i = 0; i < nwalk; i++)
+        if (x->stack[i] == symbol.id)
+            return true;
+    return false;
+}
+
+// Parts that the equations use stand before the other definitions.
+static void put_before(struct ct_derivation *d, const struct ct_beam_parts *parts,
+                       const struct group g[NGROUP], struct ct_reduced *r)
+{
+    struct ct_exs *x = d->e->x;
+    const struct ct_definitions own = r->definitions, *all = &parts->definitions;
+    ct_ex *symbol = CT_NEWN(d->a, ct_ex, all->n + 1), *value = CT_NEWN(d->a, ct_ex, all->n + 1),
+          *root = NULL;
+    size_t n = 0, cap = 0;
+    for (size_t k = 0; k < NGROUP; k++)
+        for (size_t i = 0; i < g[k].n; i++) {
+            CT_PUSH(d->a, root, n, cap, g[k].at[i].left);
+            CT_PUSH(d->a, root, n, cap, g[k].at[i].right);
+        }
+    for (size_t i = 0; i < own.n; i++)
+        CT_PUSH(d->a, root, n, cap, own.at[i].value);
+    const size_t nwalk = ct_ex_walk(x, root, n);
+    r->definitions.at = CT_NEWN(d->a, struct ct_reduced_definition, all->n + own.n + 1);
+    r->definitions.n = 0;
+    for (size_t i = 0; i < all->n; i++) {
+        symbol[i] = all->at[i].symbol;
+        value[i] = all->at[i].value;
+        if (is_used(x, nwalk, symbol[i]))
+            r->definitions.at[r->definitions.n++] = all->at[i];
+    }
+    r->npart = r->definitions.n;
+    for (size_t i = 0; i < own.n; i++) {
+        struct ct_reduced_definition *o = &r->definitions.at[r->definitions.n++];
+        *o = own.at[i];
+        o->full = ct_ex_subst(x, o->full, symbol, value, all->n);
+    }
+}
+
+static bool has_quaternion(const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion >= 0)
+            return true;
+    return false;
+}
+
+// The same with the parts of beams by name. Collecting would multiply out the rotations of quaternions, which have names.
+static void name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
+                       struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0}, shared[NGROUP] = {0};
+    const bool may_collect = !has_quaternion(d->e);
+    ct_reduced_label(d->e);
+    ct_reduced_prepare(d->a, d->e, false, r);
+    ct_reduced_replace(d->a, d->e, may_collect, r, parts->of, parts->by, parts->n);
+    fill(d, r, g);
+    if (!r->is_collected || is_long(d, g, NGROUP))
+        ct_reduced_share(d->a, d->e, r);
+    fill(d, r, shared);
+    put_before(d, parts, shared, r);
+}
+
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct group g[NGROUP] = {0};
+    struct ct_beam_parts parts;
     ct_reduced_prepare(d->a, d->e, true, r);
     fill(d, r, g);
-    if (!r->is_collected || is_long(d, g, NGROUP))
+    if (r->is_collected && !is_long(d, g, NGROUP))
+        return;
+    ct_beam_parts_derive(d->a, d->e, &parts);
+    if (parts.n)
+        name_parts(d, &parts, r);
+    else
         share(d, r);
+}
+
+// Text and LaTeX have the parts of beams with their terminal equations, HTML folds them.
+static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    const bool is_html = d->page.look == CT_LOOK_HTML;
+    const struct ct_definitions own
+        = {r->definitions.at + r->npart, r->definitions.n - r->npart};
+    if (r->npart && !is_html)
+        ct_page_sentence(&d->page,
+                         "s, i, m_rf, m_thetaf, m_ff, Q_vf, F_v, T_v and V_q of a beam: its "
+                         "matrices, printed by --show terminal");
+    ct_derivation_put_definitions(d, "with", is_html ? &r->definitions : &own);
 }
 
 void ct_stage_reduced(struct ct_derivation *d)
@@ -283,7 +368,7 @@ void ct_stage_reduced(struct ct_derivation *d)
         &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
         count(d, e->nrow, "constraint", "constraints"),
         e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
-    ct_derivation_put_definitions(d, "with", &r.definitions);
+    put_definitions(d, &r);
     ct_derivation_put_matrices(d, &r);
     if (e->nu) {
         ct_page_heading(&d->page,
