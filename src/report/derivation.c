@@ -41,6 +41,23 @@ static const char *latex_definition(struct ct_arena *a, const char *name)
     return NULL;
 }
 
+// m_rf_rod.1.u.x of a beam (beam_parts.h); NULL for other names.
+static const char *latex_part(struct ct_arena *a, const char *name)
+{
+    static const char *const letter[][2] = {{"m_rf_", "m_{rf"}, {"m_thetaf_", "m_{\\theta f"},
+                                            {"m_ff_", "m_{ff"}, {"Q_vf_", "Q_{vf"},
+                                            {"F_v_", "F_{v"},   {"T_v_", "T_{v"},
+                                            {"V_q_", "V_{,q"},  {"i_", "i_{"}};
+    for (size_t i = 0; i < COUNT(letter); i++) {
+        const size_t n = strlen(letter[i][0]);
+        if (!strncmp(name, letter[i][0], n))
+            return ct_arena_printf(a, "%s%s\\mathrm{%s}}", letter[i][1],
+                                   letter[i][1][strlen(letter[i][1]) - 1] == '{' ? "" : ",",
+                                   ct_latex_quoted(a, name + n));
+    }
+    return NULL;
+}
+
 static bool is_coordinate_name(const char *name)
 {
     const char *dot = strrchr(name, '.');
@@ -53,6 +70,8 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     const char *name = plain_name(d, s);
     if (!ct_derivation_is_latex(d))
         return name;
+    if (s->kind == CT_SYM_LOCAL && latex_part(a, name))
+        return latex_part(a, name);
     if (s->kind == CT_SYM_LOCAL && !is_coordinate_name(name)) {
         const char *definition = latex_definition(a, name);
         if (definition)

@@ -177,8 +177,8 @@ static const char *skip_pair(const char *s, const char *end, const char *open,
 // How many groups follow a command.
 static int count_groups(const char *name, size_t n)
 {
-    static const char *const one[]
-        = {"mathrm", "boldsymbol", "operatorname", "text", "sqrt", "dot", "ddot", "dddot"};
+    static const char *const one[] = {"mathrm", "boldsymbol", "operatorname", "text", "sqrt",
+                                      "dot",    "ddot",       "dddot",        "bar",  "tilde"};
     if (is_named(name, n, "frac") || is_named(name, n, "tfrac"))
         return 2;
     for (size_t i = 0; i < COUNT(one); i++)
@@ -259,7 +259,7 @@ static const struct sign {
     {"cosh", "cosh"},     {"tanh", "tanh"},     {"exp", "exp"},   {"ln", "ln"},
     {"min", "min"},       {"max", "max"},       {"arcsin", "arcsin"}, {"arccos", "arccos"},
     {"arctan", "arctan"},
-}, accents[] = {{"dot", "\u02D9"}, {"ddot", "\u00A8"}, {"dddot", "\u22EF"}};
+}, accents[] = {{"dot", "\u02D9"}, {"ddot", "\u00A8"}, {"dddot", "\u22EF"}, {"bar", "\u00AF"}, {"tilde", "~"}};
 
 static const char *find_sign(const struct sign *list, size_t count, const char *name, size_t n)
 {

@@ -30,6 +30,7 @@ struct ct_reduced {
         output; // nresult: outputs whose terms are listed, 0 for others (provenance.h); else NULL
     bool is_collected;
     struct ct_definitions definitions; // none if everything is short
+    size_t npart;                      // of these, the first: parts of beams (beam_parts.h)
     double size; // of the whole print in characters, about; known once there are definitions
 };
 
@@ -39,6 +40,10 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
 
 /// A force collected, as Q is: what is there at rest stays apart from what the speeds add.
 ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v);
+/// Each of n nodes `of` replaced by `by` in expressions that are not collected yet, which are then collected if
+/// allowed and the system is small enough.
+void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r, const ct_ex *of, const ct_ex *by, size_t n);
 
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);

@@ -468,6 +468,8 @@ void ct_beams_put_terminal(struct ct_derivation *d)
             continue;
         put_element(d, &b->flexible[i]);
         put_index(d, &b->flexible[i]);
+        ct_beam_matrices_put_element(d, &b->flexible[i]);
+        ct_beam_matrices_put(d, i);
     }
 }
 

@@ -1,5 +1,6 @@
 // The reduced equations as equations of a page.
-#include "report/derivation.h"
+#include "report/beam_parts.h"
+#include "report/provenance.h"
 
 struct sides {
     ct_ex left, right;
@@ -19,14 +20,52 @@ static void add(struct ct_derivation *d, struct group *g, const char *label, con
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
-static void put_group(struct ct_derivation *d, const struct group *g)
+// ---- origins ----------------------------------------------------------------------------------
+
+static const char *names_of(struct ct_derivation *d, const struct ct_provenance *p,
+                            const struct ct_equation_term *t)
+{
+    const char *names = "";
+    for (size_t i = 0; i < t->norigin; i++)
+        names = ct_arena_printf(d->a, "%s%s%s", names, *names ? " " : "",
+                                p->origin[t->origin[i]].name);
+    return *names ? names : "system";
+}
+
+// Components of each term of a side, as many as the page has terms; "system" where there is none.
+static const char *const *components_of(struct ct_derivation *d, const struct ct_provenance *p,
+                                        enum ct_equation_kind kind, size_t equation,
+                                        bool is_right, const char *text)
+{
+    const char **list = NULL;
+    size_t n = 0, cap = 0, nterm = 0;
+    for (; *text; text += ct_page_first_term(text))
+        nterm++;
+    for (size_t i = 0; i < p->nterm; i++) {
+        const struct ct_equation_term *t = &p->term[i];
+        if (t->kind == kind && t->equation == equation && t->is_right == is_right)
+            CT_PUSH(d->a, list, n, cap, names_of(d, p, t));
+    }
+    while (n < nterm)
+        CT_PUSH(d->a, list, n, cap, "system");
+    return list;
+}
+
+// p: of the equations; NULL: not wanted.
+static void put_group(struct ct_derivation *d, const struct group *g,
+                      const struct ct_provenance *p, enum ct_equation_kind kind)
 {
     ct_page_equations(&d->page);
-    for (size_t i = 0; i < g->n; i++)
-        ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
-                         ct_derivation_text(d, g->at[i].right), NULL)
-            ->name
-            = g->at[i].name;
+    for (size_t i = 0; i < g->n; i++) {
+        struct ct_page_equation *e
+            = ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
+                               ct_derivation_text(d, g->at[i].right), NULL);
+        e->name = g->at[i].name;
+        if (p) {
+            e->left_components = components_of(d, p, kind, i, false, e->left);
+            e->right_components = components_of(d, p, kind, i, true, e->right);
+        }
+    }
 }
 
 static const char *speed_label(struct ct_derivation *d, size_t i)
@@ -81,13 +120,18 @@ static void put_kinematic(struct ct_derivation *d, const struct group *g)
     }
 }
 
-static void put_efforts(struct ct_derivation *d, const struct group *g)
+static void put_efforts(struct ct_derivation *d, const struct group *g,
+                        const struct ct_provenance *p)
 {
     ct_page_heading(&d->page, "efforts of the drivers");
     ct_page_equations(&d->page);
-    for (size_t i = 0; i < g->n; i++)
-        ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
-                         ct_derivation_text(d, g->at[i].left), NULL);
+    for (size_t i = 0; i < g->n; i++) {
+        struct ct_page_equation *e
+            = ct_page_equation(&d->page, NULL, ct_derivation_effort(d, g->at[i].label),
+                               ct_derivation_text(d, g->at[i].left), NULL);
+        if (p)
+            e->right_components = components_of(d, p, CT_EQUATION_EFFORT, i, false, e->right);
+    }
 }
 
 // Does a symbol stand in one of the equations, or in a definition?
@@ -219,13 +263,97 @@ static void share(struct ct_derivation *d, struct ct_reduced *r)
         *r = plain;
 }
 
+static bool is_used(struct ct_exs *x, size_t nwalk, ct_ex symbol)
+{
+    for (size_t i = 0; i < nwalk; i++)
+        if (x->stack[i] == symbol.id)
+            return true;
+    return false;
+}
+
+// Parts that the equations use stand before the other definitions.
+static void put_before(struct ct_derivation *d, const struct ct_beam_parts *parts,
+                       const struct group g[NGROUP], struct ct_reduced *r)
+{
+    struct ct_exs *x = d->e->x;
+    const struct ct_definitions own = r->definitions, *all = &parts->definitions;
+    ct_ex *symbol = CT_NEWN(d->a, ct_ex, all->n + 1), *value = CT_NEWN(d->a, ct_ex, all->n + 1),
+          *root = NULL;
+    size_t n = 0, cap = 0;
+    for (size_t k = 0; k < NGROUP; k++)
+        for (size_t i = 0; i < g[k].n; i++) {
+            CT_PUSH(d->a, root, n, cap, g[k].at[i].left);
+            CT_PUSH(d->a, root, n, cap, g[k].at[i].right);
+        }
+    for (size_t i = 0; i < own.n; i++)
+        CT_PUSH(d->a, root, n, cap, own.at[i].value);
+    const size_t nwalk = ct_ex_walk(x, root, n);
+    r->definitions.at = CT_NEWN(d->a, struct ct_reduced_definition, all->n + own.n + 1);
+    r->definitions.n = 0;
+    for (size_t i = 0; i < all->n; i++) {
+        symbol[i] = all->at[i].symbol;
+        value[i] = all->at[i].value;
+        if (is_used(x, nwalk, symbol[i]))
+            r->definitions.at[r->definitions.n++] = all->at[i];
+    }
+    r->npart = r->definitions.n;
+    for (size_t i = 0; i < own.n; i++) {
+        struct ct_reduced_definition *o = &r->definitions.at[r->definitions.n++];
+        *o = own.at[i];
+        o->full = ct_ex_subst(x, o->full, symbol, value, all->n);
+    }
+}
+
+static bool has_quaternion(const struct ct_equations *e)
+{
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion >= 0)
+            return true;
+    return false;
+}
+
+// The same with the parts of beams by name. Collecting would multiply out the rotations of quaternions, which have names.
+static void name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
+                       struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0}, shared[NGROUP] = {0};
+    const bool may_collect = !has_quaternion(d->e);
+    ct_reduced_label(d->e);
+    ct_reduced_prepare(d->a, d->e, false, r);
+    ct_reduced_replace(d->a, d->e, may_collect, r, parts->of, parts->by, parts->n);
+    fill(d, r, g);
+    if (!r->is_collected || is_long(d, g, NGROUP))
+        ct_reduced_share(d->a, d->e, r);
+    fill(d, r, shared);
+    put_before(d, parts, shared, r);
+}
+
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct group g[NGROUP] = {0};
+    struct ct_beam_parts parts;
     ct_reduced_prepare(d->a, d->e, true, r);
     fill(d, r, g);
-    if (!r->is_collected || is_long(d, g, NGROUP))
+    if (r->is_collected && !is_long(d, g, NGROUP))
+        return;
+    ct_beam_parts_derive(d->a, d->e, &parts);
+    if (parts.n)
+        name_parts(d, &parts, r);
+    else
         share(d, r);
+}
+
+// Text and LaTeX have the parts of beams with their terminal equations, HTML folds them.
+static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    const bool is_html = d->page.look == CT_LOOK_HTML;
+    const struct ct_definitions own
+        = {r->definitions.at + r->npart, r->definitions.n - r->npart};
+    if (r->npart && !is_html)
+        ct_page_sentence(&d->page,
+                         "s, i, m_rf, m_thetaf, m_ff, Q_vf, F_v, T_v and V_q of a beam: its "
+                         "matrices, printed by --show terminal");
+    ct_derivation_put_definitions(d, "with", is_html ? &r->definitions : &own);
 }
 
 void ct_stage_reduced(struct ct_derivation *d)
@@ -233,33 +361,36 @@ void ct_stage_reduced(struct ct_derivation *d)
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
+    struct ct_provenance origins, *p = d->page.look == CT_LOOK_HTML ? &origins : NULL;
     ct_derivation_reduce(d, &r);
     fill(d, &r, g);
+    if (p)
+        ct_provenance_derive(d, &r, p);
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(
         &d->page, "%s, %s%s%s%s", count(d, e->nmotion, "unknown speed", "unknown speeds"),
         count(d, e->nrow, "constraint", "constraints"), e->nstate ? ", " : "",
         e->nstate ? count(d, e->nstate, "state", "states") : "",
         e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
-    ct_derivation_put_definitions(d, "with", &r.definitions);
+    put_definitions(d, &r);
     ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
-        put_group(d, &g[MOTION]);
+        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION);
     }
     if (e->nstate) {
         ct_page_heading(&d->page, "rates of the states");
-        put_group(d, &g[STATES]);
+        put_group(d, &g[STATES], p, CT_EQUATION_MOTION);
     }
     if (e->nrow) {
         ct_page_heading(&d->page, "constraints: Phi = 0");
-        put_group(d, &g[CLOSURE]);
+        put_group(d, &g[CLOSURE], p, CT_EQUATION_POSITION);
         ct_page_heading(&d->page, "constraints, differentiated twice: J u' = -gam");
-        put_group(d, &g[CLOSURE_RATE]);
+        put_group(d, &g[CLOSURE_RATE], p, CT_EQUATION_ACCELERATION);
     }
     if (g[EFFORT].n)
-        put_efforts(d, &g[EFFORT]);
+        put_efforts(d, &g[EFFORT], p);
     put_held(d, g, &r);
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);

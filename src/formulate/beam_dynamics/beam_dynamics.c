@@ -39,20 +39,46 @@ void ct_flexible_lump(struct ct_build *b)
 
 // ---- handing over to elastic coordinates ----------------------------------------------------------
 
-void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
-                      enum ct_level level, ct_ex *row)
+// Forces on the freedoms, added to the rows of the coordinates.
+static void hand_over(struct ct_build *b, const struct ct_flexible *f, ct_ex *force, ct_ex *row)
 {
-    const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
-    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, n);
-    f->inertia->method->rows(b, f, m, level, force);
-    ct_stiffness_rows(b, f, force);
     if (f->condensation)
         ct_condensation_forces(b->x, f->condensation, force);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < CT_NODE_FREEDOM * (f->beam->nelement + 1); i++)
         for (int p = 0; p < f->freedom[i].npart; p++) {
             ct_ex *r = &row[f->elastic[f->freedom[i].part[p].k].u];
             *r = ct_ex_add(b->x, *r, ct_ex_mul(b->x, f->freedom[i].part[p].coef, force[i]));
         }
+}
+
+static ct_ex *forces_of_inertia(struct ct_build *b, const struct ct_flexible *f,
+                                const struct ct_base *m, enum ct_level level)
+{
+    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, CT_NODE_FREEDOM * (f->beam->nelement + 1));
+    f->inertia->method->rows(b, f, m, level, force);
+    return force;
+}
+
+void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                      enum ct_level level, ct_ex *row)
+{
+    ct_ex *force = forces_of_inertia(b, f, m, level);
+    ct_stiffness_rows(b, f, force);
+    hand_over(b, f, force, row);
+}
+
+void ct_flexible_inertia_rows(struct ct_build *b, const struct ct_flexible *f,
+                              const struct ct_base *m, enum ct_level level, ct_ex *row)
+{
+    hand_over(b, f, forces_of_inertia(b, f, m, level), row);
+}
+
+void ct_flexible_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
+{
+    ct_ex *force
+        = CT_NEWN(b->ctx->scratch, ct_ex, CT_NODE_FREEDOM * (f->beam->nelement + 1));
+    ct_stiffness_rows(b, f, force);
+    hand_over(b, f, force, row);
 }
 
 // ---- sweep --------------------------------------------------------------------------------------------------

@@ -109,6 +109,10 @@ ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 /// elastic coordinates.
 void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                       enum ct_level level, ct_ex *row);
+/// The same of inertia and weight alone; of stiffness and damping alone.
+void ct_flexible_inertia_rows(struct ct_build *b, const struct ct_flexible *f,
+                              const struct ct_base *m, enum ct_level level, ct_ex *row);
+void ct_flexible_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row);
 
 // ---- for the equations of the whole system
 // -------------------------------------------------------

@@ -1,0 +1,34 @@
+// Parts of the matrices of beams under names, so that equations of motion read as sums of them.
+//
+//     s_rod.x             first moment of rod in its own axes                          (A.3)
+//     i_rod.zz            entry of m_thetatheta                                        (A.8)
+//     m_rf_rod.1.u.x      of the coordinate rod.1.u: row of A'*m_rf, of m_thetaf       (A.7), (A.15)
+//     m_ff_rod.1.v.1.u    entry of m_ff                                                (A.17)
+//     Q_vf_rod.1.u        quadratic velocity force                                     (3.87)
+//     F_v_rod.x, T_v_rod.z    force and torque of the motion relative to the frame with u' = 0; with those of its
+//                         turning, w x (w x s) and w x i w, minus Q_vr and Q_vtheta    (3.87)
+//     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f where that is linear (4.11)
+//
+// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation with its parts put in is the
+// equation without them, up to round-off.
+#ifndef CT_REPORT_BEAM_PARTS_H
+#define CT_REPORT_BEAM_PARTS_H
+
+#include "report/reduced.h"
+
+struct ct_beam_parts {
+    struct ct_definitions definitions;
+    ct_ex *of, *by; // nodes of the equations, and what they are in terms of the definitions
+    size_t n, of_cap, by_cap, definition_cap;
+};
+
+/// Of all beams; those of more than 12 elastic coordinates, or that are too long to read, have none. Nodes live in e->x,
+/// lists in a.
+void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_beam_parts *p);
+/// Adds those of one beam, number i; false: it has none.
+bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
+                       struct ct_beam_parts *p);
+/// The name of a node; itself where it has none.
+ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, const struct ct_exs *x, ct_ex node);
+
+#endif
