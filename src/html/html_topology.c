@@ -142,11 +142,11 @@ static void put_loop(struct ct_html *h, const struct ct_loop *l, size_t number)
 static void put_table(struct ct_html *h)
 {
     const struct ct_loops *l = &h->recording->loops;
-    fputs(
-        "<div class=\"wide\"><table>\n<thead><tr><th>closed by</th><th>circuit</th><th "
-        "class=\"number\">rows</th><th class=\"number\">rank</th><th class=\"number\">nearest to "
-        "singular</th><th class=\"number\">at</th></tr></thead>\n<tbody>\n",
-        h->out);
+    fputs("<div class=\"wide\"><table>\n<thead><tr><th>closed by</th><th>circuit</th><th "
+          "class=\"number\">rows</th><th class=\"number\">rank</th><th "
+          "class=\"number\">nearest to "
+          "singular</th><th class=\"number\">at</th></tr></thead>\n<tbody>\n",
+          h->out);
     for (size_t i = 0; i < l->nloop; i++)
         put_loop(h, &l->loop[i], i);
     fprintf(h->out,
