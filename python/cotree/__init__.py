@@ -437,11 +437,6 @@ class System:
                 raise RuntimeError("graph('svg') needs the program dot of Graphviz") from None
         return text
 
-    def report(self, path):
-        """Write the whole derivation as a page."""
-        with open(path, "w", encoding="utf-8") as out:
-            out.write(self.equations(format="html", show="all"))
-
     def _repr_latex_(self):
         import re
         text = self.equations(format="latex", show="reduced")
