@@ -25,7 +25,6 @@ import { createJoint } from "./symbols.js";
 import { createTraces } from "./traces.js";
 import { createTrack } from "./track.js";
 
-const hasWebGL = () => Boolean(document.createElement("canvas").getContext("webgl2"));
 const isSliding = (symbol) => symbol === "slider" || symbol === "cylindrical" || symbol === "screw";
 
 // The vertical: the axis of ground that is up in the isometric view.
@@ -204,26 +203,25 @@ function labelledPlaces(data) {
 
 // element: <div id="motion-panel">, which holds a drawing of the start, for print and where there is no WebGL.
 export async function createMotion(element, data, clock, lights) {
-  if (!hasWebGL()) return;
-  const [times] = await unpack(data.times);
-  const columns = await unpack(data.samples);
-  const track = createTrack(data.poses, times, columns);
-  data.bodies.forEach((body, i) => (body.number = i));
-
-  const view = document.createElement("div");
   const canvas = document.createElement("canvas");
+  const vertical = verticalOf(data.views);
+  const camera = createCamera(data.views, vertical, () => stage.invalidate());
+  const stage = createStage(canvas, camera.camera);
+  if (!stage) return;
+  const { scene } = stage;
+  const view = document.createElement("div");
   view.className = "motion-view";
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", "the mechanism; arrow keys turn it, + and - zoom, 0 shows all of it, x y z i are views");
   view.append(canvas);
-
-  const vertical = verticalOf(data.views);
-  const camera = createCamera(data.views, vertical, () => stage.invalidate());
-  const stage = createStage(canvas, camera.camera);
-  const { scene } = stage;
   element.prepend(view);
   element.classList.add("has-motion");
+  const [times] = await unpack(data.times);
+  const columns = await unpack(data.samples);
+  const track = createTrack(data.poses, times, columns);
+  data.bodies.forEach((body, i) => (body.number = i));
+
   const { colors, read } = createColors(view, () => stage.invalidate());
   const parts = createParts(colors);
   const poses = createPoses(scene, track, data.poses);
@@ -250,9 +248,10 @@ export async function createMotion(element, data, clock, lights) {
   const traces = createTraces(parts, track, tracedPoints(data, track), size);
   const loads = data.forces.filter((f) => f.load !== undefined).map((f) => ({ name: f.name, at: f.to.at, column: f.load, torque: f.load + 3 }));
   const reactions = data.joints.map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
-  const most = usualSize(track, [...loads, ...reactions].map((f) => f.column));
-  const loadArrows = createArrows(context, loads, parts.surface(colors.load), 0.22 * size, most);
-  const reactionArrows = createArrows(context, reactions, parts.surface(colors.reaction), 0.22 * size, most);
+  const usual = usualSize(track, [...loads, ...reactions].map((f) => f.column)) || 1;
+  const loadArrows = createArrows(context, loads, parts.surface(colors.load), 0.6 * size);
+  const reactionArrows = createArrows(context, reactions, parts.surface(colors.reaction), 0.6 * size);
+  let newton = (0.2 * size) / usual; // length of an arrow [m/N]
   const grid = createGrid(places, data.normal ?? vertical, size, 4 * s, colors.line);
   scene.add(traces, loadArrows.group, reactionArrows.group, grid);
 
@@ -265,8 +264,8 @@ export async function createMotion(element, data, clock, lights) {
     poses.update();
     for (const move of beams) move(bend);
     for (const move of stretched) move();
-    if (loadArrows.group.visible) loadArrows.update();
-    if (reactionArrows.group.visible) reactionArrows.update();
+    if (loadArrows.group.visible) loadArrows.update(newton);
+    if (reactionArrows.group.visible) reactionArrows.update(newton);
     stage.invalidate();
   }
 
@@ -300,12 +299,27 @@ export async function createMotion(element, data, clock, lights) {
     look,
     fit,
     shown,
-    bend:
-      beams.length &&
-      ((factor) => {
-        bend = factor;
-        update();
-      }),
+    factors: [
+      beams.length && {
+        text: "deflection",
+        title: "how much larger than computed beams bend in the picture",
+        most: 100,
+        set(factor) {
+          bend = factor;
+          update();
+        },
+      },
+      (loads.length || reactions.length) && {
+        text: "arrows",
+        title: "how long the arrows of forces are",
+        least: 0.1,
+        most: 100,
+        set(factor) {
+          newton = (0.2 * size * factor) / usual;
+          update();
+        },
+      },
+    ].filter(Boolean),
   });
   createOrbit(canvas, camera, { 0: fit, Home: fit, x: () => look("x"), y: () => look("y"), z: () => look("z"), i: () => look("iso") });
   createPicking(canvas, parts, camera.camera, lights);
@@ -319,7 +333,8 @@ export async function createMotion(element, data, clock, lights) {
   camera.look(data.view);
   stage.afterDrawing(() => {
     labels.draw(view.clientWidth, view.clientHeight);
-    compass(view.clientWidth, view.clientHeight);
+    const hasArrows = (loads.length && loadArrows.group.visible) || reactionArrows.group.visible;
+    compass(view.clientWidth, view.clientHeight, hasArrows ? newton : 0);
   });
   let isFirst = true;
   const resize = () => {
