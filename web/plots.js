@@ -46,7 +46,7 @@ export function createPlots(section, run, clock, lights) {
         cursor: { show: true, x: true, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
         scales: { x: { time: false }, y: { range: (u, low, high) => rangeOf(low, high) } },
         axes: [
-          { ...axis, values: (u, ticks) => ticks.map((t) => tickText(t, ticks)), size: 32 },
+          { ...axis, values: (u, ticks) => ticks.map((t) => `${tickText(t, ticks)}${t === ticks[ticks.length - 1] ? " s" : ""}`), size: 32 },
           { ...axis, values: (u, ticks) => ticks.map((t) => tickText(t, ticks)), size: 64 },
         ],
         series: [{}, ...columns.map((c, i) => ({ ...styleOf(i), width: 1.6, points: { show: times.length === 1 } }))],
@@ -78,6 +78,7 @@ export function createPlots(section, run, clock, lights) {
   }
 
   const tools = section.querySelector(".tools");
+  if (!tools) return; // no outputs
   const [reset, save] = tools.querySelectorAll("button");
   tools.hidden = false;
   reset.addEventListener("click", () => setRange(null, null));

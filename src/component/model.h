@@ -81,8 +81,9 @@ struct ct_model {
     struct ct_exs *x;
     const char *file; // as given on the command line
     const char *name, *description;
-    ct_ex time;     // the symbol t
-    ct_ex3 gravity; // [m/s^2]
+    ct_ex time;                  // the symbol t
+    ct_ex3 gravity;              // [m/s^2]
+    struct ct_mark gravity_mark; // of its key; no file where it is not given
     struct ct_parameter *parameter;
     size_t nparameter, parameter_cap;
     struct ct_frame *frame;

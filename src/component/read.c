@@ -118,10 +118,13 @@ static void read_top(struct ct_reader *r)
 
 static void read_gravity(struct ct_reader *r)
 {
-    const struct ct_node *node = ct_node_get(r->root, "gravity");
+    const struct ct_node_pair *p = ct_node_find(r->root, "gravity");
     r->m->gravity = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
-    if (node)
-        ct_read_vec3(r, node, 0, "m/s^2", &r->m->gravity, NULL);
+    r->m->gravity_mark = (struct ct_mark){0};
+    if (!p)
+        return;
+    r->m->gravity_mark = p->mark;
+    ct_read_vec3(r, p->value, 0, "m/s^2", &r->m->gravity, NULL);
 }
 
 static void mark_reached(const struct ct_model *m, const struct ct_instance *self,

@@ -12,7 +12,9 @@
 
 struct report {
     struct ct_ctx *ctx, own;
-    struct ct_system *given, *sys;
+    struct ct_system *given;
+    struct ct_system *sys;   // what is printed: with its mass matrix and forces
+    struct ct_system *moved; // what is run: as a run wants it
     const struct ct_report_options *options;
     struct ct_sim *sim;
     struct ct_recording recording;
@@ -45,18 +47,25 @@ static void read_source(struct ct_arena *a, const struct ct_system *sys, struct 
         split_lines(a, s);
 }
 
-// A system of its own: what the page derives on top leaves the caller's as it is.
+// A system of its own: what is derived on top leaves the caller's as it is.
+static struct ct_system *copy(struct report *r)
+{
+    struct ct_system *s = ct_system_borrow(&r->own, r->given);
+    s->own.model = r->own.model;
+    s->own.scratch = r->own.scratch;
+    return s;
+}
+
 static bool prepare(void *task)
 {
     struct report *r = task;
     if (!ct_web_script_size)
         return ct_error(&r->own, (struct ct_mark){0}, CT_E_NO_REPORT,
                         "this cotree was built without the report; see -Dreport in README.md");
-    r->sys = ct_system_borrow(&r->own, r->given);
-    r->sys->own.model = r->own.model;
-    r->sys->own.scratch = r->own.scratch;
+    r->moved = copy(r);
+    ct_recording_create(&r->recording, r->moved);
+    r->sys = copy(r);
     ct_formulate_dynamics(&r->sys->equations);
-    ct_recording_create(&r->recording, r->sys);
     read_source(r->own.model, r->given, &r->source);
     return true;
 }
@@ -158,7 +167,7 @@ static bool make(struct report *r)
 {
     struct ct_sim_options run = r->options->run;
     run.verify = true; // the page says how large the error is
-    r->sim = ct_sim_create(r->ctx, r->sys, &run);
+    r->sim = ct_sim_create(r->ctx, r->moved, &run);
     return r->sim && ct_recording_run(r->ctx, &r->recording, r->sim, r->options->progress)
         && ct_enter(r->ctx, write, r);
 }

@@ -61,7 +61,8 @@ static void put_error_light(struct ct_html *h)
     const struct ct_sim *sim = h->sim;
     const struct ct_estimate *e = &sim->estimate;
     const double tolerance = sim->tolerance;
-    const bool is_known = e->output && isfinite(e->worst);
+    const bool is_known
+        = e->output && isfinite(e->worst) && e->which < h->sys->equations.nresult;
     open_light(h, !e->output || sim->run_options.step > 0 ? is_known ? GOOD : FAIR
                   : !is_known || e->worst <= 10 * tolerance ? GOOD
                                                             : POOR,

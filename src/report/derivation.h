@@ -49,9 +49,10 @@ void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
 const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body);
 const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct ct_body *body);
 
+/// Is mathematics of the page LaTeX, which HTML takes too?
 static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 {
-    return d->page.look == CT_LOOK_LATEX;
+    return d->page.look != CT_LOOK_TEXT;
 }
 
 /// The reduced equations as a reader wants them: collected, or with names where they are long.

@@ -148,7 +148,7 @@ static void put_unknowns(struct ct_derivation *d)
             const char *last = strrchr(e->q[i + 3].name, '.');
             CT_PAGE_ROW(
                 &d->page,
-                d->page.look == CT_LOOK_LATEX
+                ct_derivation_is_latex(d)
                     ? ct_derivation_text(d, e->q[i].symbol)
                     : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
                 "", "", meaning);
