@@ -1,11 +1,11 @@
-// The number of each term at the clock, in the elements of class `value` that have data-term, its column.
+// The number of each term at the clock: elements of class `value` in section `equations`, in the order of the terms.
 import { formatNumber } from "./numbers.js";
 import { locate, valueAt } from "./packed.js";
 
 export function showValues(document, terms, [times], samples, clock) {
-  const shown = [...document.querySelectorAll("[data-term]")].map((element) => ({
+  const shown = [...document.querySelectorAll("#equations math .value")].map((element, i) => ({
     element,
-    column: samples[Number(element.dataset.term)],
+    column: samples[i],
     text: element.firstChild ?? element.appendChild(document.createTextNode("")),
   }));
   const visible = new Set();

@@ -291,8 +291,6 @@ static void flatten_sum(struct ct_printer *pr, struct ct_terms *t, ct_ex e)
         pr->left -= !is_whole;
         if (is_whole || !(is_sum || node->op == CT_OP_NEG)) {
             struct ct_term one = make_term(pr, s.e, s.negative);
-            one.of = s.e;
-            one.is_subtracted = s.negative;
             CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
             continue;
         }

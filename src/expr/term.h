@@ -66,8 +66,6 @@ struct ct_term {
     int pi; ///< its exponent
     struct ct_factors above, below;
     enum ct_term_class class;
-    ct_ex of;           ///< what stands in the sum
-    bool is_subtracted; ///< there
 };
 
 struct ct_terms {

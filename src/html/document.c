@@ -4,6 +4,7 @@
 #include "base/sha256.h"
 #include "html/web.h"
 #include "io/text.h"
+#include "report/mathml.h"
 #include "report/outfile.h"
 #include "report/packed.h"
 
@@ -17,6 +18,7 @@ struct report {
     struct ct_system *moved; // what is run: as a run wants it
     const struct ct_report_options *options;
     struct ct_sim *sim;
+    struct ct_terms_recording terms;
     struct ct_recording recording;
     struct ct_source source;
 };
@@ -62,10 +64,11 @@ static bool prepare(void *task)
     if (!ct_web_script_size)
         return ct_error(&r->own, (struct ct_mark){0}, CT_E_NO_REPORT,
                         "this cotree was built without the report; see -Dreport in README.md");
-    r->moved = copy(r);
-    ct_recording_create(&r->recording, r->moved);
     r->sys = copy(r);
     ct_formulate_dynamics(&r->sys->equations);
+    ct_terms_create(&r->terms, r->own.model, r->sys);
+    r->moved = copy(r);
+    ct_recording_create(&r->recording, r->moved, &r->terms);
     read_source(r->own.model, r->given, &r->source);
     return true;
 }
@@ -82,20 +85,22 @@ static void put_hash(FILE *out, struct ct_arena *a, const unsigned char *bytes, 
 static void put_head(struct ct_html *h)
 {
     FILE *out = h->out;
+    const char *style = ct_arena_printf(h->a, "%s%s%.*s", ct_page_style, ct_mathml_style,
+                                        (int)ct_web_style_size, (const char *)ct_web_style);
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
           "script-src ",
           out);
     put_hash(out, h->a, ct_web_script, ct_web_script_size);
     fputs("; style-src ", out);
-    put_hash(out, h->a, ct_web_style, ct_web_style_size);
+    put_hash(out, h->a, (const unsigned char *)style, strlen(style));
     fputs("; base-uri 'none'; form-action 'none'\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
           "<meta name=\"generator\" content=\"cotree\">\n<title>",
           out);
     ct_html_put(out, h->sys->model.name);
     fputs("</title>\n<style>", out);
-    fwrite(ct_web_style, 1, ct_web_style_size, out);
+    fputs(style, out);
     fputs("</style>\n</head>\n", out);
 }
 
@@ -154,6 +159,7 @@ static bool write(void *task)
                         .sys = r->sys,
                         .sim = r->sim,
                         .recording = &r->recording,
+                        .terms = &r->terms,
                         .source = &r->source,
                         .options = r->options};
     put_head(&h);

@@ -2,8 +2,10 @@
 #include "html/html.h"
 
 #include "base/guard.h"
+#include "report/mathml.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,21 +13,7 @@
 
 void ct_html_put(FILE *out, const char *text)
 {
-    for (; *text; text++) {
-        const unsigned char c = (unsigned char)*text;
-        if (c == '<')
-            fputs("&lt;", out);
-        else if (c == '>')
-            fputs("&gt;", out);
-        else if (c == '&')
-            fputs("&amp;", out);
-        else if (c == '"')
-            fputs("&quot;", out);
-        else if ((c < ' ' && c != '\n' && c != '\t') || c == 0x7f)
-            fputs("\xef\xbf\xbd", out);
-        else
-            fputc(c, out);
-    }
+    ct_html_text(out, text, SIZE_MAX);
 }
 
 void ct_html_put_name(FILE *out, const char *text)
@@ -68,13 +56,9 @@ void ct_html_put_number(FILE *out, double v)
 
 void ct_html_put_equation(FILE *out, const char *left, const char *right)
 {
-    fputs("<math><mtext>", out);
-    ct_html_put(out, left);
-    if (right) {
-        fputs(" = ", out);
-        ct_html_put(out, right);
-    }
-    fputs("</mtext></math>", out);
+    const struct ct_mathml_term term[] = {{.latex = left}, {.latex = right}};
+    ct_mathml_equation(out, &(struct ct_mathml_equation){.left = {&term[0], 1},
+                                                         .right = {&term[1], right ? 1 : 0}});
 }
 
 // ---- sections -----------------------------------------------------------------------------------

@@ -31,13 +31,14 @@ struct ct_html {
     struct ct_system *sys;  // a copy
     struct ct_sim *sim;     // that has run
     const struct ct_recording *recording;
+    struct ct_terms_recording *terms; // terms.h
     const struct ct_source *source;
     const struct ct_report_options *options;
 };
 
 // ---- element.c --------------------------------------------------------------------------------
 
-/// Text, also in attributes in double quotes: escaped; control characters and what is not UTF-8 become U+FFFD.
+/// Text, also in attributes in double quotes, see ct_html_text.
 void ct_html_put(FILE *out, const char *text);
 /// The same, isolated from the direction of what stands beside it.
 void ct_html_put_name(FILE *out, const char *text);

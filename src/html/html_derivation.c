@@ -1,69 +1,73 @@
-// Sections `trees`, `derivation`, `equations` and `loops`: the stages of the derivation and what they give.
+// Section `derivation`: the six stages from the terminal equations of the components to the reduced equations, folded.
 #include "html/html.h"
-#include "report/derivation.h"
-#include "sim/summary.h"
-#include "solve/singular/singular.h"
+#include "html/terms.h"
 
-typedef void stage_fill(struct ct_derivation *d);
+#include <string.h>
 
-static void put_stage(struct ct_html *h, stage_fill *fill)
+enum { MOST_TEXT = 60000 }; // characters of mathematics of a stage that are typeset
+
+static size_t length_of(const struct ct_page *p)
 {
-    struct ct_derivation d;
-    ct_derivation_init(&d, h->a, &h->sys->equations, &h->sys->model, CT_LOOK_TEXT);
-    fill(&d);
-    struct ct_text_stream *s = ct_html_open_text(h);
-    ct_page_print_text(ct_html_text_stream(s), &d.page);
-    fputs("<pre class=\"wide\">", h->out);
-    ct_html_put(h->out, ct_html_close_text(s));
-    fputs("</pre>\n", h->out);
+    size_t n = 0;
+    for (size_t i = 0; i < p->nblock; i++) {
+        const struct ct_page_block *b = &p->block[i];
+        for (size_t k = 0; k < b->nequation; k++)
+            n += strlen(b->equation[k].left)
+               + (b->equation[k].right ? strlen(b->equation[k].right) : 0);
+    }
+    return n;
 }
 
-void ct_html_trees(struct ct_html *h)
+static void put_stage(struct ct_html *h, const char *id, const char *title,
+                      const struct ct_page *p)
 {
-    ct_html_open_section(h, "trees", "Trees");
-    put_stage(h, ct_stage_tree);
-    ct_html_close_section(h);
+    const size_t length = length_of(p);
+    fprintf(h->out, "<details id=\"stage-%s\"><summary>%s</summary>\n", id, title);
+    if (length <= MOST_TEXT)
+        ct_page_print_html_blocks(h->out, p, 3);
+    else
+        fprintf(h->out,
+                "<p>%zu characters, too many for a page: <code>cotree equations</code> prints "
+                "them.</p>\n",
+                length);
+    if (strcmp(id, "reduced") == 0)
+        fputs("<p>The equations stand in <a href=\"#equations\">Equations</a>, each term with its "
+              "value.</p>\n",
+              h->out);
+    fputs("</details>\n", h->out);
+}
+
+static void fill_reduced(struct ct_derivation *d, const struct ct_reduced *r)
+{
+    ct_page_title(&d->page, "Equations of motion");
+    ct_page_sentence(&d->page, "each equation is the cutset of a branch, projected on its motion");
+    if (!r->definitions.n)
+        ct_derivation_put_matrices(d, r);
 }
 
 void ct_html_derivation(struct ct_html *h)
 {
     static const struct {
-        const char *name, *title;
-        stage_fill *fill;
+        const char *id, *title;
+        void (*fill)(struct ct_derivation *d); // NULL: the reduced equations
     } stages[] = {{"terminal", "1 Terminal equations", ct_stage_terminal},
                   {"incidence", "2 Linear graph", ct_stage_graph},
                   {"tree", "3 Trees", ct_stage_tree},
                   {"cutset", "4 Cutset equations", ct_stage_cutset},
                   {"circuit", "5 Circuit equations", ct_stage_circuit},
-                  {"reduced", "6 Reduced equations", ct_stage_reduced}};
+                  {"reduced", "6 Reduced equations", NULL}};
     ct_html_open_section(h, "derivation", "Derivation");
     fputs("<p>From what each component says on its own to the equations of motion, in six "
           "stages.</p>\n",
           h->out);
     for (size_t i = 0; i < COUNT(stages); i++) {
-        fprintf(h->out, "<details id=\"stage-%s\"><summary>%s</summary>\n", stages[i].name,
-                stages[i].title);
-        put_stage(h, stages[i].fill);
-        fputs("</details>\n", h->out);
+        struct ct_derivation d;
+        ct_derivation_init(&d, h->a, &h->sys->equations, &h->sys->model, CT_LOOK_HTML);
+        if (stages[i].fill)
+            stages[i].fill(&d);
+        else
+            fill_reduced(&d, &h->terms->reduced);
+        put_stage(h, stages[i].id, stages[i].title, &d.page);
     }
-    ct_html_close_section(h);
-}
-
-void ct_html_equations(struct ct_html *h)
-{
-    ct_html_open_section(h, "equations", "Equations of motion");
-    put_stage(h, ct_stage_reduced);
-    ct_html_close_section(h);
-}
-
-void ct_html_loops(struct ct_html *h)
-{
-    const struct ct_equations *e = &h->sys->equations;
-    ct_html_open_section(h, "loops", "Loops");
-    if (!e->nrow)
-        fputs("<p>The joints close no loop: there are no constraint rows.</p>\n", h->out);
-    else
-        fprintf(h->out, "<p>%zu constraint rows, %ld of them redundant.</p>\n", e->nrow,
-                ct_sim_redundant(h->sim));
     ct_html_close_section(h);
 }

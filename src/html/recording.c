@@ -5,13 +5,14 @@
 
 enum { MOST_ROWS = 4001 }; // a screen has fewer columns of pixels
 
-void ct_recording_create(struct ct_recording *r, struct ct_system *sys)
+void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
+                         struct ct_terms_recording *terms)
 {
-    *r = (struct ct_recording){.stride = 1, .ncolumn = sys->equations.nresult};
+    *r = (struct ct_recording){.stride = 1, .ncolumn = sys->equations.nresult, .terms = terms};
     ct_animation_create(sys, &r->animation);
 }
 
-static void keep(struct ct_recording *r, double t, const double *value)
+static void keep(struct ct_recording *r, double t, const double *value, bool is_last)
 {
     struct ct_arena *a = r->sim->own.model;
     CT_PUSH(a, r->time, r->nrow, r->time_cap, t);
@@ -19,6 +20,7 @@ static void keep(struct ct_recording *r, double t, const double *value)
     for (size_t k = 0; k < r->ncolumn; k++)
         CT_PUSH(a, r->value, n, r->value_cap, value[k]);
     ct_animation_keep(&r->animation, r->sim->run, t);
+    ct_terms_keep(a, r->terms, r->sim->run, r->nrow - 1, is_last);
 }
 
 static bool at_row(void *user, double t, const double *value, size_t n)
@@ -27,7 +29,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     (void)n;
     const bool is_last = r->seen + 1 == r->nsample;
     if (r->seen++ % r->stride == 0 || is_last)
-        keep(r, t, value);
+        keep(r, t, value, is_last);
     return true;
 }
 
@@ -45,6 +47,7 @@ static bool look_at_start(void *task)
     memcpy(r->first, r->animation.values.program.out, n * sizeof *r->first);
     r->nsample = sim->run_options.nsample;
     r->stride = r->nsample > MOST_ROWS ? (r->nsample + MOST_ROWS - 3) / (MOST_ROWS - 1) : 1;
+    ct_terms_compile(sim->own.model, r->terms, sim->run, 1 + (r->nsample - 1) / r->stride);
     return true;
 }
 
@@ -53,7 +56,7 @@ static bool keep_start(void *task)
     struct ct_recording *r = task;
     double *value = CT_NEWN(r->sim->own.model, double, r->ncolumn + 1);
     ct_run_results(r->sim->run, 0, ct_run_state(r->sim->run), value); // the evaluator stands there now
-    keep(r, 0, r->sim->report.final);
+    keep(r, 0, value, true);
     return true;
 }
 

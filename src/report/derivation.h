@@ -58,6 +58,9 @@ static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 /// The reduced equations as a reader wants them: collected, or with names where they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
 
+/// The mass matrix and the Jacobian of the constraints; of more than a page it is said how large they are.
+void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r);
+
 /// Circuits with the terminal equations put in: places of the bodies that are chords, and constraint rows, by their
 /// definitions where they are long.
 struct ct_substituted {

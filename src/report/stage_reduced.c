@@ -171,7 +171,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
-static void put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
+void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
     const char **row = CT_NEWN(d->a, const char *, e->nu + e->nrow + 1);
@@ -238,7 +238,7 @@ void ct_stage_reduced(struct ct_derivation *d)
         count(d, e->nrow, "constraint", "constraints"),
         e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
     ct_derivation_put_definitions(d, "with", &r.definitions);
-    put_matrices(d, &r);
+    ct_derivation_put_matrices(d, &r);
     if (e->nu) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
