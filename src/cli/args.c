@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_report, &cli_equations,  &cli_graph,       &cli_draw,   &cli_accuracy,
-       &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,  &cli_linearize,
-       &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export, &cli_components,
-       &cli_methods,  &cli_schema,     &cli_completion,  NULL};
+    = {&cli_simulate,   &cli_report,   &cli_equations,  &cli_graph,       &cli_draw,
+       &cli_accuracy,   &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,
+       &cli_linearize,  &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export,
+       &cli_components, &cli_methods,  &cli_schema,     &cli_completion,  NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -41,8 +41,8 @@ const struct cli_option cli_options[] = {
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_STEPS, true,
      "what evaluates the equations: auto, native or tape", "auto native tape"},
-    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK,
-     false,
+    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver),
+     CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK, false,
      "what finds the accelerations of closed loops: auto,\n"
      "unrolled, one-system, sparse or dense",
      "auto unrolled one-system sparse dense"},
@@ -90,6 +90,8 @@ const struct cli_option cli_options[] = {
      "error against seconds, a line for each method"},
     {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_MODES, false,
      "shapes of the first modes"},
+    {"report", 0, "FILE.html", CLI_TEXT, FIELD(report), CLI_MODES, false,
+     "the modes animated, as one HTML page"},
     {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_SIMULATE, false,
      "the outputs over time, a panel for each unit"},
     {"columns", 0, "LIST", CLI_TEXT, FIELD(columns), CLI_SIMULATE, false,
@@ -440,9 +442,9 @@ static bool is_same_file(const char *a, const char *b)
 static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
-    const char *const file[] = {args->output, args->summary,   args->plot, args->curve,
-                                args->model,  args->reference, args->tree};
-    enum { WRITTEN = 4 };
+    const char *const file[] = {args->output, args->summary, args->plot,      args->curve,
+                                args->report, args->model,   args->reference, args->tree};
+    enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)
             if (file[i] && file[j] && strcmp(file[i], "-") != 0

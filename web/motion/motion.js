@@ -202,24 +202,23 @@ function labelledPlaces(data) {
 }
 
 // element: <div id="motion-panel">, which holds a drawing of the start, for print and where there is no WebGL.
-export async function createMotion(element, data, clock, lights) {
+// track, factors: in place of those of samples, see modes.js. Returns {update(), size}.
+export async function createMotion(element, data, clock, lights, { track = undefined, factors = undefined } = {}) {
   const canvas = document.createElement("canvas");
   const vertical = verticalOf(data.views);
   const camera = createCamera(data.views, vertical, () => stage.invalidate());
   const stage = createStage(canvas, camera.camera);
-  if (!stage) return;
+  if (!stage) return { update() {}, size: 0 };
   const { scene } = stage;
   const view = document.createElement("div");
   view.className = "motion-view";
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", "the mechanism; arrow keys turn it, + and - zoom, 0 shows all of it, x y z i are views");
+  canvas.setAttribute("aria-label", "the mechanism; arrow keys turn it, + and - zoom, 0 shows all of it, x y z i are views, space plays");
   view.append(canvas);
   element.prepend(view);
   element.classList.add("has-motion");
-  const [times] = await unpack(data.times);
-  const columns = await unpack(data.samples);
-  const track = createTrack(data.poses, times, columns);
+  track ??= createTrack(data.poses, (await unpack(data.times))[0], await unpack(data.samples));
   data.bodies.forEach((body, i) => (body.number = i));
 
   const { colors, read } = createColors(view, () => stage.invalidate());
@@ -247,7 +246,7 @@ export async function createMotion(element, data, clock, lights) {
 
   const traces = createTraces(parts, track, tracedPoints(data, track), size);
   const loads = data.forces.filter((f) => f.load !== undefined).map((f) => ({ name: f.name, at: f.to.at, column: f.load, torque: f.load + 3 }));
-  const reactions = data.joints.map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
+  const reactions = data.joints.filter((j) => j.reaction !== undefined).map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
   const usual = usualSize(track, [...loads, ...reactions].map((f) => f.column)) || 1;
   const loadArrows = createArrows(context, loads, parts.surface(colors.load), 0.6 * size);
   const reactionArrows = createArrows(context, reactions, parts.surface(colors.reaction), 0.6 * size);
@@ -276,7 +275,7 @@ export async function createMotion(element, data, clock, lights) {
   reactionArrows.group.visible = false;
   labels.layer.hidden = data.bodies.length + data.joints.length > 24;
   const shown = [
-    { text: "paths", on: true, set: (on) => show(traces, on) },
+    traces.children.length && { text: "paths", on: true, set: (on) => show(traces, on) },
     loads.length && { text: "forces", on: true, set: (on) => show(loadArrows.group, on) },
     reactions.length && { text: "reactions", on: false, set: (on) => show(reactionArrows.group, on) },
     {
@@ -289,7 +288,7 @@ export async function createMotion(element, data, clock, lights) {
     },
     { text: "grid", on: true, set: (on) => show(grid, on) },
   ].filter(Boolean);
-  const fit = () => camera.fit(places, 6 * s);
+  const fit = () => camera.fit(places, 6 * s + (factors ? 0.06 * size : 0)); // what swings leaves its places
   const look = (name) => {
     camera.look(name);
     fit();
@@ -299,7 +298,7 @@ export async function createMotion(element, data, clock, lights) {
     look,
     fit,
     shown,
-    factors: [
+    factors: factors ?? [
       beams.length && {
         text: "deflection",
         title: "how much larger than computed beams bend in the picture",
@@ -321,7 +320,8 @@ export async function createMotion(element, data, clock, lights) {
       },
     ].filter(Boolean),
   });
-  createOrbit(canvas, camera, { 0: fit, Home: fit, x: () => look("x"), y: () => look("y"), z: () => look("z"), i: () => look("iso") });
+  const toggle = () => (clock.playing ? clock.pause() : clock.play());
+  createOrbit(canvas, camera, { " ": toggle, 0: fit, Home: fit, x: () => look("x"), y: () => look("y"), z: () => look("z"), i: () => look("iso") });
   createPicking(canvas, parts, camera.camera, lights);
   lights.add(view);
   lights.subscribe((names) => {
@@ -349,6 +349,7 @@ export async function createMotion(element, data, clock, lights) {
   resize();
   new ResizeObserver(resize).observe(view);
   clock.subscribe(update);
+  return { update, size };
 }
 
 // What the pointer is on is lit; a click keeps it.
