@@ -88,12 +88,12 @@ static void put_about(struct ct_html *h, const struct ct_modes *s)
 static void put_table(struct ct_html *h, const struct ct_modes *s)
 {
     ct_html_open_section(h, "modes", "Modes");
-    fputs("<table>\n<tr><th>mode</th><th class=\"right\">frequency [Hz]</th><th "
-          "class=\"right\">|s| [rad/s]</th><th class=\"right\">damping</th></tr>\n",
+    fputs("<table>\n<tr><th>mode</th><th class=\"right\">frequency [Hz]</th>"
+          "<th class=\"right\">damping</th></tr>\n",
           h->out);
     for (size_t i = 0; i < s->n; i++) {
         const struct ct_mode_info m = ct_modes_info(s, i);
-        const double numbers[] = {m.frequency_hz, m.omega, m.damping};
+        const double numbers[] = {m.frequency_hz, m.damping};
         fprintf(h->out,
                 "<tr><td><label><input type=\"radio\" name=\"mode\" value=\"%zu\"%s> "
                 "%zu</label></td>",
@@ -138,7 +138,7 @@ static bool write(void *task)
     ct_html_put_head(&h);
     fputs("<body>\n<header><h1>", h.out);
     ct_html_put_name(h.out, s->system->model.name);
-    fputs("</h1></header>\n<main>\n", h.out);
+    fputs("</h1></header>\n<main class=\"modes\">\n", h.out);
     put_picture(&h, p);
     put_table(&h, s);
     fputs("</main>\n", h.out);

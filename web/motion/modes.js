@@ -71,6 +71,16 @@ function createModeTrack(poses, columns) {
   };
 }
 
+function addPlayButton(bar, clock) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.addEventListener("click", () => (clock.playing ? clock.pause() : clock.play()));
+  bar.prepend(button);
+  clock.subscribe(() => {
+    button.textContent = clock.playing ? "Pause" : "Play";
+  });
+}
+
 // Starts the page; returns window.cotree.
 export function startModes() {
   const data = readData("data-modes");
@@ -87,6 +97,8 @@ export function startModes() {
       track,
       factors: [{ text: "amplitude", title: "how far the system swings", least: 0.1, most: 10, set: (factor) => choose(mode, factor) }],
     });
+    if (!motion) return;
+    addPlayButton(motion.bar, clock);
     function choose(i, factor) {
       mode = i;
       amplitude = factor;

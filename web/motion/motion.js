@@ -202,13 +202,13 @@ function labelledPlaces(data) {
 }
 
 // element: <div id="motion-panel">, which holds a drawing of the start, for print and where there is no WebGL.
-// track, factors: in place of those of samples, see modes.js. Returns {update(), size}.
+// track, factors: in place of those of samples, see modes.js. Returns {update(), size, bar: the controls}; nothing where there is no WebGL.
 export async function createMotion(element, data, clock, lights, { track = undefined, factors = undefined } = {}) {
   const canvas = document.createElement("canvas");
   const vertical = verticalOf(data.views);
   const camera = createCamera(data.views, vertical, () => stage.invalidate());
   const stage = createStage(canvas, camera.camera);
-  if (!stage) return { update() {}, size: 0 };
+  if (!stage) return undefined;
   const { scene } = stage;
   const view = document.createElement("div");
   view.className = "motion-view";
@@ -293,7 +293,7 @@ export async function createMotion(element, data, clock, lights, { track = undef
     camera.look(name);
     fit();
   };
-  createControls(element, {
+  const bar = createControls(element, {
     views: data.views,
     look,
     fit,
@@ -349,7 +349,7 @@ export async function createMotion(element, data, clock, lights, { track = undef
   resize();
   new ResizeObserver(resize).observe(view);
   clock.subscribe(update);
-  return { update, size };
+  return { update, size, bar };
 }
 
 // What the pointer is on is lit; a click keeps it.
