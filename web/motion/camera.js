@@ -5,14 +5,14 @@
 
 import { Matrix4, OrthographicCamera, Quaternion, Vector3 } from "three";
 
-// views: {NAME: {right, up}}; upward: the axis that turning keeps upright; changed: called after each change.
+// views: {NAME: {right, up}}; upward: the axis of ground that is up in `iso`; changed: called after each change.
 export function createCamera(views, upward, changed) {
   const camera = new OrthographicCamera();
   const target = new Vector3();
   const right = new Vector3();
   const up = new Vector3();
   const toward = new Vector3();
-  const vertical = new Vector3(...upward);
+  const vertical = new Vector3(); // what turning keeps upright
   const axes = new Matrix4();
   const turned = new Quaternion();
   const trial = new Vector3();
@@ -35,12 +35,6 @@ export function createCamera(views, upward, changed) {
     changed();
   }
 
-  function look(name) {
-    right.fromArray(views[name].right);
-    up.fromArray(views[name].up);
-    toward.crossVectors(right, up);
-  }
-
   return {
     camera,
     target,
@@ -55,7 +49,10 @@ export function createCamera(views, upward, changed) {
       place();
     },
     look(name) {
-      look(name);
+      right.fromArray(views[name].right);
+      up.fromArray(views[name].up);
+      toward.crossVectors(right, up);
+      vertical.fromArray(name === "iso" ? upward : views[name].up);
       place();
     },
     // All of the points (x y z, one after the other) are seen, `margin` [m] around them.
