@@ -4,6 +4,7 @@
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
+#include "report/tree_pairs.h"
 #include "solve/initial/initial_equilibrium.h"
 
 #include <stdlib.h>
@@ -78,6 +79,13 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
             f->tree = choices[i];
             return true;
         }
+    char *end;
+    const long number = strtol(tree, &end, 10);
+    if (!*end && number > 0 && number <= CT_MOST_CANDIDATES) {
+        f->tree = CT_TREE_AUTO;
+        f->pick = (int)number;
+        return true;
+    }
     f->tree = CT_TREE_GIVEN;
     FILE *file = fopen(tree, "r");
     if (file) {
@@ -85,7 +93,8 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
         return read_tree_file(ctx, tree, f);
     }
     return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
-                    "tree '%s' is neither auto, joints, absolute nor a file that can be read%s",
+                    "tree '%s' is neither auto, joints, absolute, a number from 1 to 10 nor a "
+                    "file that can be read%s",
                     tree, ct_suggest(ctx->scratch, tree, words, COUNT(words)));
 }
 
@@ -349,6 +358,29 @@ bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char
     struct ct_ctx own = {0};
     struct drawing d = {ctx, &own, sys, format, out};
     const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, draw, &d);
+    ct_own_finish(&own);
+    return ok;
+}
+
+static bool print_trees(void *task)
+{
+    const struct drawing *d = task;
+    const struct ct_equations *e = &d->s->equations;
+    const bool is_json = d->format && !strcmp(d->format, "json");
+    if (d->format && !is_json && strcmp(d->format, "text") != 0)
+        return ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                        "pairs of trees have no format '%s': text or json", d->format);
+    (is_json ? ct_tree_pairs_print_json : ct_tree_pairs_print_text)(d->out, d->own->scratch, e,
+                                                                    &d->s->tree);
+    return true;
+}
+
+bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                           FILE *out)
+{
+    struct ct_ctx own = {0};
+    struct drawing d = {ctx, &own, sys, format, out};
+    const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, print_trees, &d);
     ct_own_finish(&own);
     return ok;
 }

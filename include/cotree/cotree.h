@@ -174,6 +174,13 @@ CT_API const char *ct_system_name(const struct ct_system *sys);
 CT_API size_t ct_system_column_count(const struct ct_system *sys);
 CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
 
+/**
+ * The cheapest pairs of trees that were weighed, ten at most, and why one was chosen. format: "text" or "json".
+ * Number N is chosen by the option `tree` "N". Errors: E003.
+ */
+CT_API bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                                  FILE *out);
+
 /** The linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
@@ -304,6 +311,11 @@ CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
                                  const char *path);
 /** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
+/**
+ * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
+ * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ */
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
 /**
  * The equations of motion as source code in a folder, which is made if need be. Before the run.
  *

@@ -23,8 +23,8 @@ const struct cli_option cli_options[] = {
     {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
     {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
-     "auto, joints, absolute, or a YAML FILE with the keys\n"
-     "translation and rotation: lists of branches",
+     "auto, joints, absolute, a number of 'graph --trees', or\n"
+     "a YAML FILE: lists of branches translation and rotation",
      "auto joints absolute"},
     {"keep-all", 0, NULL, CLI_FLAG, FIELD(keep_all), CLI_MODELS, true,
      "leave nothing out: keep the spatial rows of planar models"},
@@ -104,6 +104,8 @@ const struct cli_option cli_options[] = {
      "the motion is followed to this time in seconds first"},
     {"trace", 0, NULL, CLI_FLAG, FIELD(trace), CLI_DRAW, false,
      "with paths of points and beams' ends over the run"},
+    {"trees", 0, NULL, CLI_FLAG, FIELD(trees), CLI_GRAPH, false,
+     "the cheapest pairs of trees instead, for --tree"},
     {"show", 0, "STAGES", CLI_TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced",

@@ -29,7 +29,7 @@ struct cli_args {
     long samples, count, sample, threads, lanes, per_decade;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool trace, trees, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 
@@ -62,8 +62,8 @@ enum cli_use {
     CLI_STEPS = CLI_RUNS | CLI_DRAW | CLI_REPORT, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
-    CLI_MODELS
-    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT | CLI_CHECK | CLI_EXPORT
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT
+               | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -76,9 +76,9 @@ struct cli_command {
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw, cli_accuracy,
-    cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
-    cli_buckling, cli_sweep, cli_export, cli_components, cli_methods, cli_schema,
+extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
+    cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
+    cli_inverse, cli_buckling, cli_sweep, cli_export, cli_components, cli_methods, cli_schema,
     cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];

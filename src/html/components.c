@@ -63,8 +63,8 @@ static bool is_of_system(const char *name)
     return false;
 }
 
-const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m, const char *text,
-                                  size_t n)
+const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m,
+                                  const char *text, size_t n)
 {
     const char *names = "";
     for (size_t i = 0; i < n;) {
@@ -179,13 +179,13 @@ static void add_top_level(struct lines *l, const struct ct_model *m)
         for (size_t k = 0; k < COUNT(keys); k++) {
             const size_t n = strlen(keys[k][0]);
             if (strncmp(l->line[i], keys[k][0], n) == 0 && l->line[i][n] == ':')
-                add_lines(l, m, keys[k][1],
-                          (struct ct_mark){.file = m->file, .line = (int)i});
+                add_lines(l, m, keys[k][1], (struct ct_mark){.file = m->file, .line = (int)i});
         }
 }
 
 // `ground` is a body that has no mark where it is not listed.
-struct ct_component_lines *ct_components_find_lines(struct ct_arena *a, const struct ct_model *m,
+struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
+                                                    const struct ct_model *m,
                                                     const char *const *line, size_t n,
                                                     size_t *count)
 {

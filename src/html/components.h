@@ -11,8 +11,8 @@
 const char *ct_components_of_edge(struct ct_arena *a, const struct ct_system *sys, int edge);
 const char *ct_components_of_node(struct ct_arena *a, const struct ct_system *sys, int node);
 /// Those whose names stand in a text, as in an expression; "system" for quantities of the whole system.
-const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m, const char *text,
-                                  size_t n);
+const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m,
+                                  const char *text, size_t n);
 /// Those that an output depends on.
 const char *ct_components_of_result(struct ct_arena *a, const struct ct_system *sys,
                                     size_t result);
@@ -23,7 +23,8 @@ struct ct_component_lines {
     int first, last; // from 0
 };
 /// All of them, for n lines of text; *count (out).
-struct ct_component_lines *ct_components_find_lines(struct ct_arena *a, const struct ct_model *m,
+struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
+                                                    const struct ct_model *m,
                                                     const char *const *line, size_t n,
                                                     size_t *count);
 

@@ -30,7 +30,8 @@ static void split_lines(struct ct_arena *a, struct ct_source *s)
     size_t cap = 0;
     for (const char *at = s->text; *at;) {
         const size_t n = strcspn(at, "\n");
-        CT_PUSH(a, s->line, s->nline, cap, ct_arena_strndup(a, at, n - (n && at[n - 1] == '\r')));
+        CT_PUSH(a, s->line, s->nline, cap,
+                ct_arena_strndup(a, at, n - (n && at[n - 1] == '\r')));
         at += n + (at[n] == '\n');
     }
 }

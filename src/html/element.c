@@ -50,8 +50,10 @@ void ct_html_put_number(FILE *out, double v)
     }
     const int exponent = atoi(e + 1);
     *e = 0;
-    fprintf(out, "%s\xc2\xb7" "10<sup>%s%d</sup>", text, exponent < 0 ? "\xe2\x88\x92" : "",
-            abs(exponent));
+    fprintf(out,
+            "%s\xc2\xb7"
+            "10<sup>%s%d</sup>",
+            text, exponent < 0 ? "\xe2\x88\x92" : "", abs(exponent));
 }
 
 void ct_html_put_equation(FILE *out, const char *left, const char *right)
@@ -65,7 +67,8 @@ void ct_html_put_equation(FILE *out, const char *left, const char *right)
 
 void ct_html_open_section(struct ct_html *h, const char *id, const char *title)
 {
-    fprintf(h->out, "<section id=\"%s\" aria-labelledby=\"%s-title\">\n<h2 id=\"%s-title\">%s</h2>\n",
+    fprintf(h->out,
+            "<section id=\"%s\" aria-labelledby=\"%s-title\">\n<h2 id=\"%s-title\">%s</h2>\n",
             id, id, id, title);
 }
 

@@ -27,10 +27,10 @@ struct ct_source {
 
 struct ct_html {
     FILE *out;
-    struct ct_ctx *ctx;     // of the caller: its diagnostics are shown
-    struct ct_arena *a;     // for the time of the call
-    struct ct_system *sys;  // a copy
-    struct ct_sim *sim;     // that has run
+    struct ct_ctx *ctx;    // of the caller: its diagnostics are shown
+    struct ct_arena *a;    // for the time of the call
+    struct ct_system *sys; // a copy
+    struct ct_sim *sim;    // that has run
     const struct ct_recording *recording;
     struct ct_terms_recording *terms; // terms.h
     const struct ct_source *source;

@@ -43,12 +43,14 @@ static void put_estimates(struct ct_html *h)
             fputs("<p>The second run, which would tell the error, failed.</p>\n", h->out);
         return;
     }
-    fputs("<details class=\"wide\"><summary>Errors of all outputs, estimated from a second run (",
-          h->out);
+    fputs(
+        "<details class=\"wide\"><summary>Errors of all outputs, estimated from a second run (",
+        h->out);
     ct_html_put(h->out, s->how);
-    fputs(")</summary>\n<table><thead><tr><th>output</th><th>relative</th><th>absolute</th></tr>"
-          "</thead>\n<tbody>\n",
-          h->out);
+    fputs(
+        ")</summary>\n<table><thead><tr><th>output</th><th>relative</th><th>absolute</th></tr>"
+        "</thead>\n<tbody>\n",
+        h->out);
     for (size_t i = 0; i < e->nresult; i++) {
         fputs("<tr><td>", h->out);
         ct_html_put_name(h->out, e->result[i].name);

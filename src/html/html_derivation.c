@@ -31,7 +31,8 @@ static void put_stage(struct ct_html *h, const char *id, const char *title,
                 "them.</p>\n",
                 length);
     if (strcmp(id, "reduced") == 0)
-        fputs("<p>The equations stand in <a href=\"#equations\">Equations</a>, each term with its "
+        fputs("<p>The equations stand in <a href=\"#equations\">Equations</a>, each term with "
+              "its "
               "value.</p>\n",
               h->out);
     fputs("</details>\n", h->out);
@@ -40,7 +41,8 @@ static void put_stage(struct ct_html *h, const char *id, const char *title,
 static void fill_reduced(struct ct_derivation *d, const struct ct_reduced *r)
 {
     ct_page_title(&d->page, "Equations of motion");
-    ct_page_sentence(&d->page, "each equation is the cutset of a branch, projected on its motion");
+    ct_page_sentence(&d->page,
+                     "each equation is the cutset of a branch, projected on its motion");
     if (!r->definitions.n)
         ct_derivation_put_matrices(d, r);
 }

@@ -51,9 +51,8 @@ static size_t put_equation(struct ct_html *h, size_t first)
                         && p->term[last].equation == t->equation;)
         last++;
     const char *name = ct_provenance_equation(h->terms->derivation.e, t);
-    const struct ct_mathml_equation e = {.name = name,
-                                         .left = side_of(h, first, middle),
-                                         .right = side_of(h, middle, last)};
+    const struct ct_mathml_equation e
+        = {.name = name, .left = side_of(h, first, middle), .right = side_of(h, middle, last)};
     fputs("<div class=\"labelled\"><span class=\"label\">", h->out);
     ct_html_put(h->out, name);
     fputs("</span>\n", h->out);
@@ -82,13 +81,14 @@ static void put_definitions(struct ct_html *h)
     const struct ct_definitions *list = &h->terms->reduced.definitions;
     if (!list->n)
         return;
-    fprintf(h->out, "<details><summary>%zu named expressions</summary>\n<div class=\"equations\">\n",
+    fprintf(h->out,
+            "<details><summary>%zu named expressions</summary>\n<div class=\"equations\">\n",
             list->n);
     for (size_t i = 0; i < list->n; i++) {
         const struct ct_mathml_term left = {.latex = ct_derivation_text(d, list->at[i].symbol)},
                                     right = {.latex = ct_derivation_text(d, list->at[i].value)};
-        ct_mathml_equation(h->out,
-                           &(struct ct_mathml_equation){.left = {&left, 1}, .right = {&right, 1}});
+        ct_mathml_equation(
+            h->out, &(struct ct_mathml_equation){.left = {&left, 1}, .right = {&right, 1}});
     }
     fputs("</div></details>\n", h->out);
 }
@@ -102,7 +102,8 @@ static size_t length_of_all(const struct ct_html *h)
     for (size_t i = 0; i < t->provenance.nterm; i++)
         n += strlen(t->provenance.term[i].text);
     for (size_t i = 0; i < t->reduced.definitions.n; i++)
-        n += strlen(ct_derivation_text(&h->terms->derivation, t->reduced.definitions.at[i].value));
+        n += strlen(
+            ct_derivation_text(&h->terms->derivation, t->reduced.definitions.at[i].value));
     return n;
 }
 
@@ -124,7 +125,8 @@ static void put_data(struct ct_html *h)
 static void put_all(struct ct_html *h)
 {
     const struct ct_terms_recording *t = h->terms;
-    fputs("<p class=\"note\">Each term has the value that it takes at the time of the page beside it.",
+    fputs("<p class=\"note\">Each term has the value that it takes at the time of the page "
+          "beside it.",
           h->out);
     if (t->stride > 1)
         fprintf(h->out, " Values between every %zuth row of the outputs are interpolated.",

@@ -16,9 +16,9 @@ enum {
     LENGTH = 130,     // [px] of an edge; arms are shorter
     ARM = 80,
     MARGIN = 60,
-    RADIUS = 7,   // [px] of a vertex
-    SPREAD = 44,  // [px] between the middles of edges that join the same vertices
-    WIDE = 1100   // [px] a page
+    RADIUS = 7,  // [px] of a vertex
+    SPREAD = 44, // [px] between the middles of edges that join the same vertices
+    WIDE = 1100  // [px] a page
 };
 
 struct picture {
@@ -123,8 +123,8 @@ static void put_edge(struct picture *p, int i)
             c.x, c.y, b.x, b.y);
     fprintf(out, "<path class=\"line\" d=\"M%.1f %.1fQ%.1f %.1f %.1f %.1f\"/>", a.x, a.y, c.x,
             c.y, b.x, b.y);
-    fprintf(out, "<path class=\"arrow\" d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\"/>", tip.x + 6 * tx,
-            tip.y + 6 * ty, tip.x - 5 * tx - 5 * ty, tip.y - 5 * ty + 5 * tx,
+    fprintf(out, "<path class=\"arrow\" d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\"/>",
+            tip.x + 6 * tx, tip.y + 6 * ty, tip.x - 5 * tx - 5 * ty, tip.y - 5 * ty + 5 * tx,
             tip.x - 5 * tx + 5 * ty, tip.y - 5 * ty - 5 * tx);
     const bool is_arm = e->build->edge[i].kind == CT_EDGE_ARM;
     fprintf(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d", middle.x,
@@ -190,21 +190,23 @@ static void put_picture(struct ct_html *h)
 // ---- equations ----------------------------------------------------------------------------------
 
 static void put_equation(struct ct_html *h, struct ct_derivation *d, const struct ct_tree *t,
-                         const struct ct_incidence *cutsets, int edge, int row, bool of_rotation)
+                         const struct ct_incidence *cutsets, int edge, int row,
+                         bool of_rotation)
 {
     const bool is_branch = t->is_branch[edge];
     const char *name = h->sys->equations.edge_name[edge];
     FILE *out = h->out;
-    if (of_rotation && !h->sys->equations.build->edge[edge].has_rotation)
-        return; // a particle takes no torque and does not turn
     fputs("<div class=\"equation\" data-edge=\"", out);
     ct_html_put(out, name);
     fprintf(out, "\" data-tree=\"%s\"><span class=\"label\">%s %d, %s: </span> ",
             of_rotation ? "rotation" : "translation",
             is_branch ? "cutset of branch" : "circuit of chord", edge + 1,
-            is_branch ? of_rotation ? "torques" : "forces"
-                      : of_rotation ? "rotations" : "displacements");
-    if (is_branch)
+            is_branch     ? of_rotation ? "torques" : "forces"
+            : of_rotation ? "rotations"
+                          : "displacements");
+    if (of_rotation && !h->sys->equations.build->edge[edge].has_rotation)
+        fputs("none of its own: it does not turn", out); // a particle, a force
+    else if (is_branch)
         ct_html_put_equation(
             out, ct_derivation_cutset(d, cutsets, row, edge, of_rotation ? "T" : "F"), "0");
     else
@@ -299,7 +301,8 @@ static void put_list(struct ct_html *h)
         fputs("</td><td>", out);
         ct_html_put(out, e->node_name[e->graph->edge[i].head]);
         fprintf(out, "</td><td>%s</td><td>%s</td></tr>\n",
-                e->T->is_branch[i] ? "branch" : "chord", e->R->is_branch[i] ? "branch" : "chord");
+                e->T->is_branch[i] ? "branch" : "chord",
+                e->R->is_branch[i] ? "branch" : "chord");
     }
     fputs("</tbody></table></details>\n", out);
 }
@@ -323,7 +326,8 @@ void ct_html_graph(struct ct_html *h)
 {
     const struct ct_graph *g = h->sys->equations.graph;
     ct_html_open_section(h, "graph", "Linear graph");
-    fprintf(h->out, "<p>%d vertices and %d edges; each tree has %d branches and %d chords.</p>\n",
+    fprintf(h->out,
+            "<p>%d vertices and %d edges; each tree has %d branches and %d chords.</p>\n",
             g->nnode, g->nedge, h->sys->equations.T->nbranch, h->sys->equations.T->nchord);
     put_legend(h);
     if (g->nnode <= MOST_DRAWN)

@@ -75,12 +75,15 @@ void ct_html_manifest(struct ct_html *h)
     const struct ct_source *s = h->source;
     char digest[2 * CT_SHA256_SIZE + 1];
     ct_html_open_section(h, "manifest", "Manifest");
-    fprintf(h->out, "<dl>\n<dt>program</dt><dd>cotree %s</dd>\n<dt>model</dt><dd>", ct_version());
+    fprintf(h->out, "<dl>\n<dt>program</dt><dd>cotree %s</dd>\n<dt>model</dt><dd>",
+            ct_version());
     ct_html_put_name(h->out, h->sys->model.file);
     fputs("</dd>\n", h->out);
     if (s->text) {
         ct_sha256_text((const unsigned char *)s->text, s->n, digest);
-        fprintf(h->out, "<dt>SHA-256 of the model</dt><dd><code class=\"digest\">%s</code></dd>\n", digest);
+        fprintf(h->out,
+                "<dt>SHA-256 of the model</dt><dd><code class=\"digest\">%s</code></dd>\n",
+                digest);
     }
     fputs("</dl>\n", h->out);
     if (h->options->ncommand) {

@@ -23,7 +23,8 @@ static void put_sentence(struct ct_html *h)
     long nbeam = 0;
     for (size_t i = 1; i < m->nbody; i++)
         nbeam += m->body[i].beam != NULL;
-    fprintf(h->out, "<p class=\"lead\">%s of ", e->is_planar ? "A planar system" : "A spatial system");
+    fprintf(h->out, "<p class=\"lead\">%s of ",
+            e->is_planar ? "A planar system" : "A spatial system");
     put_count(h, (long)m->nbody - 1, "body", "bodies");
     if (nbeam)
         fprintf(h->out, " (%ld of them %s)", nbeam, nbeam == 1 ? "a beam" : "beams");
@@ -63,9 +64,10 @@ static void put_error_light(struct ct_html *h)
     const double tolerance = sim->tolerance;
     const bool is_known
         = e->output && isfinite(e->worst) && e->which < h->sys->equations.nresult;
-    open_light(h, !e->output || sim->run_options.step > 0 ? is_known ? GOOD : FAIR
-                  : !is_known || e->worst <= 10 * tolerance ? GOOD
-                                                            : POOR,
+    open_light(h,
+               !e->output || sim->run_options.step > 0   ? is_known ? GOOD : FAIR
+               : !is_known || e->worst <= 10 * tolerance ? GOOD
+                                                         : POOR,
                "accuracy", "error");
     if (is_known) {
         ct_html_put_number(h->out, e->worst);

@@ -59,7 +59,8 @@ static bool keep_start(void *task)
 {
     struct ct_recording *r = task;
     double *value = CT_NEWN(r->sim->own.model, double, r->ncolumn + 1);
-    ct_run_results(r->sim->run, 0, ct_run_state(r->sim->run), value); // the evaluator stands there now
+    ct_run_results(r->sim->run, 0, ct_run_state(r->sim->run),
+                   value); // the evaluator stands there now
     keep(r, 0, value, true);
     return true;
 }

@@ -73,8 +73,8 @@ struct ct_substituted {
 void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
 
 /// F(own) + F(...) - ..., zero, for row i of a cutset matrix (rows: its transpose), that of the branch `own`.
-const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows, int i,
-                                 int own, const char *letter);
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
+                                 int i, int own, const char *letter);
 /// What d or S of a chord is, from the branches on the way from its tail to its head.
 const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
                                   bool of_rotation);

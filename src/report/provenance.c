@@ -577,13 +577,12 @@ static void list_terms(struct finder *f, struct side *side)
     const ct_ex sum = expression_of(e, f->r, side->kind, side->equation, side->is_right);
     const size_t n = ct_ex_terms(f->d->a, e->x, sum, &f->d->print, &term);
     for (size_t i = 0; i < n; i++) {
-        const struct ct_equation_term t = {.kind = side->kind,
-                                           .equation = side->equation,
-                                           .is_right = side->is_right,
-                                           .e = term[i].is_subtracted
-                                                  ? ct_ex_neg(e->x, term[i].value)
-                                                  : term[i].value,
-                                           .text = term[i].text};
+        const struct ct_equation_term t
+            = {.kind = side->kind,
+               .equation = side->equation,
+               .is_right = side->is_right,
+               .e = term[i].is_subtracted ? ct_ex_neg(e->x, term[i].value) : term[i].value,
+               .text = term[i].text};
         if (!ct_ex_is_zero(t.e))
             CT_PUSH(f->d->a, p->term, p->nterm, f->term_cap, t);
     }

@@ -126,8 +126,8 @@ static void put_tree_matrices(struct ct_derivation *d, bool cutsets)
 
 // ---- cutsets --------------------------------------------------------------------------------------
 
-const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows, int i,
-                                 int own, const char *letter)
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
+                                 int i, int own, const char *letter)
 {
     const char *s = ct_derivation_of(d, letter, d->e->edge_name[own]);
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
@@ -165,9 +165,9 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
                 || !has_balance(d, own, of_rotation))
                 continue;
             if (n++ < MOST_EQUATIONS)
-                ct_page_equation(&d->page, NULL,
-                                 ct_derivation_cutset(d, &rows, i, own, of_rotation ? "T" : "F"), "0",
-                                 NULL);
+                ct_page_equation(
+                    &d->page, NULL,
+                    ct_derivation_cutset(d, &rows, i, own, of_rotation ? "T" : "F"), "0", NULL);
         }
     put_more(d, n);
 }
