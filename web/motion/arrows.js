@@ -10,7 +10,7 @@ const direction = new Vector3();
 
 // What is usual for the largest of some vectors: nine of ten samples have no larger one. Peaks as at a start do not make all others
 // vanish.
-export function usualSize(track, columns) {
+function usualSize(track, columns) {
   const sizes = [];
   track.scan(400, () => {
     let most = 0;
@@ -62,7 +62,7 @@ function inFront(material) {
 
 // forces: [{name, at: [pose, x, y, z], column, torque: column or undefined}]; most: length that no arrow exceeds [m].
 // Returns {group, update(scale [m/N])}.
-export function createArrows({ parts, track, s }, forces, base, most) {
+function createArrows({ parts, track, s }, forces, base, most) {
   const group = new Group();
   const material = inFront(base);
   const usualTorque = usualSize(track, forces.filter((f) => f.torque !== undefined).map((f) => f.torque));
@@ -89,6 +89,33 @@ export function createArrows({ parts, track, s }, forces, base, most) {
         item.group.quaternion.setFromUnitVectors(y, direction.divideScalar(size));
         item.stretch(length);
       }
+    },
+  };
+}
+
+// The arrows of what acts from outside and of what joints transmit, on one scale.
+// Returns {loads, reactions: arrows, or undefined where there are none; scale: [m/N], 0: none is seen; stretch(factor), update()}.
+export function createForces(context, data, colors, size) {
+  const { parts, track } = context;
+  const loads = data.forces.filter((f) => f.load !== undefined).map((f) => ({ name: f.name, at: f.to.at, column: f.load, torque: f.load + 3 }));
+  const reactions = data.joints.filter((j) => j.reaction !== undefined).map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
+  const usual = usualSize(track, [...loads, ...reactions].map((f) => f.column)) || 1;
+  const arrows = (forces, color) => (forces.length ? createArrows(context, forces, parts.surface(color), 0.6 * size) : undefined);
+  const all = [arrows(loads, colors.load), arrows(reactions, colors.reaction)];
+  const visible = () => all.filter((one) => one?.group.visible);
+  let scale = (0.2 * size) / usual;
+  for (const one of all) if (one) context.scene.add(one.group);
+  return {
+    loads: all[0],
+    reactions: all[1],
+    get scale() {
+      return visible().length ? scale : 0;
+    },
+    stretch(factor) {
+      scale = (0.2 * size * factor) / usual;
+    },
+    update() {
+      for (const one of visible()) one.update(scale);
     },
   };
 }

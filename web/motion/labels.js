@@ -1,6 +1,21 @@
 // Names beside what they name, as text over the picture; where two would cover each other, the second one is left out.
 
 import { Vector3 } from "three";
+import { colorOfBody } from "./colors.js";
+
+// Bodies at the middle of what is held of them, joints where they are.
+export function labelledPlaces(data) {
+  const middle = ({ held, number, beam }) => {
+    if (beam) return [number, beam.length / 2, 0, 0];
+    const own = held.filter(([pose]) => pose === number);
+    if (!own.length) return [number, 0, 0, 0];
+    const sum = own.reduce((s, at) => s.map((v, k) => v + at[k + 1] / own.length), [0, 0, 0]);
+    return [number, ...sum];
+  };
+  const bodies = data.bodies.slice(1).map((body) => ({ name: body.name, at: middle(body), kind: "body", color: colorOfBody(body.number) }));
+  const joints = data.joints.map(({ name, from, to }) => ({ name, at: to.body === 0 ? from.at : to.at, kind: "joint" }));
+  return [...bodies, ...joints];
+}
 
 // items: [{name, at: [pose, x, y, z], kind: "body" or "joint", color}]
 export function createLabels(element, items, track, camera) {
