@@ -24,6 +24,8 @@ function startReport() {
     const samples = await unpack(run.samples);
     await createMotion(document.getElementById("motion-panel"), readData("data-motion"), clock, lights);
     createPlots(document.getElementById("plots"), { ...run, times, samples }, clock, lights);
+    const loops = readData("data-loops");
+    if (loops) createPlots(document.getElementById("loops"), { times: (await unpack(loops.times))[0], samples: await unpack(loops.samples) }, clock, lights);
     const terms = readData("data-terms");
     if (terms) showValues(document, terms, await unpack(terms.times), await unpack(terms.samples), clock);
   }

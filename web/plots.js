@@ -1,4 +1,4 @@
-// Section `plots`: the outputs over time, a panel for each unit; the cursor is the clock.
+// Columns over time, a panel for each figure of a section; the cursor is the clock.
 import uPlot from "uplot";
 import { csvOf, saveText } from "./csv.js";
 import { formatNumber } from "./numbers.js";
@@ -31,7 +31,7 @@ export function createPlots(section, run, clock, lights) {
     for (const plot of plots) {
       plot.setScale("x", { min: min ?? times[0], max: max ?? times[times.length - 1] });
     }
-    reset.disabled = range === null;
+    if (reset) reset.disabled = range === null;
   }
 
   function createPanel(figure) {
@@ -78,11 +78,10 @@ export function createPlots(section, run, clock, lights) {
   }
 
   const tools = section.querySelector(".tools");
-  if (!tools) return; // no outputs
-  const [reset, save] = tools.querySelectorAll("button");
-  tools.hidden = false;
-  reset.addEventListener("click", () => setRange(null, null));
-  save.addEventListener("click", () => {
+  const [reset, save] = tools?.querySelectorAll("button") ?? [];
+  if (tools) tools.hidden = false;
+  reset?.addEventListener("click", () => setRange(null, null));
+  save?.addEventListener("click", () => {
     const [from, to] = range ?? [times[0], times[times.length - 1]];
     saveText(`${run.file}.csv`, csvOf(run.columns.map((column) => column.name), times, samples, from, to));
   });

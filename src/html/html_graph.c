@@ -288,13 +288,13 @@ static void put_list(struct ct_html *h)
     const struct ct_equations *e = &h->sys->equations;
     FILE *out = h->out;
     fputs("<details class=\"wide\"><summary>All edges</summary>\n<table>\n<thead><tr><th "
-          "class=\"right\">#</th><th>edge</th><th>type</th><th>from</th><th>to</th>"
+          "class=\"number\">#</th><th>edge</th><th>type</th><th>from</th><th>to</th>"
           "<th>translation</th><th>rotation</th></tr></thead>\n<tbody>\n",
           out);
     for (int i = 0; i < e->graph->nedge; i++) {
         fputs("<tr", out);
         ct_html_put_components(out, ct_components_of_edge(h->a, h->sys, i));
-        fprintf(out, "><td class=\"right\">%d</td><td>", i + 1);
+        fprintf(out, "><td class=\"number\">%d</td><td>", i + 1);
         ct_html_put(out, e->edge_name[i]);
         fprintf(out, "</td><td>%s</td><td>", e->edge_kind[i]);
         ct_html_put(out, e->node_name[e->graph->edge[i].tail]);

@@ -11,7 +11,25 @@ void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
                          struct ct_terms_recording *terms)
 {
     *r = (struct ct_recording){.stride = 1, .ncolumn = sys->equations.nresult, .terms = terms};
-    ct_animation_create(sys->own.model, sys->equations.build, CT_ANIMATION_FORCES, &r->animation);
+    ct_animation_create(sys->own.model, sys->equations.build, CT_ANIMATION_FORCES,
+                        &r->animation);
+}
+
+// Singular values cost more than a sample does: so many of them at most.
+static void measure_loops(struct ct_recording *r, double t, bool is_last)
+{
+    enum { MOST_MEASURED = 501 };
+    struct ct_arena *a = r->sim->own.model;
+    const size_t n = 1 + r->loops.nloop, nrow = 1 + (r->nsample - 1) / r->stride;
+    const size_t stride = 1 + (nrow - 1) / MOST_MEASURED;
+    if (!r->loops.nloop || ((r->nrow - 1) % stride && !is_last))
+        return;
+    double *near = CT_NEWN(a, double, n);
+    ct_loops_measure(&r->loops, near);
+    CT_PUSH(a, r->near_time, r->nnear, r->near_time_cap, t);
+    size_t at = (r->nnear - 1) * n;
+    for (size_t k = 0; k < n; k++)
+        CT_PUSH(a, r->near, at, r->near_cap, near[k]);
 }
 
 static void keep(struct ct_recording *r, double t, const double *value, bool is_last)
@@ -24,6 +42,7 @@ static void keep(struct ct_recording *r, double t, const double *value, bool is_
     if (r->animation.values.uses_multipliers)
         ct_run_find_multipliers(r->sim->run);
     ct_animation_keep(&r->animation, ct_run_evaluator(r->sim->run), t);
+    measure_loops(r, t, is_last);
     ct_terms_keep(a, r->terms, r->sim->run, r->nrow - 1, is_last);
 }
 
@@ -51,6 +70,7 @@ static bool look_at_start(void *task)
     memcpy(r->first, r->animation.values.program.out, n * sizeof *r->first);
     r->nsample = sim->run_options.nsample;
     r->stride = r->nsample > MOST_ROWS ? (r->nsample + MOST_ROWS - 3) / (MOST_ROWS - 1) : 1;
+    ct_loops_create(sim->own.model, sim, &r->loops);
     ct_terms_compile(sim->own.model, r->terms, sim->run, 1 + (r->nsample - 1) / r->stride);
     return true;
 }

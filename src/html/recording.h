@@ -4,6 +4,7 @@
 #ifndef CT_HTML_RECORDING_H
 #define CT_HTML_RECORDING_H
 
+#include "analysis/loops.h"
 #include "draw/animation.h"
 #include "html/terms.h"
 #include "sim/sim.h"
@@ -19,6 +20,10 @@ struct ct_recording {
     double *time;  // (nrow) [s]
     double *value; // nrow x ncolumn, a row after the other
     size_t seen;   // samples so far
+    struct ct_loops loops;
+    size_t nnear, near_cap, near_time_cap;
+    double *near;      // how near to a singular configuration: nnear x (1 + loops.nloop)
+    double *near_time; // (nnear) [s]
 };
 
 /// Prepare, before the run of `sys` (a private copy, see ct_system_borrow) is made. terms: ct_terms_create has filled

@@ -195,3 +195,18 @@ def test_sweeps_work_after_a_fork():
 def _sweep_in_child(values):
     m = cotree.load(SYSTEMS / "double_pendulum" / "model.yaml")
     return m.sweep(values, until=0.1, threads=2).values
+
+
+def test_report_is_one_page_of_the_same_bytes(arm, tmp_path):
+    pages = [tmp_path / "a.html", tmp_path / "b.html"]
+    try:
+        for page in pages:
+            arm.report(page, until=0.5)
+    except cotree.Error as error:
+        assert error.diagnostics[0].code == "E530"  # built without it
+        return
+    text = pages[0].read_text(encoding="utf-8")
+    assert text.startswith("<!DOCTYPE html>") and 'id="manifest"' in text
+    assert text == pages[1].read_text(encoding="utf-8")
+    with pytest.raises(cotree.Error):
+        arm.report(tmp_path / "missing" / "a.html")

@@ -102,20 +102,19 @@ export function createForces(context, data, colors, size) {
   const usual = usualSize(track, [...loads, ...reactions].map((f) => f.column)) || 1;
   const arrows = (forces, color) => (forces.length ? createArrows(context, forces, parts.surface(color), 0.6 * size) : undefined);
   const all = [arrows(loads, colors.load), arrows(reactions, colors.reaction)];
-  const visible = () => all.filter((one) => one?.group.visible);
   let scale = (0.2 * size) / usual;
   for (const one of all) if (one) context.scene.add(one.group);
   return {
     loads: all[0],
     reactions: all[1],
     get scale() {
-      return visible().length ? scale : 0;
+      return all.some((one) => one?.group.visible) ? scale : 0;
     },
     stretch(factor) {
       scale = (0.2 * size * factor) / usual;
     },
     update() {
-      for (const one of visible()) one.update(scale);
+      for (const one of all) if (one?.group.visible) one.update(scale);
     },
   };
 }

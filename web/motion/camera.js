@@ -19,8 +19,10 @@ export function createCamera(views, upward, changed) {
   let height = 1;
   let aspect = 1;
   let depth = 1; // half of the scene's [m]
+  let version = 0; // how often it has changed
 
   function place() {
+    version++;
     camera.position.copy(target).addScaledVector(toward, 2 * depth + height);
     axes.makeBasis(right, up, toward);
     camera.quaternion.setFromRotationMatrix(axes);
@@ -43,6 +45,9 @@ export function createCamera(views, upward, changed) {
     toward,
     get height() {
       return height;
+    },
+    get version() {
+      return version;
     },
     resize(width, tall) {
       aspect = width / tall;

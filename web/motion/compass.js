@@ -84,8 +84,13 @@ export function createCompass(element, camera, gravity) {
   const e = new Vector3();
   g.normalize();
 
+  let [drawnVersion, drawnNewton] = [-1, -1];
+
   // newton: length of an arrow [m/N]; 0: there are none
   return function draw(width, height, newton) {
+    if (camera.version === drawnVersion && newton === drawnNewton) return; // the camera knows of another size, too
+    drawnVersion = camera.version;
+    drawnNewton = newton;
     ["x", "y", "z"].forEach((name, i) => {
       e.set(0, 0, 0).setComponent(i, 1);
       axes[i](46, height - 46, camera.right.dot(e), camera.up.dot(e));

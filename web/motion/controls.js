@@ -8,7 +8,7 @@ function make(tag, attributes, parent, text = "") {
   return element;
 }
 
-// views: {x, y, z, iso}; look(name), fit(); shown: [{text, on, set(bool)}]; factors: [{text, title, least, most, set(factor)}]
+// views: {x, y, z, iso}; look(name), fit(); shown: [{text, title, on, set(bool)}]; factors: [{text, title, least, most, set(factor)}]
 export function createControls(element, { views, look, fit, shown, factors }) {
   const bar = make("div", { className: "tools controls" }, element);
 
@@ -21,8 +21,8 @@ export function createControls(element, { views, look, fit, shown, factors }) {
   }
   make("button", { type: "button", title: "all in sight (0)" }, group, "fit").addEventListener("click", fit);
 
-  for (const { text, on, set } of shown) {
-    const label = make("label", {}, bar);
+  for (const { text, title = "", on, set } of shown) {
+    const label = make("label", { title }, bar);
     const box = make("input", { type: "checkbox", checked: on }, label);
     label.append(text);
     box.addEventListener("change", () => set(box.checked));

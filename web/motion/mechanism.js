@@ -6,7 +6,7 @@ import { colorOfBody } from "./colors.js";
 import { createLink } from "./links.js";
 import { createSolid } from "./solids.js";
 import { createStretched } from "./springs.js";
-import { createJoint } from "./symbols.js";
+import { createHatch, createJoint, orient } from "./symbols.js";
 
 const isSliding = (symbol) => symbol === "slider" || symbol === "cylindrical" || symbol === "screw";
 
@@ -65,6 +65,26 @@ export async function addBodies(context, data, size) {
 // The same place of the same body?
 const isSamePlace = (a, b, s) => a.body === b.body && a.at[0] === b.at[0] && Math.hypot(...[1, 2, 3].map((k) => a.at[k] - b.at[k])) < 0.1 * s;
 
+// Hatched ground where a spring ends on it.
+function addAnchors(context, force, facing) {
+  const { track, s } = context;
+  for (const [end, other] of [
+    [force.from, force.to],
+    [force.to, force.from],
+  ]) {
+    if (end.body !== 0) continue;
+    const [at, far] = [new Float64Array(3), new Float64Array(3)];
+    track.locate(end.at, at);
+    track.locate(other.at, far);
+    const out = new Vector3(...far).sub(new Vector3(...at));
+    if (out.length() < s) continue;
+    const anchor = createHatch(context, 4.4 * s, 3 * s, force.name);
+    orient(anchor, out, facing);
+    anchor.position.set(...at);
+    context.poses.groups[0].add(anchor);
+  }
+}
+
 // Returns what stretches: a function for each spring, damper and rod. vertical: the axis of ground that is up.
 export function addJoints(context, data, vertical) {
   const { track } = context;
@@ -85,7 +105,9 @@ export function addJoints(context, data, vertical) {
   }
   for (const force of data.forces.filter((f) => f.from)) {
     const kinds = [force.spring && "spring", force.damper && "damper"].filter(Boolean);
-    if (kinds.length) stretched.push(createStretched(context, [force.from.at, force.to.at], kinds, force.name));
+    if (!kinds.length) continue;
+    stretched.push(createStretched(context, [force.from.at, force.to.at], kinds, force.name));
+    addAnchors(context, force, facing);
   }
   return stretched;
 }

@@ -127,7 +127,12 @@ export async function createMotion(element, data, clock, lights, { track = undef
   const shown = [
     traces.children.length && { text: "paths", on: true, set: (on) => show(traces, on) },
     forces.loads && { text: "forces", on: true, set: (on) => show(forces.loads.group, on) },
-    forces.reactions && { text: "reactions", on: false, set: (on) => show(forces.reactions.group, on) },
+    forces.reactions && {
+      text: data.open_reactions ? "reactions (not unique)" : "reactions",
+      title: data.open_reactions ? "constraints are redundant: these are one choice of many" : "forces that joints transmit to the second body",
+      on: false,
+      set: (on) => show(forces.reactions.group, on),
+    },
     {
       text: "names",
       on: !labels.layer.hidden,
