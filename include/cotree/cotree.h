@@ -644,6 +644,9 @@ CT_API bool ct_modes_shape(const struct ct_modes *modes, size_t i, const char *c
 CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path);
 /** The shapes of the first modes as SVG: frames and the lines between them, at rest and displaced. Errors: E002. */
 CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
+/** The modes animated, as one HTML file that needs nothing else; path NULL: standard output. Errors: E002; E530 where the
+ *  library was built without pages. */
+CT_API bool ct_modes_report(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
 /** What the modes are about, for people. */
 CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
 /** The same as a text, which ct_free frees. */

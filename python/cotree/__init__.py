@@ -278,6 +278,17 @@ class System:
                     file.write(",".join(map(_number, row)) + "\n")
             return System(self.path, self._text, dict(given, input=path))
 
+    def report(self, path, until=None, tolerance=None, **options):
+        """The model, its equations and its motion as one HTML page; options as those of `simulate`."""
+        context = _l.Context()
+        o = _l.ReportOptions(path=os.fsencode(path),
+                             run=_run_options(until=until, tolerance=tolerance, **options))
+        o.size = ctypes.sizeof(o)
+        if not _interruptible(context, lambda: lib.ct_system_report(context.pointer, self.pointer,
+                                                                    _byref(o))):
+            context.fail()
+        context.warn()
+
     def inverse(self, until=None, **options):
         """The motion of a system whose freedoms are all driven, and the efforts that it takes."""
         return self._simulate(lib.ct_sim_follow, _run_options(until=until, **options))
@@ -435,11 +446,6 @@ class System:
             except FileNotFoundError:
                 raise RuntimeError("graph('svg') needs the program dot of Graphviz") from None
         return text
-
-    def report(self, path):
-        """Write the whole derivation as a page."""
-        with open(path, "w", encoding="utf-8") as out:
-            out.write(self.equations(format="html", show="all"))
 
     def _repr_latex_(self):
         import re

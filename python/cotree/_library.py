@@ -52,6 +52,11 @@ class SimResults(Structure):
                 ("progress", PROGRESS), ("row", ROW), ("user", c_void_p)]
 
 
+class ReportOptions(Structure):
+    _fields_ = [("size", c_size_t), ("run", SimOptions), ("path", c_char_p), ("progress", c_void_p),
+                ("command", POINTER(c_char_p)), ("ncommand", c_size_t)]
+
+
 class StudyOptions(Structure):
     _fields_ = [("size", c_size_t), ("run", SimOptions), ("vary", POINTER(c_char_p)),
                 ("nvary", c_size_t), ("sample", c_long), ("seed", ctypes.c_ulonglong),
@@ -138,6 +143,7 @@ _SIGNATURES = {
     "ct_sim_destroy": (None, _P),
     "ct_sim_run": (c_bool, _P, _P, POINTER(SimResults)),
     "ct_sim_follow": (c_bool, _P, _P, POINTER(SimResults)),
+    "ct_system_report": (c_bool, _P, _P, POINTER(ReportOptions)),
     "ct_sim_summary": (_P, _P),
     "ct_sim_summary_json": (_P, _P),
     "ct_study_create": (_P, _P, c_char_p, POINTER(SystemOptions), POINTER(StudyOptions)),

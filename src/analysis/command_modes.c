@@ -1,5 +1,5 @@
 // Natural motions about a configuration: the table, the shapes, their picture.
-#include "analysis/configuration.h"
+#include "analysis/modes.h"
 
 #include "analysis/eigenvalues.h"
 #include "formulate/beam/flexible_body.h"
@@ -14,18 +14,6 @@
 #include <string.h>
 
 enum { STANDARD_COUNT = 10, MOST_PANELS = 12 };
-
-struct ct_modes {
-    struct ct_ctx own;
-    struct ct_system *system;
-    struct ct_configuration at;
-    struct ct_sim_options run;
-    long count; // asked for; 0: the usual number
-    struct ct_motion_mode *mode;
-    size_t n, all; // shown, found
-    const char *how;
-    const char **coordinate; // nu names
-};
 
 // ---- finding them ---------------------------------------------------------------------------
 
@@ -359,20 +347,24 @@ static void skeleton_create(struct skeleton *k, struct ct_modes *s)
     add_bones(k, b);
 }
 
-// Points (2 x n, out) when the coordinates have moved by `amount` of a shape, the loops closed
-// again.
-static void points_of(struct skeleton *k, const double *y0, const double *shape, double amount,
-                      double *out)
+void ct_modes_displace(struct ct_modes *s, const double *y0, const double *shape, double amount)
 {
-    struct ct_linear *l = k->s->at.l;
-    double *dq = CT_NEWN(k->s->own.model, double, l->nu + 1);
+    struct ct_linear *l = s->at.l;
+    double *dq = CT_NEWN(s->own.scratch, double, l->nu + 1);
     memcpy(l->y, y0, (l->m->nq + l->m->nu + 1) * sizeof *y0);
     for (int i = 0; i < l->nu; i++)
         dq[i] = amount * shape[i];
     ct_evaluator_retract(l->m, l->y, dq);
     ct_linear_close(l); // as nearly as it can be
     ct_evaluator_set(l->m, l->t, l->y);
-    ct_program_run(&k->places, l->m->input);
+}
+
+// Points (2 x n, out) when the coordinates have moved by `amount` of a shape.
+static void points_of(struct skeleton *k, const double *y0, const double *shape, double amount,
+                      double *out)
+{
+    ct_modes_displace(k->s, y0, shape, amount);
+    ct_program_run(&k->places, k->s->at.l->m->input);
     memcpy(out, k->places.out, 2 * k->n * sizeof *out);
 }
 

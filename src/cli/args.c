@@ -102,6 +102,8 @@ const struct cli_option cli_options[] = {
      "error against seconds, a line for each method"},
     {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_MODES, false,
      "shapes of the first modes"},
+    {"report", 0, "FILE.html", CLI_TEXT, FIELD(report), CLI_MODES, false,
+     "the modes animated, as one HTML page"},
     {"plot", 0, "FILE.svg", CLI_TEXT, FIELD(plot), CLI_SIMULATE, false,
      "the outputs over time, a panel for each unit"},
     {"columns", 0, "LIST", CLI_TEXT, FIELD(columns), CLI_SIMULATE, false,
@@ -473,9 +475,10 @@ static bool is_same_file(const char *a, const char *b)
 static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
-    const char *const file[] = {args->output, args->summary,   args->plot, args->curve,
-                                args->model,  args->reference, args->tree, args->members};
-    enum { WRITTEN = 4 };
+    const char *const file[]
+        = {args->output, args->summary,   args->plot, args->curve,  args->report,
+           args->model,  args->reference, args->tree, args->members};
+    enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)
             if (file[i] && file[j] && strcmp(file[i], "-") != 0

@@ -19,7 +19,7 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *columns, *view, *about, *inputs, *input, *load, *curve, *elements,
+        *plot, *report, *columns, *view, *about, *inputs, *input, *load, *curve, *elements,
         *formulations, *members;
     struct cli_list { // what is given several times
         const char **text;

@@ -6,6 +6,8 @@ static bool report(struct ct_ctx *ctx, struct ct_modes *modes, const struct cli_
     bool ok = ct_modes_write(ctx, modes, args->output);
     if (args->plot)
         ok = ct_modes_draw(ctx, modes, args->plot) && ok;
+    if (args->report)
+        ok = ct_modes_report(ctx, modes, args->report) && ok;
     if (!args->quiet)
         ct_modes_print_summary(modes, stderr);
     return ok;
@@ -38,7 +40,8 @@ const struct cli_command cli_modes = {
     .more = "\n"
             "Prints mode, frequency, |s| and damping of the eigenvalues s, the lowest first; "
             "growing\n"
-            "motions have a negative damping. FILE.json has the shapes, too.\n"
+            "motions have a negative damping. FILE.json has the shapes, too;\n"
+            "--report shows them as motions.\n"
             "With --vary: run, the parameters, then these columns, for each of their values.\n",
     .examples = {"cotree modes suspension.yaml --about equilibrium",
                  "cotree modes suspension.yaml --count 3 --plot shapes.svg -o modes.json"},

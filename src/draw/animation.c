@@ -3,7 +3,6 @@
 
 #include "draw/view.h"
 #include "formulate/dynamics/reaction.h"
-#include "solve/run/run_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -53,7 +52,7 @@ static void list_values(struct ct_build *b, struct ct_arena *a, struct ct_animat
     size_t n = m->scene.nvalue;
     memcpy(e, m->scene.expression, n * sizeof *e);
     m->reaction = n;
-    for (size_t i = 0; i < model->njoint; i++) {
+    for (size_t i = 0; i < model->njoint && m->content == CT_ANIMATION_FORCES; i++) {
         const ct_ex3 f
             = has_reaction(b, &m->scene, i) ? reaction(b, i) : (ct_ex3){{CT_EX_ZERO}};
         for (int k = 0; k < 3; k++)
@@ -65,15 +64,16 @@ static void list_values(struct ct_build *b, struct ct_arena *a, struct ct_animat
         m->values.uses_multipliers |= (ct_ex_kinds(b->x, e[i]) & 1u << CT_SYM_LAM) != 0;
 }
 
-void ct_animation_create(struct ct_system *sys, struct ct_animation *m)
+void ct_animation_create(struct ct_arena *a, struct ct_build *b,
+                         enum ct_animation_content content, struct ct_animation *m)
 {
-    struct ct_arena *a = sys->own.model;
-    *m = (struct ct_animation){0};
-    ct_scene_create(sys, &m->scene);
+    *m = (struct ct_animation){.content = content};
+    ct_scene_create(a, b, &m->scene);
     find_poses(a, m);
-    list_values(sys->equations.build, a, m);
-    const size_t last = m->scene.model->njoint;
-    m->ncolumn = ct_animation_reaction_column(m, last);
+    list_values(b, a, m);
+    m->ncolumn = content == CT_ANIMATION_FORCES
+                   ? ct_animation_reaction_column(m, m->scene.model->njoint)
+                   : ct_animation_load_column(m, 0);
 }
 
 // ---- columns ----------------------------------------------------------------------------------
@@ -108,9 +108,9 @@ size_t ct_animation_reaction_column(const struct ct_animation *m, size_t joint)
 
 // ---- rows -------------------------------------------------------------------------------------
 
-void ct_animation_compile(struct ct_arena *a, struct ct_animation *m, struct ct_run *run)
+void ct_animation_compile(struct ct_arena *a, struct ct_animation *m,
+                          struct ct_evaluator *evaluator)
 {
-    struct ct_evaluator *evaluator = ct_run_evaluator(run);
     m->arena = a;
     ct_evaluator_add_program(a, evaluator, evaluator->e->build->x, m->values.expression,
                              m->values.n, &m->values.program);
@@ -205,11 +205,19 @@ static double *add_row(struct ct_animation *m, double t)
     return m->row + m->nrow++ * m->ncolumn;
 }
 
-void ct_animation_keep(struct ct_animation *m, struct ct_run *run, double t)
+static void keep_forces(struct ct_animation *m, const double *value, double *row)
 {
-    struct ct_evaluator *evaluator = ct_run_evaluator(run);
-    if (m->values.uses_multipliers)
-        ct_run_find_multipliers(run);
+    for (size_t i = 0; i < m->scene.model->nforce; i++)
+        if (m->scene.force[i].first != SIZE_MAX)
+            memcpy(row + ct_animation_load_column(m, i), value + m->scene.force[i].first,
+                   6 * sizeof *row);
+    memcpy(row + ct_animation_reaction_column(m, 0), value + m->reaction,
+           3 * m->scene.model->njoint * sizeof *row);
+}
+
+const double *ct_animation_keep(struct ct_animation *m, struct ct_evaluator *evaluator,
+                                double t)
+{
     ct_program_run(&m->values.program, evaluator->input);
     const double *value = m->values.program.out;
     double *row = add_row(m, t);
@@ -217,10 +225,7 @@ void ct_animation_keep(struct ct_animation *m, struct ct_run *run, double t)
         find_local(m, value);
     keep_poses(m, value, m->nrow > 1 ? row - m->ncolumn : NULL, row);
     keep_beams(m, value, row);
-    for (size_t i = 0; i < m->scene.model->nforce; i++)
-        if (m->scene.force[i].first != SIZE_MAX)
-            memcpy(row + ct_animation_load_column(m, i), value + m->scene.force[i].first,
-                   6 * sizeof *row);
-    memcpy(row + ct_animation_reaction_column(m, 0), value + m->reaction,
-           3 * m->scene.model->njoint * sizeof *row);
+    if (m->content == CT_ANIMATION_FORCES)
+        keep_forces(m, value, row);
+    return row;
 }

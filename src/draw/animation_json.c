@@ -211,7 +211,8 @@ static void write_joint(const struct work *w, size_t i)
     ct_json_end(w->j);
     ct_json_bool(w->j, "spring", s->has_spring);
     ct_json_bool(w->j, "damper", s->has_damper);
-    ct_json_integer(w->j, "reaction", (long long)ct_animation_reaction_column(w->m, i));
+    if (w->m->content == CT_ANIMATION_FORCES)
+        ct_json_integer(w->j, "reaction", (long long)ct_animation_reaction_column(w->m, i));
     ct_json_end(w->j);
 }
 
@@ -225,7 +226,7 @@ static void write_force(const struct work *w, size_t i)
     write_end(w, "to", s->to);
     ct_json_bool(w->j, "spring", s->has_spring);
     ct_json_bool(w->j, "damper", s->has_damper);
-    if (s->first != SIZE_MAX)
+    if (s->first != SIZE_MAX && w->m->content == CT_ANIMATION_FORCES)
         ct_json_integer(w->j, "load", (long long)ct_animation_load_column(w->m, i));
     ct_json_end(w->j);
 }
@@ -317,8 +318,8 @@ static void write_traces(const struct work *w)
     ct_json_end(w->j);
 }
 
-void ct_animation_write(struct ct_arena *a, struct ct_json *j, const struct ct_animation *m,
-                        size_t most)
+void ct_animation_write_geometry(struct ct_arena *a, struct ct_json *j,
+                                 const struct ct_animation *m)
 {
     const struct work w = {a, j, m, m->scene.model};
     write_views(&w);
@@ -337,5 +338,12 @@ void ct_animation_write(struct ct_arena *a, struct ct_json *j, const struct ct_a
         write_force(&w, i);
     ct_json_end(j);
     write_traces(&w);
+}
+
+void ct_animation_write(struct ct_arena *a, struct ct_json *j, const struct ct_animation *m,
+                        size_t most)
+{
+    const struct work w = {a, j, m, m->scene.model};
+    ct_animation_write_geometry(a, j, m);
     write_samples(&w, most);
 }

@@ -64,7 +64,7 @@ static void keep_places(struct drawing *d, const double *value)
 static bool make_scene(void *task)
 {
     struct drawing *d = task;
-    ct_scene_create(d->system, &d->scene);
+    ct_scene_create(d->system->own.model, d->system->equations.build, &d->scene);
     if (!ct_view_choose(&d->view, &d->scene, d->options->view))
         return ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
                         "there is no view '%s': x, y, z or iso", d->options->view);

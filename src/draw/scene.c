@@ -198,11 +198,9 @@ static void create_force(const struct ct_instance *self, struct ct_scene_force *
     }
 }
 
-void ct_scene_create(struct ct_system *sys, struct ct_scene *s)
+void ct_scene_create(struct ct_arena *a, struct ct_build *b, struct ct_scene *s)
 {
-    struct ct_build *b = sys->equations.build;
-    struct ct_arena *a = sys->own.model;
-    const struct ct_model *m = &sys->model;
+    const struct ct_model *m = b->model;
     struct values v = {.a = a};
     *s = (struct ct_scene){
         .model = m, .is_planar = b->topology->keeps_plane, .nbeam = b->nflexible};

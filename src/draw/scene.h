@@ -76,8 +76,8 @@ struct ct_scene {
     const ct_ex *expression; // of the values
 };
 
-/// The scene of a system; all of it lives in the system's arena. Raises the guard.
-void ct_scene_create(struct ct_system *sys, struct ct_scene *s);
+/// The scene of the system that equations were derived from; all of it lives in a. Raises the guard.
+void ct_scene_create(struct ct_arena *a, struct ct_build *b, struct ct_scene *s);
 
 /// The program of its values on a run's evaluator. a: lives as long as that. Raises the guard.
 void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_evaluator *m,

@@ -62,9 +62,8 @@ static struct ct_system *copy(struct report *r)
 static bool prepare(void *task)
 {
     struct report *r = task;
-    if (!ct_web_script_size)
-        return ct_error(&r->own, (struct ct_mark){0}, CT_E_NO_REPORT,
-                        "this cotree was built without the report; see -Dreport in README.md");
+    if (!ct_html_is_built(&r->own))
+        return false;
     r->sys = copy(r);
     ct_formulate_dynamics(&r->sys->equations);
     ct_terms_create(&r->terms, r->own.model, r->sys);
@@ -83,7 +82,7 @@ static void put_hash(FILE *out, struct ct_arena *a, const unsigned char *bytes, 
     fprintf(out, "'sha256-%s'", ct_base64(a, digest, sizeof digest));
 }
 
-static void put_head(struct ct_html *h)
+void ct_html_put_head(struct ct_html *h)
 {
     FILE *out = h->out;
     const char *style = ct_arena_printf(h->a, "%s%s%.*s", ct_page_style, ct_mathml_style,
@@ -103,6 +102,20 @@ static void put_head(struct ct_html *h)
     fputs("</title>\n<style>", out);
     fputs(style, out);
     fputs("</style>\n</head>\n", out);
+}
+
+void ct_html_put_script(struct ct_html *h)
+{
+    fputs("<script>", h->out);
+    fwrite(ct_web_script, 1, ct_web_script_size, h->out);
+    fputs("</script>\n</body>\n</html>\n", h->out);
+}
+
+bool ct_html_is_built(struct ct_ctx *ctx)
+{
+    return ct_web_script_size
+        || ct_error(ctx, (struct ct_mark){0}, CT_E_NO_REPORT,
+                    "this cotree was built without the report; see -Dreport in README.md");
 }
 
 // ---- sections -----------------------------------------------------------------------------------
@@ -143,9 +156,7 @@ static void put_body(struct ct_html *h)
           "<select aria-label=\"speed\"></select></div>\n",
           out);
     ct_html_write_run(h);
-    fputs("<script>", out);
-    fwrite(ct_web_script, 1, ct_web_script_size, out);
-    fputs("</script>\n</body>\n</html>\n", out);
+    ct_html_put_script(h);
 }
 
 static bool write(void *task)
@@ -163,7 +174,7 @@ static bool write(void *task)
                         .terms = &r->terms,
                         .source = &r->source,
                         .options = r->options};
-    put_head(&h);
+    ct_html_put_head(&h);
     put_body(&h);
     return ct_outfile_close(r->ctx, &file);
 }

@@ -4,6 +4,7 @@
 //     recording.c   the run, sample by sample, thinned where it is long
 //     element.c     escaping, headings, data blocks
 //     html_*.c   one section each: plain HTML, complete without scripts
+//     modes_page.c  the page of `modes --report`
 //     layout.c      where the vertices of the linear graph stand
 //
 // The scripts in web/ make it move and link it; web/README.md has the data they read.
@@ -69,6 +70,14 @@ const char *ct_html_close_text(struct ct_text_stream *s);
 void ct_html_open_data(struct ct_html *h, struct ct_html_data *d, const char *id);
 /// Closes the object.
 void ct_html_close_data(struct ct_html_data *d);
+
+// ---- document.c: what all pages have -----------------------------------------------------------
+
+/// False with a diagnostic where the program was built without pages.
+bool ct_html_is_built(struct ct_ctx *ctx);
+/// Up to </head>, with the style; the script and the end.
+void ct_html_put_head(struct ct_html *h);
+void ct_html_put_script(struct ct_html *h);
 
 // ---- sections, in the order of the page ---------------------------------------------------------
 

@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-enum { MOST_TEXT = 60000 }; // characters of mathematics of a stage that are typeset
+// Characters of mathematics of a stage: typeset, and as plain text.
+enum { MOST_TYPESET = 40000, MOST_PLAIN = 150000 };
 
 static size_t length_of(const struct ct_page *p)
 {
@@ -18,25 +19,10 @@ static size_t length_of(const struct ct_page *p)
     return n;
 }
 
-static void put_stage(struct ct_html *h, const char *id, const char *title,
-                      const struct ct_page *p)
-{
-    const size_t length = length_of(p);
-    fprintf(h->out, "<details id=\"stage-%s\"><summary>%s</summary>\n", id, title);
-    if (length <= MOST_TEXT)
-        ct_page_print_html_blocks(h->out, p, 3);
-    else
-        fprintf(h->out,
-                "<p>%zu characters, too many for a page: <code>cotree equations</code> prints "
-                "them.</p>\n",
-                length);
-    if (strcmp(id, "reduced") == 0)
-        fputs("<p>The equations stand in <a href=\"#equations\">Equations</a>, each term with "
-              "its "
-              "value.</p>\n",
-              h->out);
-    fputs("</details>\n", h->out);
-}
+struct stage {
+    const char *id, *title;
+    void (*fill)(struct ct_derivation *d); // NULL: the reduced equations
+};
 
 static void fill_reduced(struct ct_derivation *d, const struct ct_reduced *r)
 {
@@ -47,29 +33,65 @@ static void fill_reduced(struct ct_derivation *d, const struct ct_reduced *r)
         ct_derivation_put_matrices(d, r);
 }
 
+static void fill(struct ct_html *h, struct ct_derivation *d, const struct stage *s,
+                 enum ct_look look)
+{
+    ct_derivation_init(d, h->a, &h->sys->equations, &h->sys->model, look);
+    if (s->fill)
+        s->fill(d);
+    else
+        fill_reduced(d, &h->terms->reduced);
+}
+
+static void put_plain(struct ct_html *h, const struct stage *stage)
+{
+    struct ct_derivation d;
+    fill(h, &d, stage, CT_LOOK_TEXT);
+    struct ct_text_stream *s = ct_html_open_text(h);
+    ct_page_print_text(ct_html_text_stream(s), &d.page);
+    fputs("<pre class=\"wide\">", h->out);
+    ct_html_put(h->out, ct_html_close_text(s));
+    fputs("</pre>\n", h->out);
+}
+
+static void put_stage(struct ct_html *h, const struct stage *stage)
+{
+    struct ct_derivation d;
+    fill(h, &d, stage, CT_LOOK_HTML);
+    const size_t length = length_of(&d.page);
+    fprintf(h->out, "<details id=\"stage-%s\"><summary>%s</summary>\n", stage->id,
+            stage->title);
+    if (length <= MOST_TYPESET)
+        ct_page_print_html_blocks(h->out, &d.page, 3);
+    else if (length <= MOST_PLAIN)
+        put_plain(h, stage);
+    else
+        fprintf(h->out,
+                "<p>%zu characters, too many for a page: <code>cotree equations</code> prints "
+                "them.</p>\n",
+                length);
+    if (!stage->fill)
+        fputs("<p>The equations stand in <a href=\"#equations\">Equations</a>, each term with "
+              "its "
+              "value.</p>\n",
+              h->out);
+    fputs("</details>\n", h->out);
+}
+
 void ct_html_derivation(struct ct_html *h)
 {
-    static const struct {
-        const char *id, *title;
-        void (*fill)(struct ct_derivation *d); // NULL: the reduced equations
-    } stages[] = {{"terminal", "1 Terminal equations", ct_stage_terminal},
-                  {"incidence", "2 Linear graph", ct_stage_graph},
-                  {"tree", "3 Trees", ct_stage_tree},
-                  {"cutset", "4 Cutset equations", ct_stage_cutset},
-                  {"circuit", "5 Circuit equations", ct_stage_circuit},
-                  {"reduced", "6 Reduced equations", NULL}};
+    static const struct stage stages[]
+        = {{"terminal", "1 Terminal equations", ct_stage_terminal},
+           {"incidence", "2 Linear graph", ct_stage_graph},
+           {"tree", "3 Trees", ct_stage_tree},
+           {"cutset", "4 Cutset equations", ct_stage_cutset},
+           {"circuit", "5 Circuit equations", ct_stage_circuit},
+           {"reduced", "6 Reduced equations", NULL}};
     ct_html_open_section(h, "derivation", "Derivation");
     fputs("<p>From what each component says on its own to the equations of motion, in six "
           "stages.</p>\n",
           h->out);
-    for (size_t i = 0; i < COUNT(stages); i++) {
-        struct ct_derivation d;
-        ct_derivation_init(&d, h->a, &h->sys->equations, &h->sys->model, CT_LOOK_HTML);
-        if (stages[i].fill)
-            stages[i].fill(&d);
-        else
-            fill_reduced(&d, &h->terms->reduced);
-        put_stage(h, stages[i].id, stages[i].title, &d.page);
-    }
+    for (size_t i = 0; i < COUNT(stages); i++)
+        put_stage(h, &stages[i]);
     ct_html_close_section(h);
 }

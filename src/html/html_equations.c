@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-// Characters of mathematics that a page can hold, typeset: a browser lays them out in less than a second.
-enum { MOST_TEXT = 60000 };
+enum { MOST_BYTES = 600000 }; // of the section
 
 static const char *origins_of(struct ct_html *h, const struct ct_equation_term *t)
 {
@@ -21,91 +20,147 @@ static const char *origins_of(struct ct_html *h, const struct ct_equation_term *
 
 // ---- equations ----------------------------------------------------------------------------------
 
-// Terms first .. last - 1; a side without terms is zero.
-static struct ct_mathml_side side_of(struct ct_html *h, size_t first, size_t last)
+// An equation: terms first .. middle - 1 on the left, middle .. last - 1 on the right.
+struct range {
+    size_t first, middle, last;
+};
+
+struct writer {
+    struct ct_html *h;
+    FILE *out;
+    struct ct_derivation *plain; // terms are plain text; NULL: they are typeset
+};
+
+static const char *value_of(const struct writer *w, size_t term)
 {
-    const struct ct_terms_recording *t = h->terms;
-    struct ct_mathml_term *term = CT_NEWN(h->a, struct ct_mathml_term, last - first + 1);
+    const struct ct_terms_recording *t = w->h->terms;
+    return t->nvalue && t->nrow ? ct_arena_printf(w->h->a, "%.5g", t->value[term]) : NULL;
+}
+
+// A side without terms is zero.
+static struct ct_mathml_side side_of(const struct writer *w, size_t first, size_t last)
+{
+    const struct ct_provenance *p = &w->h->terms->provenance;
+    struct ct_mathml_term *term = CT_NEWN(w->h->a, struct ct_mathml_term, last - first + 1);
     if (first == last) {
         term[0].latex = "0";
         return (struct ct_mathml_side){term, 1};
     }
     for (size_t i = first; i < last; i++)
-        term[i - first] = (struct ct_mathml_term){
-            .latex = t->provenance.term[i].text,
-            .components = origins_of(h, &t->provenance.term[i]),
-            .value = t->nvalue && t->nrow ? ct_arena_printf(h->a, "%.5g", t->value[i]) : NULL};
+        term[i - first] = (struct ct_mathml_term){.latex = p->term[i].text,
+                                                  .components = origins_of(w->h, &p->term[i]),
+                                                  .value = value_of(w, i)};
     return (struct ct_mathml_side){term, last - first};
 }
 
-// The equation whose terms begin with number `first`; returns the number behind them.
-static size_t put_equation(struct ct_html *h, size_t first)
+static void put_plain_side(const struct writer *w, size_t first, size_t last)
 {
-    const struct ct_provenance *p = &h->terms->provenance;
-    const struct ct_equation_term *t = &p->term[first];
-    size_t middle = first, last;
-    while (middle < p->nterm && p->term[middle].kind == t->kind
-           && p->term[middle].equation == t->equation && !p->term[middle].is_right)
-        middle++;
-    for (last = middle; last < p->nterm && p->term[last].kind == t->kind
-                        && p->term[last].equation == t->equation;)
-        last++;
-    const char *name = ct_provenance_equation(h->terms->derivation.e, t);
-    const struct ct_mathml_equation e
-        = {.name = name, .left = side_of(h, first, middle), .right = side_of(h, middle, last)};
-    fputs("<div class=\"labelled\"><span class=\"label\">", h->out);
-    ct_html_put(h->out, name);
-    fputs("</span>\n", h->out);
-    ct_mathml_equation(h->out, &e);
-    fputs("</div>\n", h->out);
-    return last;
+    FILE *out = w->out;
+    fputs("<mrow class=\"side\">", out);
+    if (first == last)
+        fputs("<mn>0</mn>", out);
+    for (size_t i = first; i < last; i++) {
+        const struct ct_equation_term *t = &w->h->terms->provenance.term[i];
+        const char *text = ct_derivation_text(w->plain, t->e), *value = value_of(w, i);
+        fputs("<mrow class=\"term\"", out);
+        ct_html_put_components(out, origins_of(w->h, t));
+        fputs("><mtext>", out);
+        if (i > first && *text != '-')
+            fputs("+ ", out);
+        ct_html_put(out, text);
+        fputs("</mtext></mrow>", out);
+        if (value)
+            fprintf(out, "<mtext class=\"value\">%s</mtext>", value);
+    }
+    fputs("</mrow>", out);
 }
 
-static void put_kind(struct ct_html *h, enum ct_equation_kind kind, const char *title)
+static void put_plain(const struct writer *w, const char *name, const struct range *r)
 {
+    FILE *out = w->out;
+    fputs("<math class=\"equation plain\" display=\"block\" data-equation=\"", out);
+    ct_html_put(out, name);
+    fputs("\">", out);
+    put_plain_side(w, r->first, r->middle);
+    fputs("<mrow class=\"right\"><mo>=</mo>", out);
+    put_plain_side(w, r->middle, r->last);
+    fputs("</mrow></math>\n", out);
+}
+
+// The equation whose terms begin with number `first`; returns the number behind them.
+static size_t put_equation(const struct writer *w, size_t first)
+{
+    struct ct_html *h = w->h;
+    const struct ct_provenance *p = &h->terms->provenance;
+    const struct ct_equation_term *t = &p->term[first];
+    struct range r = {first, first, 0};
+    while (r.middle < p->nterm && p->term[r.middle].kind == t->kind
+           && p->term[r.middle].equation == t->equation && !p->term[r.middle].is_right)
+        r.middle++;
+    for (r.last = r.middle; r.last < p->nterm && p->term[r.last].kind == t->kind
+                            && p->term[r.last].equation == t->equation;)
+        r.last++;
+    const char *name = ct_provenance_equation(h->terms->derivation.e, t);
+    fputs("<div class=\"labelled\"><span class=\"label\">", w->out);
+    ct_html_put(w->out, name);
+    fputs("</span>\n", w->out);
+    if (w->plain)
+        put_plain(w, name, &r);
+    else
+        ct_mathml_equation(w->out,
+                           &(struct ct_mathml_equation){.name = name,
+                                                        .left = side_of(w, r.first, r.middle),
+                                                        .right = side_of(w, r.middle, r.last)});
+    fputs("</div>\n", w->out);
+    return r.last;
+}
+
+static void put_kind(const struct writer *w, enum ct_equation_kind kind, const char *title)
+{
+    struct ct_html *h = w->h;
     const struct ct_provenance *p = &h->terms->provenance;
     size_t i = 0;
     while (i < p->nterm && p->term[i].kind != kind)
         i++;
     if (i == p->nterm)
         return;
-    fprintf(h->out, "<h3>%s</h3>\n<div class=\"equations\">\n", title);
+    fprintf(w->out, "<h3>%s</h3>\n<div class=\"equations\">\n", title);
     while (i < p->nterm && p->term[i].kind == kind)
-        i = put_equation(h, i);
-    fputs("</div>\n", h->out);
+        i = put_equation(w, i);
+    fputs("</div>\n", w->out);
 }
 
-static void put_definitions(struct ct_html *h)
+static void put_definition(const struct writer *w, const struct ct_reduced_definition *e)
 {
-    struct ct_derivation *d = &h->terms->derivation;
-    const struct ct_definitions *list = &h->terms->reduced.definitions;
+    struct ct_derivation *d = w->plain ? w->plain : &w->h->terms->derivation;
+    const char *name = ct_derivation_text(d, e->symbol),
+               *value = ct_derivation_text(d, e->value);
+    const struct ct_mathml_term left = {.latex = name}, right = {.latex = value};
+    if (!w->plain) {
+        ct_mathml_equation(
+            w->out, &(struct ct_mathml_equation){.left = {&left, 1}, .right = {&right, 1}});
+        return;
+    }
+    ct_html_put(w->out, name);
+    fputs(" = ", w->out);
+    ct_html_put(w->out, value);
+    fputc('\n', w->out);
+}
+
+static void put_definitions(const struct writer *w)
+{
+    const struct ct_definitions *list = &w->h->terms->reduced.definitions;
+    FILE *out = w->out;
     if (!list->n)
         return;
-    fprintf(h->out,
-            "<details><summary>%zu named expressions</summary>\n<div class=\"equations\">\n",
-            list->n);
-    for (size_t i = 0; i < list->n; i++) {
-        const struct ct_mathml_term left = {.latex = ct_derivation_text(d, list->at[i].symbol)},
-                                    right = {.latex = ct_derivation_text(d, list->at[i].value)};
-        ct_mathml_equation(
-            h->out, &(struct ct_mathml_equation){.left = {&left, 1}, .right = {&right, 1}});
-    }
-    fputs("</div></details>\n", h->out);
+    fprintf(out, "<details><summary>%zu named expressions</summary>\n%s\n", list->n,
+            w->plain ? "<pre class=\"wide\">" : "<div class=\"equations\">");
+    for (size_t i = 0; i < list->n; i++)
+        put_definition(w, &list->at[i]);
+    fprintf(out, "%s</details>\n", w->plain ? "</pre>" : "</div>");
 }
 
 // ---- all of it ----------------------------------------------------------------------------------
-
-static size_t length_of_all(const struct ct_html *h)
-{
-    const struct ct_terms_recording *t = h->terms;
-    size_t n = 0;
-    for (size_t i = 0; i < t->provenance.nterm; i++)
-        n += strlen(t->provenance.term[i].text);
-    for (size_t i = 0; i < t->reduced.definitions.n; i++)
-        n += strlen(
-            ct_derivation_text(&h->terms->derivation, t->reduced.definitions.at[i].value));
-    return n;
-}
 
 static void put_data(struct ct_html *h)
 {
@@ -122,40 +177,73 @@ static void put_data(struct ct_html *h)
     ct_html_close_data(&d);
 }
 
-static void put_all(struct ct_html *h)
+static void put_all(const struct writer *w)
 {
-    const struct ct_terms_recording *t = h->terms;
+    const struct ct_terms_recording *t = w->h->terms;
     fputs("<p class=\"note\">Each term has the value that it takes at the time of the page "
           "beside it.",
-          h->out);
+          w->out);
     if (t->stride > 1)
-        fprintf(h->out, " Values between every %zuth row of the outputs are interpolated.",
+        fprintf(w->out, " Values between every %zuth row of the outputs are interpolated.",
                 t->stride);
     if (!t->nvalue && t->provenance.nterm)
-        fputs(" There are too many terms to carry their values.", h->out);
-    fputs("</p>\n", h->out);
-    put_definitions(h);
-    put_kind(h, CT_EQUATION_MOTION, "Equations of motion");
-    put_kind(h, CT_EQUATION_POSITION, "Constraints");
-    put_kind(h, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
-    put_kind(h, CT_EQUATION_EFFORT, "Efforts of the drivers");
-    if (t->nvalue && t->nrow)
-        put_data(h);
+        fputs(" There are too many terms to carry their values.", w->out);
+    fputs("</p>\n", w->out);
+    put_definitions(w);
+    put_kind(w, CT_EQUATION_MOTION, "Equations of motion");
+    put_kind(w, CT_EQUATION_POSITION, "Constraints");
+    put_kind(w, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
+    put_kind(w, CT_EQUATION_EFFORT, "Efforts of the drivers");
+}
+
+// The section with terms of one look; NULL where it would be too long.
+static const char *write_all(struct ct_html *h, struct ct_derivation *plain)
+{
+    struct ct_text_stream *s = ct_html_open_text(h);
+    put_all(&(struct writer){h, ct_html_text_stream(s), plain});
+    const char *text = ct_html_close_text(s);
+    return strlen(text) <= MOST_BYTES ? text : NULL;
+}
+
+// As `cotree equations` prints them, folded.
+static void put_text(struct ct_html *h, struct ct_derivation *plain)
+{
+    struct ct_text_stream *s = ct_html_open_text(h);
+    ct_stage_reduced(plain);
+    ct_page_print_text(ct_html_text_stream(s), &plain->page);
+    const char *text = ct_html_close_text(s);
+    if (strlen(text) > MOST_BYTES) {
+        fprintf(
+            h->out,
+            "<p>They have %zu characters, too many for a page: <code>cotree equations</code> "
+            "prints them.</p>\n",
+            strlen(text));
+        return;
+    }
+    fprintf(h->out,
+            "<details><summary>%zu characters, as plain text</summary>\n<pre class=\"wide\">",
+            strlen(text));
+    ct_html_put(h->out, text);
+    fputs("</pre></details>\n", h->out);
 }
 
 void ct_html_equations(struct ct_html *h)
 {
     const struct ct_equations *e = &h->sys->equations;
-    const size_t length = length_of_all(h);
+    const struct ct_terms_recording *t = h->terms;
+    struct ct_derivation plain;
     ct_html_open_section(h, "equations", "Equations");
     fprintf(h->out, "<p>%zu unknown %s, %zu %s.</p>\n", e->nu, e->nu == 1 ? "speed" : "speeds",
             e->nrow, e->nrow == 1 ? "constraint" : "constraints");
-    if (length <= MOST_TEXT)
-        put_all(h);
+    ct_derivation_init(&plain, h->a, t->derivation.e, &h->sys->model, CT_LOOK_TEXT);
+    const char *text = write_all(h, NULL);
+    if (!text)
+        text = write_all(h, &plain);
+    if (text)
+        fputs(text, h->out);
     else
-        fprintf(h->out,
-                "<p>They have %zu characters, too many for a page: "
-                "<code>cotree equations</code> prints them.</p>\n",
-                length);
+        put_text(h, &plain);
+    if (text && t->nvalue && t->nrow)
+        put_data(h);
     ct_html_close_section(h);
 }

@@ -10,10 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double FEW = 16; // vertices: so many have room
 enum {
     MOST_DRAWN = 400, // vertices: beyond, no picture can be read
-    MOST_NAMED = 60,  // edges: beyond, arms have their numbers only
-    LENGTH = 130,     // [px] of an edge; arms are shorter
+    MOST_NAMED = 30, // edges: beyond, they have their numbers only, and names when they are lit
+    MOST_TYPESET
+    = 2000, // entries of the cutset and circuit matrices: beyond, equations are plain text
+    LENGTH = 130, // [px] of an edge; arms are shorter
     ARM = 80,
     MARGIN = 60,
     RADIUS = 7,  // [px] of a vertex
@@ -129,9 +132,10 @@ static void put_edge(struct picture *p, int i)
     const bool is_arm = e->build->topology->edge[i].kind == CT_EDGE_ARM;
     fprintf(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d", middle.x,
             middle.y + 4, i + 1);
-    if (!is_arm && e->graph->nedge <= MOST_NAMED) {
-        fputc(' ', out);
+    if (!is_arm) {
+        fputs(e->graph->nedge <= MOST_NAMED ? "<tspan> " : "<tspan class=\"long\"> ", out);
         ct_html_put(out, e->edge_name[i]);
+        fputs("</tspan>", out);
     }
     fputs("</text></g>\n", out);
 }
@@ -170,8 +174,10 @@ static void put_picture(struct ct_html *h)
     const struct ct_graph *g = e->graph;
     struct picture p = {.h = h, .e = e, .at = CT_NEWN(h->a, struct ct_place, g->nnode + 1)};
     double *length = CT_NEWN(h->a, double, g->nedge + 1);
+    // names need room: the area grows with their number
+    const double scale = fmin(fmax(sqrt(g->nnode / FEW), 1), 2);
     for (int i = 0; i < g->nedge; i++)
-        length[i] = e->build->topology->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH;
+        length[i] = scale * (e->build->topology->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH);
     ct_layout_find(h->a, g, length, p.at);
     fit(&p);
     fprintf(h->out,
@@ -188,6 +194,20 @@ static void put_picture(struct ct_html *h)
 }
 
 // ---- equations ----------------------------------------------------------------------------------
+
+static void put_sides(FILE *out, const struct ct_derivation *d, const char *left,
+                      const char *right)
+{
+    if (d->page.look == CT_LOOK_HTML) {
+        ct_html_put_equation(out, left, right);
+        return;
+    }
+    fputs("<math><mtext>", out);
+    ct_html_put(out, left);
+    fputs(" = ", out);
+    ct_html_put(out, right);
+    fputs("</mtext></math>", out);
+}
 
 static void put_equation(struct ct_html *h, struct ct_derivation *d, const struct ct_tree *t,
                          const struct ct_incidence *cutsets, int edge, int row,
@@ -207,11 +227,11 @@ static void put_equation(struct ct_html *h, struct ct_derivation *d, const struc
     if (of_rotation && !h->sys->equations.build->topology->edge[edge].has_rotation)
         fputs("none of its own: it does not turn", out); // a particle, a force
     else if (is_branch)
-        ct_html_put_equation(
-            out, ct_derivation_cutset(d, cutsets, row, edge, of_rotation ? "T" : "F"), "0");
+        put_sides(out, d, ct_derivation_cutset(d, cutsets, row, edge, of_rotation ? "T" : "F"),
+                  "0");
     else
-        ct_html_put_equation(out, ct_derivation_of(d, of_rotation ? "S" : "d", name),
-                             ct_derivation_circuit(d, t, edge, of_rotation));
+        put_sides(out, d, ct_derivation_of(d, of_rotation ? "S" : "d", name),
+                  ct_derivation_circuit(d, t, edge, of_rotation));
     fputs("</div>\n", out);
 }
 
@@ -222,12 +242,16 @@ static void put_equations(struct ct_html *h)
     struct ct_incidence cutsets[2];
     int row[2] = {0, 0};
     struct ct_derivation d;
-    ct_derivation_init(&d, h->a, e, &h->sys->model, CT_LOOK_HTML);
+    int nentry
+        = 0; // circuits have as many beside their chords as cutsets beside their branches
     for (int k = 0; k < 2; k++) {
         struct ct_incidence Af;
         ct_cutsets_derive(h->a, e->graph, tree[k], &Af);
         ct_incidence_transpose(h->a, &Af, &cutsets[k]);
+        nentry += 2 * Af.start[Af.ncol];
     }
+    ct_derivation_init(&d, h->a, e, &h->sys->model,
+                       nentry <= MOST_TYPESET ? CT_LOOK_HTML : CT_LOOK_TEXT);
     for (int i = 0; i < e->graph->nedge; i++)
         for (int k = 0; k < 2; k++) {
             put_equation(h, &d, tree[k], &cutsets[k], i, row[k], k == 1);

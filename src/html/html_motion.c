@@ -12,6 +12,15 @@ static size_t most_rows(const struct ct_animation *m)
     return n < LEAST_ROWS ? LEAST_ROWS : n > MOST_ROWS ? MOST_ROWS : n;
 }
 
+// Redundant constraints leave multipliers open, and reactions with them.
+static bool has_open_reactions(const struct ct_html *h)
+{
+    bool is_open = false;
+    for (size_t i = 0; i < h->sim->system->equations.nrow; i++)
+        is_open |= h->sim->open.row[i];
+    return is_open;
+}
+
 void ct_html_motion(struct ct_html *h)
 {
     const struct ct_recording *r = h->recording;
@@ -25,6 +34,7 @@ void ct_html_motion(struct ct_html *h)
     fputs("</div>\n", h->out);
     ct_html_open_data(h, &d, "data-motion");
     ct_animation_write(h->a, &d.json, &r->animation, most_rows(&r->animation));
+    ct_json_bool(&d.json, "open_reactions", has_open_reactions(h));
     ct_html_close_data(&d);
     ct_html_close_section(h);
 }

@@ -28,10 +28,12 @@ static void put_sentence(struct ct_html *h)
     put_count(h, (long)m->nbody - 1, "body", "bodies");
     if (nbeam)
         fprintf(h->out, " (%ld of them %s)", nbeam, nbeam == 1 ? "a beam" : "beams");
-    fputs(", ", h->out);
+    fputs(m->nforce ? ", " : " and ", h->out);
     put_count(h, (long)m->njoint, "joint", "joints");
-    fputs(" and ", h->out);
-    put_count(h, (long)m->nforce, "force element", "force elements");
+    if (m->nforce) {
+        fputs(" and ", h->out);
+        put_count(h, (long)m->nforce, "force element", "force elements");
+    }
     fprintf(h->out, " with %ld %s of freedom%s.</p>\n", ct_sim_freedoms(h->sim),
             ct_sim_freedoms(h->sim) == 1 ? "degree" : "degrees",
             e->nrow == 0 ? "; its joints close no loop" : "");

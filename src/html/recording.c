@@ -1,6 +1,8 @@
 // See recording.h.
 #include "html/recording.h"
 
+#include "solve/run/run_internal.h"
+
 #include <string.h>
 
 enum { MOST_ROWS = 4001 }; // a screen has fewer columns of pixels
@@ -9,7 +11,8 @@ void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
                          struct ct_terms_recording *terms)
 {
     *r = (struct ct_recording){.stride = 1, .ncolumn = sys->equations.nresult, .terms = terms};
-    ct_animation_create(sys, &r->animation);
+    ct_animation_create(sys->own.model, sys->equations.build, CT_ANIMATION_FORCES,
+                        &r->animation);
 }
 
 // Singular values cost more than a sample does: so many of them at most.
@@ -36,7 +39,9 @@ static void keep(struct ct_recording *r, double t, const double *value, bool is_
     size_t n = (r->nrow - 1) * r->ncolumn;
     for (size_t k = 0; k < r->ncolumn; k++)
         CT_PUSH(a, r->value, n, r->value_cap, value[k]);
-    ct_animation_keep(&r->animation, r->sim->run, t);
+    if (r->animation.values.uses_multipliers)
+        ct_run_find_multipliers(r->sim->run);
+    ct_animation_keep(&r->animation, ct_run_evaluator(r->sim->run), t);
     measure_loops(r, t, is_last);
     ct_terms_keep(a, r->terms, r->sim->run, r->nrow - 1, is_last);
 }
@@ -58,7 +63,7 @@ static bool look_at_start(void *task)
     struct ct_sim *sim = r->sim;
     struct ct_evaluator *m = ct_run_evaluator(sim->run);
     const size_t n = r->animation.scene.nvalue;
-    ct_animation_compile(sim->own.model, &r->animation, sim->run);
+    ct_animation_compile(sim->own.model, &r->animation, m);
     r->first = CT_NEWN(sim->own.model, double, n + 1);
     ct_evaluator_set(m, 0, ct_run_state(sim->run));
     ct_program_run(&r->animation.values.program, m->input);

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-// A quarter of a megabyte of the page, at about a byte for each number.
-enum { MOST_NUMBERS = 250000, LEAST_ROWS = 51 };
+// A fifth of a megabyte of the page, at some three bytes for each number.
+enum { MOST_NUMBERS = 60000, LEAST_ROWS = 21 };
 
 void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct_system *sys)
 {

@@ -51,9 +51,9 @@ static const char *const *components_of(struct ct_derivation *d, const struct ct
     return list;
 }
 
-// p: of the equations; NULL: not wanted.
+// p: of the equations, from number `first` of their kind on; NULL: not wanted.
 static void put_group(struct ct_derivation *d, const struct group *g,
-                      const struct ct_provenance *p, enum ct_equation_kind kind)
+                      const struct ct_provenance *p, enum ct_equation_kind kind, size_t first)
 {
     ct_page_equations(&d->page);
     for (size_t i = 0; i < g->n; i++) {
@@ -62,8 +62,8 @@ static void put_group(struct ct_derivation *d, const struct group *g,
                                ct_derivation_text(d, g->at[i].right), NULL);
         e->name = g->at[i].name;
         if (p) {
-            e->left_components = components_of(d, p, kind, i, false, e->left);
-            e->right_components = components_of(d, p, kind, i, true, e->right);
+            e->left_components = components_of(d, p, kind, first + i, false, e->left);
+            e->right_components = components_of(d, p, kind, first + i, true, e->right);
         }
     }
 }
@@ -377,17 +377,17 @@ void ct_stage_reduced(struct ct_derivation *d)
     if (e->nmotion) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
-        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION);
+        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION, 0);
     }
     if (e->nstate) {
         ct_page_heading(&d->page, "rates of the states");
-        put_group(d, &g[STATES], p, CT_EQUATION_MOTION);
+        put_group(d, &g[STATES], p, CT_EQUATION_MOTION, e->nmotion);
     }
     if (e->nrow) {
         ct_page_heading(&d->page, "constraints: Phi = 0");
-        put_group(d, &g[CLOSURE], p, CT_EQUATION_POSITION);
+        put_group(d, &g[CLOSURE], p, CT_EQUATION_POSITION, 0);
         ct_page_heading(&d->page, "constraints, differentiated twice: J u' = -gam");
-        put_group(d, &g[CLOSURE_RATE], p, CT_EQUATION_ACCELERATION);
+        put_group(d, &g[CLOSURE_RATE], p, CT_EQUATION_ACCELERATION, 0);
     }
     if (g[EFFORT].n)
         put_efforts(d, &g[EFFORT], p);

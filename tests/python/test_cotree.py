@@ -274,3 +274,18 @@ def test_inputs_from_a_table(tmp_path):
     with pytest.raises(cotree.Error) as e:
         m.simulate(until=2, input={"t": [0, 2], "gaol": [1, 1]})
     assert e.value.diagnostics[0].line == 1 and "did you mean 'goal'" in str(e.value)
+
+
+def test_report_is_one_page_of_the_same_bytes(arm, tmp_path):
+    pages = [tmp_path / "a.html", tmp_path / "b.html"]
+    try:
+        for page in pages:
+            arm.report(page, until=0.5)
+    except cotree.Error as error:
+        assert error.diagnostics[0].code == "E530"  # built without it
+        return
+    text = pages[0].read_text(encoding="utf-8")
+    assert text.startswith("<!DOCTYPE html>") and 'id="manifest"' in text
+    assert text == pages[1].read_text(encoding="utf-8")
+    with pytest.raises(cotree.Error):
+        arm.report(tmp_path / "missing" / "a.html")

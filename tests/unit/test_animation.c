@@ -4,6 +4,7 @@
 #include "draw/animation.h"
 #include "report/packed.h"
 #include "sim/sim.h"
+#include "solve/run/run_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,14 +22,15 @@ static struct run {
 static bool create(void *task)
 {
     (void)task;
-    ct_animation_create(r.sys, &r.animation);
+    ct_animation_create(r.sys->own.model, r.sys->equations.build, CT_ANIMATION_FORCES,
+                        &r.animation);
     return true;
 }
 
 static bool compile(void *task)
 {
     (void)task;
-    ct_animation_compile(r.sim->own.model, &r.animation, r.sim->run);
+    ct_animation_compile(r.sim->own.model, &r.animation, ct_run_evaluator(r.sim->run));
     return true;
 }
 
@@ -37,7 +39,9 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     (void)user;
     (void)value;
     (void)n;
-    ct_animation_keep(&r.animation, r.sim->run, t);
+    if (r.animation.values.uses_multipliers)
+        ct_run_find_multipliers(r.sim->run);
+    ct_animation_keep(&r.animation, ct_run_evaluator(r.sim->run), t);
     return true;
 }
 

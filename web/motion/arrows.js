@@ -1,17 +1,16 @@
 // Arrows of forces and torques that act from outside, and of what joints transmit.
 //
-// Lengths are proportional to forces up to `peak` times the usual one; torques have a scale of their own.
+// Lengths are proportional to forces, but none is longer than `most`; torques have a scale of their own.
 
 import { ConeGeometry, CylinderGeometry, Group, TorusGeometry, Vector3 } from "three";
 
 const y = new Vector3(0, 1, 0);
-const visible = 5e-3; // of the usual size
-const peak = 2; // times it: arrows become no longer
+const visible = 0.02; // of a head: shorter arrows are left out
 const direction = new Vector3();
 
 // What is usual for the largest of some vectors: nine of ten samples have no larger one. Peaks as at a start do not make all others
 // vanish.
-export function usualSize(track, columns) {
+function usualSize(track, columns) {
   const sizes = [];
   track.scan(400, () => {
     let most = 0;
@@ -61,34 +60,61 @@ function inFront(material) {
   return copy;
 }
 
-// forces: [{name, at: [pose, x, y, z], column, torque: column or undefined}]; longest [m]: of the
-// force `most` [N].
-export function createArrows({ parts, track, s }, forces, base, longest, most) {
-  const material = inFront(base);
+// forces: [{name, at: [pose, x, y, z], column, torque: column or undefined}]; most: length that no arrow exceeds [m].
+// Returns {group, update(scale [m/N])}.
+function createArrows({ parts, track, s }, forces, base, most) {
   const group = new Group();
-  const mostTorque = usualSize(track, forces.filter((f) => f.torque !== undefined).map((f) => f.torque));
+  const material = inFront(base);
+  const usualTorque = usualSize(track, forces.filter((f) => f.torque !== undefined).map((f) => f.torque));
   const place = new Float64Array(3);
   const items = forces.flatMap((f) => {
-    const one = { at: f.at, column: f.column, most, longest, ...straight(parts, s, material, f.name) };
-    if (f.torque === undefined) return [one];
-    return [one, { at: f.at, column: f.torque, most: mostTorque, longest: 1, ...round(parts, s, material, f.name) }];
+    const force = { at: f.at, column: f.column, isForce: true, ...straight(parts, s, material, f.name) };
+    const torque = f.torque !== undefined && { at: f.at, column: f.torque, isForce: false, ...round(parts, s, material, f.name) };
+    return torque ? [force, torque] : [force];
   });
   items.forEach((item) => group.add(item.group));
 
   return {
     group,
-    update() {
+    update(scale) {
       for (const item of items) {
         const c = item.column;
         direction.set(track.linear(c), track.linear(c + 1), track.linear(c + 2));
         const size = direction.length();
-        item.group.visible = size > visible * item.most;
+        const length = item.isForce ? Math.min(most, scale * size) : Math.min(2, size / usualTorque);
+        item.group.visible = size > 0 && length > (item.isForce ? visible * s : visible);
         if (!item.group.visible) continue;
         track.locate(item.at, place);
         item.group.position.set(place[0], place[1], place[2]);
         item.group.quaternion.setFromUnitVectors(y, direction.divideScalar(size));
-        item.stretch(Math.min(peak, size / item.most) * item.longest);
+        item.stretch(length);
       }
+    },
+  };
+}
+
+// The arrows of what acts from outside and of what joints transmit, on one scale.
+// Returns {loads, reactions: arrows, or undefined where there are none; scale: [m/N], 0: none is seen; stretch(factor), update()}.
+export function createForces(context, data, colors, size) {
+  const { parts, track } = context;
+  const loads = data.forces.filter((f) => f.load !== undefined).map((f) => ({ name: f.name, at: f.to.at, column: f.load, torque: f.load + 3 }));
+  const reactions = data.joints.filter((j) => j.reaction !== undefined).map((j) => ({ name: j.name, at: j.to.at, column: j.reaction }));
+  const usual = usualSize(track, [...loads, ...reactions].map((f) => f.column)) || 1;
+  const arrows = (forces, color) => (forces.length ? createArrows(context, forces, parts.surface(color), 0.6 * size) : undefined);
+  const all = [arrows(loads, colors.load), arrows(reactions, colors.reaction)];
+  let scale = (0.2 * size) / usual;
+  for (const one of all) if (one) context.scene.add(one.group);
+  return {
+    loads: all[0],
+    reactions: all[1],
+    get scale() {
+      return all.some((one) => one?.group.visible) ? scale : 0;
+    },
+    stretch(factor) {
+      scale = (0.2 * size * factor) / usual;
+    },
+    update() {
+      for (const one of all) if (one?.group.visible) one.update(scale);
     },
   };
 }

@@ -5,22 +5,24 @@
 
 import { Matrix4, OrthographicCamera, Quaternion, Vector3 } from "three";
 
-// views: {NAME: {right, up}}; upward: the axis that turning keeps upright; changed: called after each change.
+// views: {NAME: {right, up}}; upward: the axis of ground that is up in `iso`; changed: called after each change.
 export function createCamera(views, upward, changed) {
   const camera = new OrthographicCamera();
   const target = new Vector3();
   const right = new Vector3();
   const up = new Vector3();
   const toward = new Vector3();
-  const vertical = new Vector3(...upward);
+  const vertical = new Vector3(); // what turning keeps upright
   const axes = new Matrix4();
   const turned = new Quaternion();
   const trial = new Vector3();
   let height = 1;
   let aspect = 1;
   let depth = 1; // half of the scene's [m]
+  let version = 0; // how often it has changed
 
   function place() {
+    version++;
     camera.position.copy(target).addScaledVector(toward, 2 * depth + height);
     axes.makeBasis(right, up, toward);
     camera.quaternion.setFromRotationMatrix(axes);
@@ -35,12 +37,6 @@ export function createCamera(views, upward, changed) {
     changed();
   }
 
-  function look(name) {
-    right.fromArray(views[name].right);
-    up.fromArray(views[name].up);
-    toward.crossVectors(right, up);
-  }
-
   return {
     camera,
     target,
@@ -50,12 +46,18 @@ export function createCamera(views, upward, changed) {
     get height() {
       return height;
     },
+    get version() {
+      return version;
+    },
     resize(width, tall) {
       aspect = width / tall;
       place();
     },
     look(name) {
-      look(name);
+      right.fromArray(views[name].right);
+      up.fromArray(views[name].up);
+      toward.crossVectors(right, up);
+      vertical.fromArray(name === "iso" ? upward : views[name].up);
       place();
     },
     // All of the points (x y z, one after the other) are seen, `margin` [m] around them.

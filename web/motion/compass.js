@@ -35,16 +35,41 @@ function createArrow(parent, text, component, length) {
   };
 }
 
-const units = [
+const lengths = [
   [1e3, "km"],
   [1, "m"],
   [1e-3, "mm"],
   [1e-6, "µm"],
 ];
+const forces = [
+  [1e6, "MN"],
+  [1e3, "kN"],
+  [1, "N"],
+  [1e-3, "mN"],
+  [1e-6, "µN"],
+];
 
-function lengthText(x) {
-  const [unit, name] = units.find(([size]) => x >= 0.999 * size) ?? units[3];
+function text(x, units) {
+  const [unit, name] = units.find(([size]) => x >= 0.999 * size) ?? units[units.length - 1];
   return `${Number((x / unit).toPrecision(3))} ${name}`;
+}
+
+// A line of a round length, with what it stands for above it.
+function createScale(root, units, className) {
+  const group = make("g", { class: className }, root);
+  const bar = make("path", {}, group);
+  const label = make("text", { "text-anchor": "end" }, group);
+  // perUnit [px]; 0: none is shown
+  return function draw(right, y, perUnit) {
+    group.style.display = perUnit > 0 ? "" : "none";
+    if (!(perUnit > 0)) return;
+    const value = roundBelow(110 / perUnit);
+    const left = right - value * perUnit;
+    bar.setAttribute("d", `M${left} ${y - 4}V${y + 4}M${left} ${y}H${right}M${right} ${y - 4}V${y + 4}`);
+    label.setAttribute("x", right);
+    label.setAttribute("y", y - 9);
+    label.textContent = text(value, units);
+  };
 }
 
 // element: holds the picture; gravity [m/s^2]
@@ -54,12 +79,18 @@ export function createCompass(element, camera, gravity) {
   const g = new Vector3(...gravity);
   const hasGravity = g.length() > 0;
   const pull = createArrow(root, "g", "gravity", 34);
-  const bar = make("path", {}, root);
-  const text = make("text", { "text-anchor": "end" }, root);
+  const metres = createScale(root, lengths, "length");
+  const newtons = createScale(root, forces, "force");
   const e = new Vector3();
   g.normalize();
 
-  return function draw(width, height) {
+  let [drawnVersion, drawnNewton] = [-1, -1];
+
+  // newton: length of an arrow [m/N]; 0: there are none
+  return function draw(width, height, newton) {
+    if (camera.version === drawnVersion && newton === drawnNewton) return; // the camera knows of another size, too
+    drawnVersion = camera.version;
+    drawnNewton = newton;
     ["x", "y", "z"].forEach((name, i) => {
       e.set(0, 0, 0).setComponent(i, 1);
       axes[i](46, height - 46, camera.right.dot(e), camera.up.dot(e));
@@ -67,12 +98,7 @@ export function createCompass(element, camera, gravity) {
     if (hasGravity) pull(118 - 17 * camera.right.dot(g), height - 46 + 17 * camera.up.dot(g), camera.right.dot(g), camera.up.dot(g));
     else pull(0, 0, 0, 0);
     const perMetre = height / camera.height;
-    const length = roundBelow(110 / perMetre);
-    const [right, y] = [width - 20, height - 22];
-    const left = right - length * perMetre;
-    bar.setAttribute("d", `M${left} ${y - 4}V${y + 4}M${left} ${y}H${right}M${right} ${y - 4}V${y + 4}`);
-    text.setAttribute("x", right);
-    text.setAttribute("y", y - 9);
-    text.textContent = lengthText(length);
+    metres(width - 20, height - 22, perMetre);
+    newtons(width - 20, height - 62, newton * perMetre);
   };
 }

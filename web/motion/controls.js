@@ -1,4 +1,4 @@
-// What the reader may choose about the picture: the view, what is shown, how much beams bend.
+// What the reader may choose about the picture: the view, what is shown, how much larger some of it is.
 
 function make(tag, attributes, parent, text = "") {
   const element = document.createElement(tag);
@@ -8,8 +8,8 @@ function make(tag, attributes, parent, text = "") {
   return element;
 }
 
-// views: {x, y, z, iso}; look(name), fit(); shown: [{text, on, set(bool)}]; bend: set(factor) or undefined
-export function createControls(element, { views, look, fit, shown, bend }) {
+// views: {x, y, z, iso}; look(name), fit(); shown: [{text, title, on, set(bool)}]; factors: [{text, title, least, most, set(factor)}]
+export function createControls(element, { views, look, fit, shown, factors }) {
   const bar = make("div", { className: "tools controls" }, element);
 
   const group = make("div", { className: "views" }, bar);
@@ -21,24 +21,23 @@ export function createControls(element, { views, look, fit, shown, bend }) {
   }
   make("button", { type: "button", title: "all in sight (0)" }, group, "fit").addEventListener("click", fit);
 
-  for (const { text, on, set } of shown) {
-    const label = make("label", {}, bar);
+  for (const { text, title = "", on, set } of shown) {
+    const label = make("label", { title }, bar);
     const box = make("input", { type: "checkbox", checked: on }, label);
     label.append(text);
     box.addEventListener("change", () => set(box.checked));
   }
 
-  if (bend) {
-    const label = make("label", { className: "bend", title: "how much larger than computed beams bend in the picture" }, bar);
-    label.append("deflection");
-    const slider = make("input", { type: "range", min: 0, max: 2, step: 0.01, value: 0 }, label); // log10 of the factor
-    const factor = make("output", {}, label, "× 1");
-    slider.setAttribute("aria-label", "factor of deflections");
+  for (const { text, title, least = 1, most, set } of factors) {
+    const label = make("label", { className: "factor", title }, bar, text);
+    const slider = make("input", { type: "range", min: Math.log10(least), max: Math.log10(most), step: 0.01, value: 0 }, label);
+    const output = make("output", {}, label, "× 1");
+    slider.setAttribute("aria-label", title);
     slider.addEventListener("input", () => {
-      const value = Number((10 ** Number(slider.value)).toPrecision(2));
-      factor.textContent = `× ${value}`;
-      slider.setAttribute("aria-valuetext", `${value} times`);
-      bend(value);
+      const factor = Number((10 ** Number(slider.value)).toPrecision(2));
+      output.textContent = `× ${factor}`;
+      slider.setAttribute("aria-valuetext", `${factor} times`);
+      set(factor);
     });
   }
   return bar;

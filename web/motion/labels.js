@@ -1,6 +1,21 @@
 // Names beside what they name, as text over the picture; where two would cover each other, the second one is left out.
 
 import { Vector3 } from "three";
+import { colorOfBody } from "./colors.js";
+
+// Bodies at the middle of what is held of them, joints where they are.
+export function labelledPlaces(data) {
+  const middle = ({ held, number, beam }) => {
+    if (beam) return [number, beam.length / 2, 0, 0];
+    const own = held.filter(([pose]) => pose === number);
+    if (!own.length) return [number, 0, 0, 0];
+    const sum = own.reduce((s, at) => s.map((v, k) => v + at[k + 1] / own.length), [0, 0, 0]);
+    return [number, ...sum];
+  };
+  const bodies = data.bodies.slice(1).map((body) => ({ name: body.name, at: middle(body), kind: "body", color: colorOfBody(body.number) }));
+  const joints = data.joints.map(({ name, from, to }) => ({ name, at: to.body === 0 ? from.at : to.at, kind: "joint" }));
+  return [...bodies, ...joints];
+}
 
 // items: [{name, at: [pose, x, y, z], kind: "body" or "joint", color}]
 export function createLabels(element, items, track, camera) {
@@ -11,6 +26,7 @@ export function createLabels(element, items, track, camera) {
   const place = new Float64Array(3);
   const point = new Vector3();
   const boxes = new Float64Array(4 * items.length); // left, top, width, height
+  const shown = new Float64Array(2 * items.length).fill(NaN); // where the text stands
   const spans = items.map(({ name, kind, color }) => {
     const span = document.createElement("span");
     span.className = kind;
@@ -45,19 +61,27 @@ export function createLabels(element, items, track, camera) {
     isMeasured = true;
   }
 
+  function move(i) {
+    const [dx, dy] = [boxes[4 * i] - shown[2 * i], boxes[4 * i + 1] - shown[2 * i + 1]];
+    if (Math.abs(dx) < 0.05 && Math.abs(dy) < 0.05) return;
+    shown[2 * i] = boxes[4 * i];
+    shown[2 * i + 1] = boxes[4 * i + 1];
+    spans[i].style.transform = `translate(${shown[2 * i].toFixed(1)}px, ${shown[2 * i + 1].toFixed(1)}px)`;
+  }
+
   return {
     layer,
     draw(width, height) {
       if (layer.hidden) return;
       if (!isMeasured) measure();
-      items.forEach(({ at }, i) => {
-        track.locate(at, place);
+      for (let i = 0; i < items.length; i++) {
+        track.locate(items[i].at, place);
         point.set(place[0], place[1], place[2]).project(camera);
         boxes[4 * i] = ((point.x + 1) / 2) * width + 9;
         boxes[4 * i + 1] = ((1 - point.y) / 2) * height - boxes[4 * i + 3] - 5;
         spans[i].hidden = !isFree(i);
-        spans[i].style.transform = `translate(${boxes[4 * i]}px, ${boxes[4 * i + 1]}px)`;
-      });
+        if (!spans[i].hidden) move(i);
+      }
     },
   };
 }

@@ -2,9 +2,11 @@
 
 import { AmbientLight, DirectionalLight, Group, Quaternion, Scene, Vector3, WebGLRenderer } from "three";
 
-// camera: of three.js; the light moves with it. Throws where there is no WebGL.
+// camera: of three.js; the light moves with it. undefined: there is no WebGL.
 export function createStage(canvas, camera) {
-  const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+  const context = canvas.getContext("webgl2", { antialias: true, alpha: true });
+  if (!context) return undefined;
+  const renderer = new WebGLRenderer({ canvas, context });
   const scene = new Scene();
   const lamp = new DirectionalLight(0xffffff, 2);
   const listeners = new Set();

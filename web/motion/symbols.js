@@ -2,7 +2,7 @@
 //
 // Sizes follow from s, the radius of a pin [m]. A symbol moves with the body that it belongs to.
 
-import { CylinderGeometry, OctahedronGeometry, SphereGeometry, TorusGeometry, Vector3 } from "three";
+import { BoxGeometry, CylinderGeometry, OctahedronGeometry, SphereGeometry, TorusGeometry, Vector3 } from "three";
 
 const slides = (symbol) => symbol === "slider" || symbol === "cylindrical" || symbol === "screw";
 
@@ -46,7 +46,7 @@ export function createHatch({ parts, s, dark }, width, thickness, name) {
   group.add(plate);
   const n = Math.max(3, Math.min(40, Math.round(width / (0.9 * s))));
   for (let i = 0; i < n; i++) {
-    const line = parts.box(1.3 * s, 0.14 * s, 0.6 * thickness, dark, name);
+    const line = parts.solid(new BoxGeometry(1.3 * s, 0.14 * s, 0.6 * thickness), dark, name, false);
     line.rotation.z = Math.PI / 4;
     line.position.set(((i + 0.5) / n - 0.5) * width - 0.25 * s, -0.65 * s, 0);
     group.add(line);

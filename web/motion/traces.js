@@ -1,6 +1,7 @@
 // The paths of points over the whole run.
 
 import { BufferGeometry, Float32BufferAttribute, Group, Line, LineBasicMaterial } from "three";
+import { colorOfBody } from "./colors.js";
 
 const most = 2001; // places on a path
 const still = 0.002; // of the scene's size: a point that moves less leaves no path
@@ -21,4 +22,22 @@ export function createTraces(parts, track, points, size) {
     group.add(parts.own(new Line(geometry, material), points[i].name));
   });
   return group;
+}
+
+// Points that leave paths: those of the model, and the ends of beams.
+export function tracedPoints(data, track) {
+  const points = data.traces.map(({ body, at }) => ({ body, locate: (out, i) => track.locate(at, out, i) }));
+  for (const { number, beam } of data.bodies.filter((body) => body.beam))
+    for (const end of [0, beam.points - 1]) {
+      const at = new Float64Array(4);
+      at[0] = number;
+      points.push({
+        body: number,
+        locate(out, i) {
+          for (let k = 0; k < 3; k++) at[k + 1] = track.cubic(beam.column + 3 * end + k);
+          track.locate(at, out, i);
+        },
+      });
+    }
+  return points.map(({ body, locate }) => ({ name: data.bodies[body].name, color: colorOfBody(body), locate }));
 }

@@ -7,15 +7,39 @@
 
 import { locate } from "../packed.js";
 
+// Places [m] and quaternions (w x y z) of poses in ground axes, and of what moves with them.
+export function createPoseTable(poses) {
+  const place = new Float64Array(3 * poses);
+  const turn = new Float64Array(4 * poses);
+  turn[0] = 1;
+  return {
+    place,
+    turn,
+    // out, an array from `at` on = place of [pose, x, y, z] in ground axes
+    locate([p, x, y, z], out, at = 0) {
+      const w = turn[4 * p];
+      const a = turn[4 * p + 1];
+      const b = turn[4 * p + 2];
+      const c = turn[4 * p + 3];
+      // v + 2 q x (q x v + w v)
+      const i = b * z - c * y + w * x;
+      const j = c * x - a * z + w * y;
+      const k = a * y - b * x + w * z;
+      out[at] = place[3 * p] + x + 2 * (b * k - c * j);
+      out[at + 1] = place[3 * p + 1] + y + 2 * (c * i - a * k);
+      out[at + 2] = place[3 * p + 2] + z + 2 * (a * j - b * i);
+    },
+  };
+}
+
 // poses: their number; times: [s]; columns: as `unpack` gives them.
 export function createTrack(poses, times, columns) {
-  const place = new Float64Array(3 * poses); // [m], ground axes
-  const turn = new Float64Array(4 * poses); // w x y z
+  const table = createPoseTable(poses);
+  const { place, turn } = table;
   const weight = new Float64Array(4); // of the samples around
   const last = times.length - 1;
   let index = 0;
   let part = 0;
-  turn[0] = 1;
 
   // Cubic Hermite polynomials with slopes from the three samples around each end.
   function weigh() {
@@ -81,27 +105,11 @@ export function createTrack(poses, times, columns) {
 
   seek(times[0]);
   return {
+    ...table,
     times,
-    place,
-    turn,
     seek,
     cubic, // column -> its value, smooth
     linear, // column -> its value, for what may jump
-    // out, an array from `at` on = place of [pose, x, y, z] in ground axes
-    locate(point, out, at = 0) {
-      const [p, x, y, z] = point;
-      const w = turn[4 * p];
-      const a = turn[4 * p + 1];
-      const b = turn[4 * p + 2];
-      const c = turn[4 * p + 3];
-      // v + 2 q x (q x v + w v)
-      const i = b * z - c * y + w * x;
-      const j = c * x - a * z + w * y;
-      const k = a * y - b * x + w * z;
-      out[at] = place[3 * p] + x + 2 * (b * k - c * j);
-      out[at + 1] = place[3 * p + 1] + y + 2 * (c * i - a * k);
-      out[at + 2] = place[3 * p + 2] + z + 2 * (a * j - b * i);
-    },
     // f(i) with the poses at n times, equally spaced, the start and the end among them
     scan(n, f) {
       for (let i = 0; i < n; i++) {

@@ -1,0 +1,174 @@
+// Section `motion` and the page of modes in a real browser: node motion.mjs, with COTREE, CHROMIUM, WEB and SYSTEMS in the environment.
+import assert from "node:assert/strict";
+import { readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { cotree, folder, launch, open, report } from "./browser.mjs";
+
+const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
+const view = (page) => page.locator(".motion-view");
+
+// Two frames later what was asked for is drawn.
+async function pixels(page) {
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  return view(page).screenshot();
+}
+
+// Does the picture change by an action?
+async function changes(page, action) {
+  const before = await pixels(page);
+  await action();
+  return !before.equals(await pixels(page));
+}
+
+async function checkSeek(page, end) {
+  const seek = (t) => page.evaluate((t) => window.cotree.seek(t), t);
+  await seek(0);
+  assert.ok(await changes(page, () => seek(0.4 * end)), "the motion stands still");
+  const there = await pixels(page);
+  await seek(0.7 * end);
+  await seek(0.4 * end);
+  assert.ok(there.equals(await pixels(page)), "the same time gives another picture");
+  assert.ok(await changes(page, () => seek(0.4003 * end)), "nothing between samples");
+}
+
+async function checkKeys(page) {
+  const canvas = view(page).locator("canvas");
+  await canvas.focus();
+  for (const key of ["ArrowLeft", "ArrowUp", "+", "y", "z", "i", "Shift+ArrowLeft", "0"])
+    assert.ok(await changes(page, () => page.keyboard.press(key)), `nothing by ${key}`);
+  await page.keyboard.press(" ");
+  await page.waitForFunction((t) => window.cotree.time !== t, await page.evaluate(() => window.cotree.time));
+  await page.keyboard.press(" ");
+}
+
+async function checkMouse(page) {
+  await view(page).scrollIntoViewIfNeeded();
+  const box = await view(page).boundingBox();
+  const drag = async () => {
+    await page.mouse.move(box.x + 30, box.y + 40);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 120, box.y + 90, { steps: 3 });
+    await page.mouse.up();
+  };
+  assert.ok(await changes(page, drag), "nothing by dragging");
+  await view(page).locator("canvas").focus();
+  assert.ok(await changes(page, () => page.mouse.wheel(0, -300)), "nothing by the wheel");
+}
+
+// The pointer on a body lights it everywhere; a click keeps it.
+async function checkPicking(page) {
+  await page.evaluate(() => window.cotree.seek(0));
+  await page.getByRole("button", { name: "z", exact: true }).click();
+  await pixels(page);
+  const label = await page.locator('.names [data-component="rod"]').boundingBox();
+  const lit = () => page.evaluate(() => document.body.dataset.lit);
+  const [x, y] = [label.x - 8, label.y + label.height + 4]; // beside what it names, see labels.js
+  await page.mouse.move(x, y);
+  assert.equal(await lit(), "rod");
+  assert.ok(await page.locator('#model .lit[data-component~="rod"]').count());
+  await page.mouse.click(x, y);
+  await page.mouse.move(5, 5);
+  assert.equal(await lit(), "rod");
+  assert.ok(await changes(page, () => page.evaluate(() => window.cotree.light(""))), "what is lit looks as ever");
+}
+
+async function checkStandsStill(page) {
+  await pixels(page);
+  const frames = await page.evaluate(async () => {
+    let n = 0;
+    const request = window.requestAnimationFrame;
+    window.requestAnimationFrame = (f) => (n++, request(f));
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    window.requestAnimationFrame = request;
+    return n;
+  });
+  assert.equal(frames, 0, "frames while nothing changes");
+}
+
+async function checkPanel(browser) {
+  const { page, close } = await open(browser, report(system("slider_crank"), "motion.html"));
+  await checkSeek(page, 2);
+  await checkStandsStill(page);
+  await checkPicking(page);
+  for (const name of ["paths", "reactions", "names", "grid"])
+    assert.ok(await changes(page, () => page.locator(".controls label", { hasText: name }).locator("input").click()), name);
+  await checkKeys(page);
+  await checkMouse(page);
+  await page.getByRole("button", { name: "fit" }).click();
+  await page.setViewportSize({ width: 500, height: 700 });
+  await pixels(page);
+  const [width, wanted] = await view(page).evaluate((view) => [view.querySelector("canvas").width, view.clientWidth]);
+  assert.ok(wanted < 500);
+  assert.equal(width, wanted);
+  await close();
+}
+
+async function checkBeams(browser) {
+  const file = report(system("slider_crank_flexible"), "beams.html");
+  const { page, close } = await open(browser, file, { dark: true });
+  await checkSeek(page, 1);
+  const slider = page.locator(".factor", { hasText: "deflection" }).locator("input");
+  assert.ok(await changes(page, () => slider.fill("2")), "beams do not bend more");
+  assert.equal(await page.locator(".factor", { hasText: "deflection" }).locator("output").textContent(), "× 100");
+  await close();
+}
+
+// Without WebGL the drawing of the start stays.
+async function checkFallback(browser) {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  const wrong = [];
+  page.on("pageerror", (error) => wrong.push(error.message));
+  await page.addInitScript(() => {
+    const getContext = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+      return kind.startsWith("webgl") ? null : getContext.call(this, kind, ...more);
+    };
+  });
+  await page.goto(`file://${join(folder, "motion.html")}`);
+  await page.evaluate(() => window.cotree.ready);
+  assert.ok(await page.locator("#motion svg .joint").first().isVisible());
+  assert.equal(await page.locator(".motion-view").count(), 0);
+  assert.deepEqual(wrong, []);
+  await context.close();
+}
+
+async function checkModes(browser) {
+  const make = (name) => cotree(["modes", system("cantilever"), "-q", "--count", "4", "-o", "modes.csv", "--report", name], { stdio: "ignore" });
+  make("modes.html");
+  make("again.html");
+  const file = join(folder, "modes.html");
+  assert.ok(readFileSync(file).equals(readFileSync(join(folder, "again.html"))), "other bytes");
+  const { page, close } = await open(browser, file);
+  assert.equal(await page.locator("input[name=mode]").count(), 4);
+  await page.evaluate(() => window.cotree.seek(0));
+  assert.ok(await changes(page, () => page.evaluate(() => window.cotree.seek(0.5))), "the mode stands still");
+  await page.evaluate(() => window.cotree.seek(0));
+  const choose = async () => {
+    await page.locator("input[name=mode]").nth(2).check();
+    await page.evaluate(() => (window.cotree.pause(), window.cotree.seek(0)));
+  };
+  assert.ok(await changes(page, choose), "another mode looks the same");
+  assert.ok(await changes(page, () => page.locator(".factor input").fill("0.5")), "nothing by the amplitude");
+  await page.getByRole("button", { name: "Play" }).click();
+  await page.waitForFunction(() => window.cotree.time > 0);
+  await page.getByRole("button", { name: "Pause" }).click();
+  await close();
+}
+
+const browser = await launch();
+const steps = { panel: checkPanel, beams: checkBeams, fallback: checkFallback, modes: checkModes };
+let failed = 0;
+for (const [name, step] of Object.entries(steps)) {
+  const start = Date.now();
+  try {
+    await step(browser);
+    console.log(`${name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);
+  } catch (error) {
+    failed++;
+    console.log(`${name}: ${error.stack}`);
+  }
+}
+await browser.close();
+rmSync(folder, { recursive: true });
+process.exit(failed ? 1 : 0);
