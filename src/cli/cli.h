@@ -19,7 +19,8 @@ struct cli_args {
     const char *model;
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
-        *plot, *report, *columns, *view, *about, *inputs, *load, *curve, *elements, *formulations;
+        *plot, *report, *columns, *view, *about, *inputs, *load, *curve, *elements,
+        *formulations;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
