@@ -8,12 +8,17 @@
 #include <string.h>
 #include <sys/stat.h>
 
-const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
-       &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
-       &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
-       &cli_export,   &cli_import,     &cli_components, &cli_methods,   &cli_schema,
-       &cli_completion, NULL};
+const struct cli_command *const cli_commands[] = {&cli_simulate,   &cli_report,
+                                                  &cli_equations,  &cli_graph,
+                                                  &cli_draw,       &cli_accuracy,
+                                                  &cli_sweep,      &cli_merge,
+                                                  &cli_check,      &cli_equilibrium,
+                                                  &cli_modes,      &cli_linearize,
+                                                  &cli_buckling,   &cli_kinematics,
+                                                  &cli_inverse,    &cli_export,
+                                                  &cli_import,     &cli_components,
+                                                  &cli_methods,    &cli_schema,
+                                                  &cli_completion, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -126,7 +131,8 @@ const struct cli_option cli_options[] = {
      "text, latex, html, c or json", "text latex html c json"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false,
      "text, svg, png, dot or json", "text svg png dot json"},
-    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c, fmu2 or fmu3", "c fmu2 fmu3"},
+    {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EXPORT, false, "c, fmu2 or fmu3",
+     "c fmu2 fmu3"},
     {"quiet", 'q', NULL, CLI_FLAG, FIELD(quiet), CLI_MODELS, true,
      "no summary and no progress bar"},
     {"help", 'h', NULL, CLI_FLAG, FIELD(help), CLI_MODELS | CLI_LISTS, true, "this text"},

@@ -46,7 +46,7 @@ static ct_ex name(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
 static bool is_normal(struct ct_build *b, const struct ct_flexible *f, int i)
 {
     double v;
-    const ct_ex n = ct_base_into(b, f, b->normal).e[i];
+    const ct_ex n = ct_base_into(b, f, b->topology->normal).e[i];
     return !ct_ex_is_const(b->x, n, &v) || v != 0;
 }
 
@@ -59,7 +59,7 @@ static void name_rigid(struct ct_arena *a, struct ct_build *b, const struct ct_f
              ct_arena_printf(a, "s_%s.%s", f->name, axis_name[i]));
     for (int i = 0; i < 9; i++) { // column-major, symmetric: the same nodes
         const bool is_there
-            = b->is_planar ? i % 4 == 0 && is_normal(b, f, i / 4) : i / 3 >= i % 3;
+            = b->topology->is_planar ? i % 4 == 0 && is_normal(b, f, i / 4) : i / 3 >= i % 3;
         if (is_there)
             name(a, b->x, p, f->inertia->inertia.e[i],
                  ct_arena_printf(a, "i_%s.%s", f->name, entry[i]));

@@ -288,7 +288,7 @@ void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_col
     }
     r->is_collected = may_collect && size <= largest_collected;
     for (size_t i = 0; i < e->nu && r->is_collected; i++)
-        r->Q[i] = collect_force(e, a, r->Q[i]);
+        r->Q[i] = ct_reduced_collect_force(e, a, r->Q[i]);
     for (size_t i = 0; i < nroot && r->is_collected; i++)
         if (where[i] < r->Q || where[i] >= r->Q + e->nu)
             *where[i] = collect(e, *where[i]);

@@ -303,14 +303,14 @@ void ct_beam_matrices_put_element(struct ct_derivation *d, const struct ct_flexi
 static bool turns_about(struct ct_build *b, const struct ct_flexible *f, int i)
 {
     double v;
-    const ct_ex n = ct_base_into(b, f, b->normal).e[i];
-    return !b->is_planar || !ct_ex_is_const(b->x, n, &v) || v != 0;
+    const ct_ex n = ct_base_into(b, f, b->topology->normal).e[i];
+    return !b->topology->is_planar || !ct_ex_is_const(b->x, n, &v) || v != 0;
 }
 
 // (4.15), (4.16), (4.19): the terminal equations in these matrices.
 static void put_terminal(struct ct_derivation *d, const struct ct_flexible *f)
 {
-    const char *frame = d->e->build->node[f->base].name;
+    const char *frame = d->e->build->topology->node[f->base].name;
     const char *a = ct_derivation_of(d, "a", frame), *al = ct_derivation_of(d, "al", frame);
     const bool latex = ct_derivation_is_latex(d);
     ct_page_equations(&d->page);
@@ -370,7 +370,7 @@ static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f,
         "-\\boldsymbol{A} \\, \\tilde{\\boldsymbol{s}}", "A.2; skew(s) v = s x v");
     ct_page_equation(&d->page, NULL, pick(d, "s", "\\boldsymbol{s}"),
                      ct_derivation_vector(d, s), "A.3: first moment, axes of the beam");
-    if (!d->e->build->is_planar) {
+    if (!d->e->build->topology->is_planar) {
         put_matrix(d, &(struct matrix){"m_thetatheta", "\\boldsymbol{m}_{\\theta\\theta}",
                                        "m_thetatheta", "(A.8), (A.9), (A.10)", xyz, xyz, 3, 3,
                                        value, true});

@@ -75,8 +75,7 @@ void ct_flexible_inertia_rows(struct ct_build *b, const struct ct_flexible *f,
 
 void ct_flexible_stiffness_rows(struct ct_build *b, const struct ct_flexible *f, ct_ex *row)
 {
-    ct_ex *force
-        = CT_NEWN(b->ctx->scratch, ct_ex, CT_NODE_FREEDOM * (f->beam->nelement + 1));
+    ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, CT_NODE_FREEDOM * (f->beam->nelement + 1));
     ct_stiffness_rows(b, f, force);
     hand_over(b, f, force, row);
 }
