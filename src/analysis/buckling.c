@@ -1,5 +1,19 @@
 // See buckling.h.
+//
+// The stiffness K along the path of equilibria decides. Of small systems it is a dense matrix
+// in the coordinates of factor 0, with all its eigenvalues. Of large ones it is sparse, and its
+// eigenvalues next to zero are those of K y = w2 M y: they change their signs where those of K
+// do (Sylvester's law of inertia). All else is the same for both.
+//
+// Where sparse K follows the load in proportion, so that the linear problem gives the factors
+// of the path but for little, the path needs not be searched: each factor is refined from its
+// estimate c and shape x by
+//
+//     K y - J' mu = K1 x,  J y = 0,    d = -y' K1 x/(y' K1 y),    K1 = (K - K_0)/c
+//
+// which takes the factor from c to c + d and the shape from x to y; once K is singular, d vanishes.
 #include "analysis/buckling.h"
+#include "analysis/sparse_modes.h"
 #include "base/sort.h"
 #include "numeric/dense.h"
 
@@ -8,17 +22,26 @@
 #include <string.h>
 
 static const double none = 1e-11; // of the largest eigenvalue: a direction without stiffness
-static const double symmetric = 1e-8;  // relative
-static const double refined = 1e-13;   // of a factor
-static const double small_load = 1e-2; // of the first factor: the second load level
-// [rad] An axis that the square of the slope shortens is half as long as it was; what comes beyond is none of a beam's.
+static const double symmetric = 1e-8; // relative
+static const double refined = 1e-13;  // of a factor
+// Of the first factor: the second load level, for dense and for sparse stiffness. The slope of
+// K is a difference, and round-off of K is large beside it where elements are short: cond(K)
+// eps of the first factor, 1e-4 for 1000 elements.
+static const double small_load = 1e-2, half_load = 0.5;
+// [rad] An axis that the square of the slope shortens is half as long as it was; what comes
+// beyond is none of a beam's.
 static const double steepest = 1;
 static const double straight = 1e-8; // [rad] round-off of an axis that does not bend
-// Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a step before. Where it is larger
-// at the end, Newton's method has lost the path.
+// Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a
+// step before. Where it is larger at the end, Newton's method has lost the path.
 static const double folded = 1e-2;
 static const double behind
     = 1 + 1. / 16; // of the last estimate: its round-off, and a little more
+// Of a factor: from here on a step that is not shorter than half the last one is round-off.
+static const double nearly = 1e-6;
+// Of a factor: by which those of path and linear problem may differ, so that one leads to the
+// other.
+static const double in_proportion = 0.1;
 // Steps along the path: the first against the first estimate, the shortest against the place.
 static const double first_step = 1. / 16, shortest_step = 1. / 64;
 enum {
@@ -26,6 +49,7 @@ enum {
     MOST_HALVINGS = 30,
     MOST_TRIES = 1000,
     MOST_REFINE = 100,
+    MOST_STEPS = 30,
     MOST_STOPS = 2000
 };
 
@@ -33,7 +57,7 @@ struct search {
     struct ct_linear *l;
     struct ct_arena *a;
     size_t at, count;
-    int n;            // directions that have a stiffness with some load
+    int n; // eigenvalues: of all directions that have a stiffness with some load, or next to zero
     int f;            // free speeds
     int *independent; // of factor 0
     double *P;        // f x n
@@ -41,19 +65,23 @@ struct search {
     int *pivot;
     struct ct_buckling_factor *found;
     size_t nfound, cap;
-    double searched; // the path up to this factor
-    bool is_steep;   // beyond it beams bend too far
+    double searched;                // the path up to this factor
+    bool is_large;                  // sparse
+    struct ct_point *free, *loaded; // sparse stiffness with factor 0 and with others
+    double *shape, *b, *y, *K0x;    // of the linear factors: nu x (count + 1); nu + nrow each
+    bool is_steep;                  // beyond it beams bend too far
 };
 
 // A place on the path.
 struct place {
-    double factor, *y, *memory;
+    double factor, *y, *lam, *memory;
 };
 
 static struct place place_create(struct search *s)
 {
     const struct ct_evaluator *m = s->l->m;
     return (struct place){.y = CT_NEWN(s->a, double, m->nq + m->nu + 1),
+                          .lam = CT_NEWN(s->a, double, m->nrow + 1),
                           .memory = CT_NEWN(s->a, double, m->e->nmemory + 1)};
 }
 
@@ -62,6 +90,7 @@ static void keep(const struct ct_linear *l, size_t at, struct place *p)
     const struct ct_evaluator *m = l->m;
     p->factor = m->input[at];
     memcpy(p->y, l->y, (m->nq + m->nu + 1) * sizeof *p->y);
+    memcpy(p->lam, l->lam, m->nrow * sizeof *p->lam);
     memcpy(p->memory, m->input + m->at_memory, m->e->nmemory * sizeof *p->memory);
 }
 
@@ -70,6 +99,7 @@ static void copy_place(const struct search *s, struct place *to, const struct pl
     const struct ct_evaluator *m = s->l->m;
     to->factor = from->factor;
     memcpy(to->y, from->y, (m->nq + m->nu + 1) * sizeof *to->y);
+    memcpy(to->lam, from->lam, m->nrow * sizeof *to->lam);
     memcpy(to->memory, from->memory, m->e->nmemory * sizeof *to->memory);
 }
 
@@ -83,6 +113,7 @@ static void go_back(struct ct_linear *l, size_t at, const struct place *p)
 {
     const struct ct_evaluator *m = l->m;
     memcpy(l->y, p->y, (m->nq + m->nu + 1) * sizeof *p->y);
+    memcpy(l->lam, p->lam, m->nrow * sizeof *p->lam);
     memcpy(m->input + m->at_memory, p->memory, m->e->nmemory * sizeof *p->memory);
     set_factor(l, at, p->factor);
 }
@@ -97,7 +128,7 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
         const double here = last.factor, next = here + (factor - here) * ldexp(1, -i);
         set_factor(l, at, next);
-        if (l->M ? ct_equilibrium_rates(l, &result) : ct_equilibrium_rates_sparse(l, &result)) {
+        if (ct_equilibrium_rates(l, &result)) {
             keep(l, at, &last);
             i = i > 0 ? i - 1 : 0;
         } else {
@@ -108,7 +139,7 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     return last.factor == factor;
 }
 
-// ---- stiffness in the coordinates of factor 0 ------------------------------------------------------------
+// ---- stiffness in the coordinates of factor 0 -----------------------------------------------
 
 // K (f x f, out): y0 = T y, so that K = T^-T Kr T^-1
 static bool stiffness(struct search *s, double *K)
@@ -173,7 +204,7 @@ static void find_directions(struct search *s)
     }
 }
 
-// ---- the linear problem -------------------------------------------------------------------------------------
+// ---- the linear problem ---------------------------------------------------------------------
 
 static int ascending(const void *context, const void *a, const void *b)
 {
@@ -222,24 +253,53 @@ static bool slope(struct search *s, const struct place *start, double c)
     return true;
 }
 
-// First with the load as it is, or less of it, then with a small part of what buckles.
+// The same of a sparse stiffness; it finds `count` and the next one, which tells how far to search.
+static bool sparse_factors(struct search *s, const struct place *start, double level, double *c,
+                           int *n)
+{
+    go_back(s->l, s->at, start);
+    const bool reached = ct_buckling_load(s->l, s->at, level) && ct_point_evaluate(s->loaded);
+    go_back(s->l, s->at, start);
+    *n = reached
+           ? (int)ct_sparse_modes_factors(s->l, s->loaded, level, s->count + 1, c, s->shape)
+           : 0;
+    return reached;
+}
+
+static bool dense_factors(struct search *s, const struct place *start, double level, double *c,
+                          int *n)
+{
+    if (!slope(s, start, level))
+        return false;
+    *n = linear_factors(s, c);
+    return true;
+}
+
+// Factors c of the linear problem; first with the load as it is, or less of it, then with a
+// part of what buckles.
 static int estimate(struct search *s, const struct place *start, double *c)
 {
+    bool (*const factors)(struct search *, const struct place *, double, double *, int *)
+        = s->is_large ? sparse_factors : dense_factors;
     double level = 1;
-    for (int i = 0; i < MOST_LEVELS && !slope(s, start, level); i++)
+    int n = 0;
+    for (int i = 0; i < MOST_LEVELS && !factors(s, start, level, c, &n); i++)
         level /= 4;
-    int n = linear_factors(s, c);
-    if (n && level > small_load * c[0] && slope(s, start, small_load * c[0]))
-        n = linear_factors(s, c);
+    const double second = n ? (s->is_large ? half_load : small_load) * c[0] : 0;
+    int again = 0;
+    if (n && (s->is_large || level > second) && factors(s, start, second, c, &again))
+        n = again;
     return n;
 }
 
-// ---- on the path -----------------------------------------------------------------------------------------------
+// ---- on the path ----------------------------------------------------------------------------
 
 // Eigenvalues of the stiffness here, ascending, in s->value.
 static bool eigenvalues(struct search *s)
 {
     const int n = s->n;
+    if (s->is_large)
+        return ct_sparse_modes_stiffness(s->l, (size_t)n, s->value);
     double *H = s->K0; // no longer needed
     if (!stiffness(s, s->K))
         return false;
@@ -250,7 +310,8 @@ static bool eigenvalues(struct search *s)
     return ct_symmetric_eigenvalues(s->value, H, n, n, s->work);
 }
 
-// The k-th eigenvalue at a factor between two, from the lower place; false beyond the end of the path.
+// The k-th eigenvalue at a factor between two, from the lower place; false beyond the end of
+// the path.
 static bool eigenvalue_at(struct search *s, const struct place *from, double factor, int k,
                           double *value)
 {
@@ -261,8 +322,9 @@ static bool eigenvalue_at(struct search *s, const struct place *from, double fac
     return true;
 }
 
-// The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and bisection where the path ends
-// before b. va > 0 at a; vb <= 0 at b, or b cannot be reached. Returns the eigenvalue at the last place before.
+// The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and
+// bisection where the path ends before b. va > 0 at a; vb <= 0 at b, or b cannot be reached.
+// Returns the eigenvalue at the last place before.
 static double refine(struct search *s, struct place *a, double va, double b, double vb,
                      bool reached, int k, struct ct_buckling_factor *out)
 {
@@ -322,21 +384,23 @@ static double steepness(struct search *s)
     return largest;
 }
 
-// From one stop to the next the eigenvalue that vanishes next loses no more than half of itself, and goes no further below zero.
+// From one stop to the next the eigenvalue that vanishes next loses no more than half of
+// itself, and goes no further below zero.
 static bool is_gentle(const double *before, const double *after, int next, int n)
 {
     return next == n || (before[next] > 0 && after[next] >= before[next] / 2)
         || (after[next] <= 0 && after[next] >= -before[next] / 2);
 }
 
-// March along the path and refine where eigenvalues change their sign: to the factor `last`, or where beams bend until they are
-// too steep. The linear problem tells no more than the first step there: as the load bends the axis, K also changes by what
-// couples stretch and bending, which the square of the load takes back, and its factors may be far from those of the path.
+// March along the path and refine where eigenvalues change their sign: to the factor `last`, or
+// where beams bend until they are too steep. The linear problem tells no more than the first
+// step there: as the load bends the axis, K also changes by what couples stretch and bending,
+// which the square of the load takes back, and its factors may be far from those of the path.
 static bool march(struct search *s, const struct place *start, double step, double last)
 {
     struct place here = place_create(s), next = place_create(s), first = place_create(s);
     go_back(s->l, s->at, start);
-    if (!ct_linear_rest(s->l) || !eigenvalues(s))
+    if ((!s->is_large && !ct_linear_rest(s->l)) || !eigenvalues(s))
         return false;
     keep(s->l, s->at, &here);
     double *before = CT_NEWN(s->a, double, s->n + 1), *after = CT_NEWN(s->a, double, s->n + 1);
@@ -393,21 +457,113 @@ static bool march(struct search *s, const struct place *start, double step, doub
     return s->l->ctx->nerror == 0;
 }
 
-// ---- all of it -----------------------------------------------------------------------------------------------------
+// ---- a sparse stiffness in proportion to the load -------------------------------------------
 
-static struct search search_create(struct ct_linear *l, size_t at, size_t count)
+// y (nu, out) = K1 x, from factors 0 and c
+static void apply_slope(struct search *s, double *y, const double *x, double c)
 {
-    struct search s = {.l = l, .a = l->arena, .at = at, .count = count, .f = l->nfree};
-    const size_t f = (size_t)s.f + 1;
-    double **const squares[] = {&s.P, &s.K0, &s.K1, &s.K, &s.B, &s.T};
+    const size_t nu = (size_t)s->l->nu;
+    ct_point_apply(y, s->loaded->K, s->loaded->nK, x, nu);
+    ct_point_apply(s->K0x, s->free->K, s->free->nK, x, nu);
+    for (size_t i = 0; i < nu; i++)
+        y[i] = (y[i] - s->K0x[i]) / c;
+}
+
+// One step from the place in l with factor c: d (out), x becomes y. False where K is singular
+// to the last digit.
+static bool step(struct search *s, double c, double *x, double *d)
+{
+    const size_t nu = (size_t)s->l->nu, n = nu + (size_t)s->l->nrow;
+    struct ct_sparse *matrix = ct_point_factor(s->loaded, 1, 0);
+    if (!matrix)
+        return false;
+    memset(s->b, 0, n * sizeof *s->b);
+    apply_slope(s, s->b, x, c);
+    ct_sparse_solve_extended(matrix, s->y, s->b);
+    double *K1y = x; // no longer needed
+    const double work = ct_vector_dot(s->y, s->b, nu);
+    apply_slope(s, K1y, s->y, c);
+    *d = -work / ct_vector_dot(s->y, K1y, nu);
+    const double size = sqrt(ct_vector_dot(s->y, s->y, nu));
+    for (size_t i = 0; i < nu; i++)
+        x[i] = s->y[i] / size;
+    return isfinite(size);
+}
+
+// The factor of the path next to the estimate `linear` with its shape x. False where there is
+// none in proportion.
+static bool refine_linear(struct search *s, double linear, double *x,
+                          struct ct_buckling_factor *out)
+{
+    double c = linear, d = INFINITY, last;
+    for (int i = 0; i < MOST_STEPS && fabs(c - linear) <= in_proportion * linear; i++) {
+        last = fabs(d);
+        if (!ct_buckling_load(s->l, s->at, c) || !ct_point_evaluate(s->loaded))
+            return false;
+        const bool is_singular = !step(s, c, x, &d);
+        c += is_singular ? 0 : d;
+        if (is_singular || fabs(d) <= refined * c
+            || (fabs(d) <= nearly * c && fabs(d) > last / 2)) {
+            *out = (struct ct_buckling_factor){.factor = c, .linear = linear, .is_exact = true};
+            return fabs(c - linear) <= in_proportion * linear;
+        }
+    }
+    return false;
+}
+
+static int by_factor(const void *context, const void *a, const void *b)
+{
+    (void)context;
+    const struct ct_buckling_factor *x = a, *y = b;
+    return (x->factor > y->factor) - (x->factor < y->factor);
+}
+
+// All n linear factors, `count` at most. False where one is not in proportion: then others of
+// the path may lie below.
+static bool refine_all(struct search *s, const struct place *start, const double *c, int n)
+{
+    const size_t nu = (size_t)s->l->nu;
+    go_back(s->l, s->at, start);
+    for (size_t k = 0; k < (size_t)n && k < s->count; k++) {
+        struct ct_buckling_factor f;
+        if (!refine_linear(s, c[k], s->shape + nu * k, &f)) {
+            s->nfound = 0;
+            return false;
+        }
+        CT_PUSH(s->a, s->found, s->nfound, s->cap, f);
+    }
+    ct_sort(s->a, s->found, s->nfound, sizeof *s->found, by_factor, NULL);
+    return true;
+}
+
+// ---- all of it ------------------------------------------------------------------------------
+
+static void reserve_dense(struct search *s)
+{
+    const size_t f = (size_t)s->f + 1;
+    double **const squares[] = {&s->P, &s->K0, &s->K1, &s->K, &s->B, &s->T};
     for (size_t i = 0; i < COUNT(squares); i++)
-        *squares[i] = CT_NEWN(s.a, double, f *f);
-    s.value = CT_NEWN(s.a, double, f);
-    s.work = CT_NEWN(s.a, double, ct_symmetric_eigenvalues_work((int)f));
-    s.pivot = CT_NEWN(s.a, int, f);
-    s.independent = CT_NEWN(s.a, int, f);
-    memcpy(s.independent, l->independent, (size_t)s.f * sizeof *s.independent);
-    return s;
+        *squares[i] = CT_NEWN(s->a, double, f *f);
+    s->value = CT_NEWN(s->a, double, f);
+    s->work = CT_NEWN(s->a, double, ct_symmetric_eigenvalues_work((int)f));
+    s->pivot = CT_NEWN(s->a, int, f);
+    s->independent = CT_NEWN(s->a, int, f);
+    memcpy(s->independent, s->l->independent, (size_t)s->f * sizeof *s->independent);
+}
+
+static void reserve_sparse(struct search *s)
+{
+    const size_t f = (size_t)s->f,
+                 next_to_zero = s->count + 2; // those that may be negative, and the next
+    s->n = (int)(next_to_zero < f ? next_to_zero : f);
+    s->value = CT_NEWN(s->a, double, next_to_zero);
+    s->free = ct_point_create(s->l);
+    s->loaded = ct_point_create(s->l);
+    const size_t nu = (size_t)s->l->nu, n = nu + (size_t)s->l->nrow;
+    double **const vectors[] = {&s->b, &s->y, &s->K0x};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(s->a, double, n + 1);
+    s->shape = CT_NEWN(s->a, double, nu *(s->count + 1) + 1);
 }
 
 static bool no_buckling(const struct search *s)
@@ -415,7 +571,7 @@ static bool no_buckling(const struct search *s)
     return ct_error(s->l->ctx, (struct ct_mark){.file = s->l->m->model->file}, CT_E_NO_BUCKLING,
                     "the load does not lead to buckling: no positive factor makes the "
                     "stiffness vanish%s",
-                    is_symmetric(s->K1, s->f)
+                    s->is_large || is_symmetric(s->K1, s->f)
                         ? ""
                         : "; it has no potential and may lead to flutter: "
                           "see the modes of the loaded model");
@@ -433,22 +589,45 @@ static bool none_on_path(const struct search *s)
                         : "");
 }
 
-bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
-                      struct ct_buckling_list *list)
+// Can sparse matrices serve? Is there a stiffness in every direction without the load, and
+// against none of them?
+static bool is_stable(struct search *s)
 {
-    struct search s = search_create(l, at, count);
-    struct place start = place_create(&s);
-    double *c = CT_NEWN(s.a, double, s.f + 1);
+    double least;
+    return s->f && ct_sparse_modes_stiffness(s->l, 1, &least) && least > 0;
+}
+
+bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
+                      struct ct_buckling_list *list, bool *applies)
+{
+    struct search s = {.l = l, .a = l->arena, .at = at, .count = count, .is_large = !l->M};
+    s.f = s.is_large ? l->nu - l->nrow : l->nfree;
     *list = (struct ct_buckling_list){.has_potential = true};
+    *applies = !s.is_large || is_stable(&s);
+    if (!*applies)
+        return true;
     if (!s.f)
         return no_buckling(&s);
+    struct place start = place_create(&s);
+    double *c = CT_NEWN(s.a, double, (s.is_large ? count : (size_t)s.f) + 1);
     keep(l, at, &start);
-    stiffness(&s, s.K0);
+    if (s.is_large) {
+        reserve_sparse(&s);
+        if (!ct_point_evaluate(s.free))
+            return false;
+    } else {
+        reserve_dense(&s);
+        stiffness(&s, s.K0);
+    }
     const int n = estimate(&s, &start, c);
+    *applies = !s.is_large || n; // else the load may have no potential
     if (!n)
-        return no_buckling(&s);
-    list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
-    if (list->has_potential && !march(&s, &start, first_step * c[0], behind * c[n - 1]))
+        return *applies ? no_buckling(&s) : true;
+    if (!s.is_large)
+        list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
+    const bool is_refined = s.is_large && refine_all(&s, &start, c, n);
+    if (!is_refined && list->has_potential
+        && !march(&s, &start, first_step * c[0], behind * c[n - 1]))
         return false;
     if (list->has_potential && !s.nfound)
         return none_on_path(&s);
@@ -456,7 +635,7 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
         const struct ct_buckling_factor f = {.factor = c[k]};
         CT_PUSH(s.a, s.found, s.nfound, s.cap, f);
     }
-    for (size_t k = 0; k < s.nfound && k < (size_t)n; k++)
+    for (size_t k = 0; k < s.nfound && k < (size_t)n && !is_refined; k++)
         s.found[k].linear = c[k];
     list->factor = s.found;
     list->n = s.nfound;

@@ -1,4 +1,5 @@
-// Static buckling: load factors at which the stiffness of an equilibrium vanishes in some direction.  (formulation 9.5)
+// Static buckling: load factors at which the stiffness of an equilibrium vanishes in some
+// direction.  (formulation 9.5)
 #ifndef CT_ANALYSIS_BUCKLING_H
 #define CT_ANALYSIS_BUCKLING_H
 
@@ -20,26 +21,26 @@ struct ct_buckling_list {
 /**
  * The lowest positive factors of the load whose factor is input `at` of the evaluator.
  *
- * K_1 is the slope of the stiffness along the path of equilibria at factor 0. Each estimate is refined on the path, by
- * the eigenvalue of the stiffness that changes its sign.
+ * K_1 is the slope of the stiffness along the path of equilibria at factor 0: (K_0 + c K_1) phi
+ * = 0 is the linear problem. Its factors give the first step along the path. There each factor
+ * is found by the eigenvalue of the stiffness that changes its sign.
  *
- * l      in    at the equilibrium with factor 0, linearised
- *        out   anywhere on the path
- * list   out   ascending, `count` of them at most; in l->arena
+ * l        in    at the equilibrium with factor 0: linearised, or, of a large system, as
+ *                ct_equilibrium_find_sparse leaves it
+ *          out   anywhere on the path
+ * list     out   ascending, `count` of them at most; in l->arena
+ * applies  out   false, and nothing is said, where l has no dense matrices and sparse ones do
+ *                not serve: something can move freely, the equilibrium is not stable without
+ *                the load, or the load has no potential
  *
  * Errors   CT_E_NO_BUCKLING when there is none; CT_E_SINGULAR
  * Source   Roberts (1991), chapter 4, key roberts1991
  */
 bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
-                      struct ct_buckling_list *list);
+                      struct ct_buckling_list *list, bool *applies);
 
-/// The same of systems too large for full matrices, l as ct_equilibrium_find_sparse leaves it. *applies is false, and
-/// nothing is said, where sparse factors do not serve: something can move freely, the equilibrium is not stable
-/// without the load, the load has no potential, or no factor is found.
-bool ct_buckling_find_sparse(struct ct_linear *l, size_t at, size_t count,
-                             struct ct_buckling_list *list, bool *applies);
-
-/// Take l along the path from one factor to another, in as many steps as it needs. False where the path ends.
+/// Take l along the path from one factor to another, in as many steps as it needs. False where
+/// the path ends.
 bool ct_buckling_load(struct ct_linear *l, size_t at, double factor);
 
 #endif

@@ -18,17 +18,18 @@ struct ct_buckling {
     struct ct_model *variant;
     struct ct_equations equations;
     const char *load;
-    size_t count, input; // of the machine: the factor
+    size_t count, input; // of the evaluator: the factor
     struct ct_buckling_list list;
-    double *y0, *memory0;
+    double *y0, *lam0, *memory0; // the equilibrium there
 };
 
-// ---- finding it -----------------------------------------------------------------------------------------
+// ---- finding it -----------------------------------------------------------------------------
 
 static void start_again(struct ct_buckling *s)
 {
     struct ct_linear *l = s->at.l;
     memcpy(l->y, s->y0, (l->m->nq + l->m->nu + 1) * sizeof *l->y);
+    memcpy(l->lam, s->lam0, l->m->nrow * sizeof *l->lam);
     memcpy(l->m->input + l->m->at_memory, s->memory0, l->m->e->nmemory * sizeof *s->memory0);
     l->m->input[s->input] = 0;
     ct_evaluator_prepare(l->m);
@@ -39,7 +40,9 @@ static void keep_start(struct ct_buckling *s)
     const struct ct_linear *l = s->at.l;
     const size_t ny = l->m->nq + l->m->nu + 1, nm = l->m->e->nmemory;
     s->y0 = CT_NEWN(s->own.model, double, ny);
+    s->lam0 = CT_NEWN(s->own.model, double, l->m->nrow + 1);
     s->memory0 = CT_NEWN(s->own.model, double, nm + 1);
+    memcpy(s->lam0, l->lam, l->m->nrow * sizeof *s->lam0);
     memcpy(s->y0, l->y, ny * sizeof *s->y0);
     memcpy(s->memory0, l->m->input + l->m->at_memory, nm * sizeof *s->memory0);
 }
@@ -63,19 +66,17 @@ static bool find(void *task)
     s->at.may_be_large = true;
     if (!ct_configuration_find(&s->own, s->system, NULL, &s->at))
         return false;
-    if (s->at.is_large) {
-        bool applies;
-        keep_start(s);
-        if (!ct_buckling_find_sparse(s->at.l, s->input, s->count, &s->list, &applies))
-            return false;
-        if (applies)
-            return true;
-        s->variant->parameter[parameter].value = 0;
-        if (!ct_configuration_find_full(&s->own, s->system, NULL, &s->at))
-            return false;
-    }
+    bool applies;
     keep_start(s);
-    return ct_buckling_find(s->at.l, s->input, s->count, &s->list);
+    if (!ct_buckling_find(s->at.l, s->input, s->count, &s->list, &applies))
+        return false;
+    if (applies)
+        return true;
+    s->variant->parameter[parameter].value = 0;
+    if (!ct_configuration_find_full(&s->own, s->system, NULL, &s->at))
+        return false;
+    keep_start(s);
+    return ct_buckling_find(s->at.l, s->input, s->count, &s->list, &applies);
 }
 
 struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -115,7 +116,7 @@ double ct_buckling_factor(const struct ct_buckling *s, size_t i)
     return i < s->list.n ? s->list.factor[i].factor : NAN;
 }
 
-// ---- tables ---------------------------------------------------------------------------------------------
+// ---- tables ---------------------------------------------------------------------------------
 
 struct output {
     struct ct_ctx *ctx;

@@ -20,7 +20,7 @@ struct ct_equilibrium {
     const char *softest; // coordinate that moves most in the least stiff direction
 };
 
-// ---- finding it ---------------------------------------------------------------------------------------
+// ---- finding it -----------------------------------------------------------------------------
 
 // By the lowest modes on sparse matrices.
 static bool judge_large(struct ct_equilibrium *q, bool *applies)
@@ -139,7 +139,7 @@ void ct_equilibrium_destroy(struct ct_equilibrium *q)
         ct_analysis_free(q, &q->own, &q->at);
 }
 
-// ---- what it says ---------------------------------------------------------------------------------------
+// ---- what it says ---------------------------------------------------------------------------
 
 double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column)
 {

@@ -32,7 +32,7 @@ static double *matrix(struct ct_linearization *s, size_t n, size_t m)
     return CT_NEWN(s->own.model, double, n *m + 1);
 }
 
-// ---- inputs ---------------------------------------------------------------------------------------------
+// ---- inputs ---------------------------------------------------------------------------------
 
 // A list of names, separated by commas.
 static void split_names(struct ct_linearization *s, const char *text)
@@ -62,7 +62,7 @@ static bool make_variant(struct ct_linearization *s, const char *inputs)
         && ct_equations_like(&s->own, s->variant, &s->system->equations, false, &s->equations);
 }
 
-// ---- slopes of outputs and forces -------------------------------------------------------------------------
+// ---- slopes of outputs and forces -----------------------------------------------------------
 
 struct slopes {
     double *q, *u, *a, *lam, *p; // n x nu, nu, nu, nrow, ninput
@@ -120,7 +120,7 @@ static bool check_inputs(struct ct_linearization *s)
     return true;
 }
 
-// ---- matrices ------------------------------------------------------------------------------------------------
+// ---- matrices -------------------------------------------------------------------------------
 
 // out (n x k) += A (n x m) B (m x k)
 static void add_product(struct ct_linearization *s, double *out, const double *A,
@@ -278,7 +278,7 @@ static bool fill(struct ct_linearization *s)
     return true;
 }
 
-// ---- creation --------------------------------------------------------------------------------------------------
+// ---- creation -------------------------------------------------------------------------------
 
 static bool find(void *task)
 {
@@ -313,7 +313,7 @@ void ct_linearization_destroy(struct ct_linearization *s)
         ct_analysis_free(s, &s->own, &s->at);
 }
 
-// ---- questions --------------------------------------------------------------------------------------------------
+// ---- questions ------------------------------------------------------------------------------
 
 const double *ct_linearization_matrix(const struct ct_linearization *s, char name, size_t *rows,
                                       size_t *columns)
@@ -354,7 +354,7 @@ const char *ct_linearization_name(const struct ct_linearization *s, char what, s
     return i < n ? list[i] : NULL;
 }
 
-// ---- files ------------------------------------------------------------------------------------------------------
+// ---- files ----------------------------------------------------------------------------------
 
 struct output {
     struct ct_ctx *ctx;

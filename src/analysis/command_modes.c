@@ -27,7 +27,7 @@ struct ct_modes {
     const char **coordinate; // nu names
 };
 
-// ---- finding them -------------------------------------------------------------------------------------
+// ---- finding them ---------------------------------------------------------------------------
 
 // Sparse where that is possible, else as others.
 static bool solve(struct ct_modes *s, size_t count)
@@ -101,7 +101,7 @@ void ct_modes_destroy(struct ct_modes *s)
         ct_analysis_free(s, &s->own, &s->at);
 }
 
-// ---- questions ------------------------------------------------------------------------------------------
+// ---- questions ------------------------------------------------------------------------------
 
 size_t ct_modes_count(const struct ct_modes *s)
 {
@@ -141,7 +141,7 @@ bool ct_modes_shape(const struct ct_modes *s, size_t i, const char *coordinate, 
     return false;
 }
 
-// ---- tables ---------------------------------------------------------------------------------------------
+// ---- tables ---------------------------------------------------------------------------------
 
 struct output {
     struct ct_ctx *ctx;
@@ -272,9 +272,10 @@ void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
     ct_locale_leave(before);
 }
 
-// ---- the picture -------------------------------------------------------------------------------------------
+// ---- the picture ---------------------------------------------------------------------------
 
-// Points of the skeleton in two directions of the view: the nodes of the graph, then points along the axes of beams.
+// Points of the skeleton in two directions of the view: the nodes of the graph, then points
+// along the axes of beams.
 struct skeleton {
     struct ct_modes *s;
     struct ct_program places;
@@ -355,7 +356,8 @@ static void skeleton_create(struct skeleton *k, struct ct_modes *s)
     add_bones(k, b);
 }
 
-// Points (2 x n, out) when the coordinates have moved by `amount` of a shape, the loops closed again.
+// Points (2 x n, out) when the coordinates have moved by `amount` of a shape, the loops closed
+// again.
 static void points_of(struct skeleton *k, const double *y0, const double *shape, double amount,
                       double *out)
 {
@@ -371,8 +373,9 @@ static void points_of(struct skeleton *k, const double *y0, const double *shape,
     memcpy(out, k->places.out, 2 * k->n * sizeof *out);
 }
 
-// The motion of points that a small part of the shape gives, as large as `amount`: p (2 x n, in and out). Beams would draw
-// in their ends and bend back with a shape that is large against a wave.
+// The motion of points that a small part of the shape gives, as large as `amount`: p (2 x n, in
+// and out). Beams would draw in their ends and bend back with a shape that is large against a
+// wave.
 static void enlarge(double *p, const double *rest, size_t n, double factor)
 {
     for (size_t i = 0; i < 2 * n; i++)

@@ -9,7 +9,7 @@
 
 static const double still = 1e-12; // of rows' rates: round-off
 
-// ---- equations -----------------------------------------------------------------------------------------
+// ---- equations ------------------------------------------------------------------------------
 
 static const char **branches(struct ct_arena *a, const struct ct_equations *e,
                              const struct ct_tree *t, size_t *n)
@@ -47,7 +47,7 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
     return ok;
 }
 
-// ---- states --------------------------------------------------------------------------------------------
+// ---- states ---------------------------------------------------------------------------------
 
 // Any joint with a motion, be it a branch or a chord.
 static bool has_drivers(const struct ct_model *m)
@@ -80,7 +80,8 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     return NULL;
 }
 
-// Does a motion do the same at any time: turn or slide at a constant rate, or push a slide at a constant acceleration?
+// Does a motion do the same at any time: turn or slide at a constant rate, or push a slide at a
+// constant acceleration?
 static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, size_t i)
 {
     const struct ct_driver *d = &e->driver[i];
@@ -147,7 +148,7 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
         ct_formulate_residual(c->equations);
         c->l = ct_configuration_start(own, sys, c->model, c->e, true);
     }
-    return c->l && ct_equilibrium_find(c->l, NULL, &c->equilibrium);
+    return c->l && ct_equilibrium_find(c->l, &c->equilibrium);
 }
 
 static bool find_start(struct ct_ctx *own, struct ct_system *sys, struct ct_configuration *c)

@@ -1,9 +1,10 @@
 // See eigenvalues.h.
 //
-// Without damping, gyroscopic or circulatory forces the problem is symmetric and solved as such. Otherwise it is written
-// in the modes of its symmetric part, where one unit of time and mass holds for all coordinates and what nothing
-// resists stands as exact zeros. Coordinates that move no mass are condensed; if dampers act on them, the state
-// space has their places as states of their own.
+// Without damping, gyroscopic or circulatory forces the problem is symmetric and solved as
+// such. Otherwise it is written in the modes of its symmetric part, where one unit of time and
+// mass holds for all coordinates and what nothing resists stands as exact zeros. Coordinates
+// that move no mass are condensed; if dampers act on them, the state space has their places as
+// states of their own.
 #include "analysis/eigenvalues.h"
 #include "analysis/state_space.h"
 #include "base/sort.h"
@@ -13,7 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-// Directions with less than this of the mass of the others, in coordinates of unit mass each: round-off.
+// Directions with less than this of the mass of the others, in coordinates of unit mass each:
+// round-off.
 static const double massless = 1e-12;
 // An entry is zero if it is this small against the largest: what sums of n round-off errors leave.
 static const double roundoff = 16 * DBL_EPSILON;
@@ -28,7 +30,8 @@ static void congruence(double *out, const double *V, const double *A, double *wo
     ct_matrix_multiply_transposed(out, V, work, k, n, k);
 }
 
-// Entries against the largest of their columns: beside stiff elements a load without potential is small.
+// Entries against the largest of their columns: beside stiff elements a load without potential
+// is small.
 static bool is_symmetric(struct ct_arena *a, const double *A, int n)
 {
     double *size = CT_NEWN(a, double, n + 1), most = 0;
@@ -51,9 +54,10 @@ static void symmetrise(double *A, int n)
             A[i + n * j] = A[j + n * i] = (A[i + n * j] + A[j + n * i]) / 2;
 }
 
-// ---- the symmetric problem ---------------------------------------------------------------------------------
+// ---- the symmetric problem ------------------------------------------------------------------
 
-// Shapes V (n x k, out) with V' M V = 1, V' K V = diag(w2), and the directions N (n x n0) that move no mass.
+// Shapes V (n x k, out) with V' M V = 1, V' K V = diag(w2), and the directions N (n x n0) that
+// move no mass.
 struct basis {
     int n, k, n0;
     double *V, *w2, *N;
@@ -88,8 +92,8 @@ static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct ba
             *= roundoff * n * value[n - 1] / value[s->n0]; // a vector's, by the gap to others
 }
 
-// How far N' K B (n0 x m, B: n x m) may be from its value by round-off errors and by the errors of N, and of B where it has
-// the same.
+// How far N' K B (n0 x m, B: n x m) may be from its value by round-off errors and by the errors
+// of N, and of B where it has the same.
 static void bound_errors(double *bound, const struct basis *s, const double *K, const double *B,
                          int m, bool is_same)
 {
@@ -108,8 +112,8 @@ static void bound_errors(double *bound, const struct basis *s, const double *K, 
         }
 }
 
-// K_nn = Q diag(held) Q', N becomes N Q; held 0 where nothing holds a direction, beyond round-off errors. False if the
-// eigenvalues cannot be found.
+// K_nn = Q diag(held) Q', N becomes N Q; held 0 where nothing holds a direction, beyond
+// round-off errors. False if the eigenvalues cannot be found.
 static bool turn_massless(struct ct_arena *a, const double *K, struct basis *s, double *held)
 {
     const int n = s->n, n0 = s->n0;
@@ -129,8 +133,8 @@ static bool turn_massless(struct ct_arena *a, const double *K, struct basis *s, 
     return true;
 }
 
-// The massless directions follow without inertia, K_nn s = -K_nv; those that nothing holds stay at rest. False if one of
-// these is pulled at nevertheless: then it has no place to follow to.
+// The massless directions follow without inertia, K_nn s = -K_nv; those that nothing holds stay
+// at rest. False if one of these is pulled at nevertheless: then it has no place to follow to.
 static bool condense(struct ct_arena *a, const double *K, struct basis *s)
 {
     const int n = s->n, k = s->k, n0 = s->n0;
@@ -191,7 +195,8 @@ static void clear_zeros(struct basis *s)
             s->w2[j] = 0;
 }
 
-// L (n x n, out) = Cholesky factor of the symmetric part of K; false unless K is positive beyond its round-off.
+// L (n x n, out) = Cholesky factor of the symmetric part of K; false unless K is positive
+// beyond its round-off.
 static bool factor_stiffness(double *L, const double *K, int n)
 {
     memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
@@ -204,8 +209,9 @@ static bool factor_stiffness(double *L, const double *K, int n)
     return true;
 }
 
-// Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and round-off does not measure itself by
-// the fastest. The lower half, counted in octaves. L: factor of K; M (n x n).
+// Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and round-off
+// does not measure itself by the fastest. The lower half, counted in octaves. L: factor of K; M
+// (n x n).
 static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, struct basis *s)
 {
     const int n = s->n;
@@ -246,7 +252,7 @@ double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double 
     return s.w2[0];
 }
 
-// ---- lists of modes -----------------------------------------------------------------------------------------
+// ---- lists of modes -------------------------------------------------------------------------
 
 struct list {
     struct ct_arena *a;
@@ -297,32 +303,32 @@ static int by_size(const void *context, const void *x, const void *y)
     return sa != sb ? (sa > sb) - (sa < sb) : (a->re < b->re) - (a->re > b->re);
 }
 
-double ct_modes_roundoff(const struct ct_motion_mode *mode, size_t nswitch, double *fastest)
+double ct_modes_roundoff(const struct ct_motion_mode *mode, size_t nmode, double *fastest)
 {
     *fastest = 0;
-    for (size_t i = 0; i < nswitch; i++)
+    for (size_t i = 0; i < nmode; i++)
         *fastest = fmax(*fastest, hypot(mode[i].re, mode[i].im));
-    return roundoff * 2 * (double)nswitch * *fastest; // as zeros of as many states
+    return roundoff * 2 * (double)nmode * *fastest; // as zeros of as many states
 }
 
-void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nswitch)
+void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode)
 {
-    ct_sort(a, mode, nswitch, sizeof *mode, by_size, NULL);
+    ct_sort(a, mode, nmode, sizeof *mode, by_size, NULL);
 }
 
-void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nswitch, double w2,
-                          double *shape, int nu)
+void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2, double *shape,
+                          int nu)
 {
     const double w = sqrt(fabs(w2));
     normalise(shape, nu);
     if (w2 >= 0) {
-        mode[(*nswitch)++]
+        mode[(*nmode)++]
             = (struct ct_motion_mode){.im = w, .is_rigid = w2 == 0, .shape = shape};
         return;
     }
     // an unstable pair: exp(w t) and exp(-w t)
-    mode[(*nswitch)++] = (struct ct_motion_mode){.re = w, .shape = shape};
-    mode[(*nswitch)++] = (struct ct_motion_mode){.re = -w, .shape = shape};
+    mode[(*nmode)++] = (struct ct_motion_mode){.re = w, .shape = shape};
+    mode[(*nmode)++] = (struct ct_motion_mode){.re = -w, .shape = shape};
 }
 
 static void add_symmetric(struct list *list, const struct basis *s)
@@ -336,8 +342,9 @@ static void add_symmetric(struct list *list, const struct basis *s)
     }
 }
 
-// A free coordinate has a double zero with one vector, which round-off splits into a pair of the order of its square
-// root: up to `most` of those not larger than `small` are zero, too. Returns how many are.
+// A free coordinate has a double zero with one vector, which round-off splits into a pair of
+// the order of its square root: up to `most` of those not larger than `small` are zero, too.
+// Returns how many are.
 static int take_split_zeros(double *re, double *im, int n, int nzero, int most, double small)
 {
     while (nzero < most) {
@@ -356,8 +363,9 @@ static int take_split_zeros(double *re, double *im, int n, int nzero, int most, 
     return nzero;
 }
 
-// Eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape. Those this small are zero; as many
-// as `rigid` zeros, and half of what there are more, are rigid-body motions.
+// Eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape. Those this
+// small are zero; as many as `rigid` zeros, and half of what there are more, are rigid-body
+// motions.
 static bool add_general(struct list *list, double *A, const double *T, int n, double zero,
                         int rigid)
 {
@@ -393,9 +401,9 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
     return true;
 }
 
-// ---- in the modes of the symmetric part ------------------------------------------------------------------------
+// ---- in the modes of the symmetric part -----------------------------------------------------
 
-static void clear_roundings(double *A, int n, double size)
+static void clear_roundoff(double *A, int n, double size)
 {
     for (int i = 0; i < n * n; i++)
         if (fabs(A[i]) <= roundoff * n * size)
@@ -439,9 +447,9 @@ static bool solve_modal(struct list *list, const struct basis *s)
     ct_matrix_multiply(MV, l->Mr, work, f, f, f);
     ct_matrix_multiply_transposed(G, s->V, MV, f, f, f);
     const double size = ct_vector_largest(K, (size_t)f * (size_t)f);
-    clear_roundings(K, f, size);
-    clear_roundings(C, f, ct_vector_largest(C, (size_t)f * (size_t)f));
-    clear_roundings(G, f, ct_vector_largest(G, (size_t)f * (size_t)f));
+    clear_roundoff(K, f, size);
+    clear_roundoff(C, f, ct_vector_largest(C, (size_t)f * (size_t)f));
+    clear_roundoff(G, f, ct_vector_largest(G, (size_t)f * (size_t)f));
     double least = sqrt(size);
     for (int i = 0; i < f; i++)
         if (s->w2[i] != 0)
@@ -462,7 +470,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
     return add_general(list, A, T, n, zero, steady > free ? steady : free);
 }
 
-// ---- all of it --------------------------------------------------------------------------------------------------
+// ---- all of it ------------------------------------------------------------------------------
 
 // Massless coordinates with dampers: their places are states without speeds.
 static bool solve_state_space(struct list *list, int rigid)
@@ -475,7 +483,7 @@ static bool solve_state_space(struct list *list, int rigid)
 }
 
 bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
-                    struct ct_motion_mode **mode, size_t *nswitch, const char **how)
+                    struct ct_motion_mode **mode, size_t *nmode, const char **how)
 {
     struct list list = {.a = a, .l = l};
     struct basis s;
@@ -513,6 +521,6 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
                  "the eigenvalues cannot be found");
     ct_modes_sort(a, list.mode, list.n);
     *mode = list.mode;
-    *nswitch = list.n;
+    *nmode = list.n;
     return ok;
 }

@@ -1,38 +1,24 @@
 // See equilibrium.h.
+//
+// The steps come from dense or from sparse matrices (equilibrium_step.h). Their length, and
+// where the search ends, are the same for both.
 #include "analysis/equilibrium.h"
+#include "analysis/equilibrium_step.h"
 #include "formulate/build.h"
 #include "numeric/dense.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
-static const double longest_turn
-    = 0.2; // [rad] in one step, against jumping to another equilibrium
-static const double first_length = 0.2; // [m] at first; doubled after steps that went well
-static const double arrived = 1e-13;    // of a step against the coordinates: their round-off
-static const double nearly
-    = 1e-8; // from here on a step that is not shorter than half the last ends the search
-static const double flat = 1e-11;    // of the stiffest direction: no stiffness
-static const double balanced = 1e-9; // of the forces that meet: a flat direction without force
+// [rad] in one step, against jumping to another equilibrium.
+static const double longest_turn = 0.2;
+// [m] in one step at first; doubled after steps that went well.
+static const double first_length = 0.2;
+// Of a step against the coordinates: their round-off.
+static const double arrived = 1e-13;
 enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
 
-struct search {
-    struct ct_linear *l;
-    const bool *held;
-    bool *turns;           // speeds that are angular
-    int n;                 // directions that may move
-    double *S;             // nfree x n: these directions
-    double *p, *scale;     // forces along them (n), and the sizes of what meets there
-    double *gross;         // the same of each row (nu)
-    double *H, *V, *value; // stiffness; its directions against the masses and their values
-    double *g, *dq, *work, *A, *B, *kept_y, *kept_memory;
-    int *pivot;
-    double length;  // limit of lengths now [m]
-    bool is_newton; // nothing is unstable: the step is that of Newton's method
-};
-
-static void find_turns(struct search *s)
+static void find_turns(struct ct_equilibrium_search *s)
 {
     const struct ct_equations *e = s->l->m->e;
     for (size_t k = 0; k < e->nu; k++)
@@ -43,164 +29,43 @@ static void find_turns(struct search *s)
             s->turns[e->coordinate[i].u] = true;
 }
 
-static struct search search_create(struct ct_linear *l, const bool *held)
+static struct ct_equilibrium_search search_create(struct ct_linear *l,
+                                                  const struct ct_equilibrium_method *method)
 {
     struct ct_arena *a = l->arena;
-    const size_t n = (size_t)l->nu + 1;
-    struct search s = {.l = l, .held = held, .length = first_length};
-    double **const squares[] = {&s.S, &s.H, &s.V, &s.A, &s.B};
-    for (size_t i = 0; i < COUNT(squares); i++)
-        *squares[i] = CT_NEWN(a, double, n *n);
-    double **const vectors[] = {&s.p, &s.scale, &s.gross, &s.value, &s.g, &s.dq};
-    for (size_t i = 0; i < COUNT(vectors); i++)
-        *vectors[i] = CT_NEWN(a, double, n);
-    s.work = CT_NEWN(a, double, n + ct_symmetric_eigenvalues_work((int)n));
-    s.pivot = CT_NEWN(a, int, n);
-    s.turns = CT_NEWN(a, bool, n);
-    s.kept_y = CT_NEWN(a, double, l->m->nq + n + 1);
+    const size_t nu = (size_t)l->nu + 1, nrow = (size_t)l->nrow + 1;
+    struct ct_equilibrium_search s = {.l = l, .method = method, .length = first_length};
+    s.dq = CT_NEWN(a, double, nu);
+    s.dlam = CT_NEWN(a, double, nrow);
+    s.turns = CT_NEWN(a, bool, nu);
+    s.kept_y = CT_NEWN(a, double, l->m->nq + nu);
+    s.kept_lam = CT_NEWN(a, double, nrow);
     s.kept_memory = CT_NEWN(a, double, l->m->e->nmemory + 1);
     find_turns(&s);
+    method->reserve(&s);
     return s;
 }
 
-static void keep(struct search *s, bool back)
+static void keep(struct ct_equilibrium_search *s)
 {
     const struct ct_linear *l = s->l;
-    double *memory = l->m->input + l->m->at_memory;
-    const size_t ny = l->m->nq + l->m->nu + 1, nm = l->m->e->nmemory;
-    memcpy(back ? l->y : s->kept_y, back ? s->kept_y : l->y, ny * sizeof *l->y);
-    memcpy(back ? memory : s->kept_memory, back ? s->kept_memory : memory, nm * sizeof *memory);
+    const struct ct_evaluator *m = l->m;
+    memcpy(s->kept_y, l->y, (m->nq + m->nu + 1) * sizeof *l->y);
+    memcpy(s->kept_lam, l->lam, m->nrow * sizeof *l->lam);
+    memcpy(s->kept_memory, m->input + m->at_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
-// ---- one step --------------------------------------------------------------------------------------------
-
-// S: all directions, or those that leave the held coordinates alone.
-static void find_directions(struct search *s)
+static void go_back(const struct ct_equilibrium_search *s)
 {
     const struct ct_linear *l = s->l;
-    const int f = l->nfree;
-    const double still = 1e-12; // of a unit vector, squared: round-off
-    memset(s->S, 0, (size_t)f * (size_t)f * sizeof *s->S);
-    s->n = 0;
-    if (!s->held) {
-        for (s->n = 0; s->n < f; s->n++)
-            s->S[s->n + f * s->n] = 1;
-        return;
-    }
-    memset(s->A, 0, (size_t)f * (size_t)f * sizeof *s->A);
-    for (int k = 0; k < l->nu; k++)
-        for (int j = 0; j < f && s->held[k]; j++)
-            for (int i = 0; i < f; i++)
-                s->A[i + f * j] += l->Z[k + l->nu * i] * l->Z[k + l->nu * j];
-    ct_symmetric_eigen(s->value, s->A, f, f, s->work);
-    for (int k = 0; k < f && s->value[k] <= still; k++, s->n++)
-        memcpy(s->S + f * k, s->A + f * k, (size_t)f * sizeof *s->S);
-}
-
-// out (n x n) = S' A S, made symmetric if asked for
-static void restrict_to(struct search *s, double *out, const double *A, bool symmetric)
-{
-    const int f = s->l->nfree, n = s->n;
-    ct_matrix_multiply(s->B, A, s->S, f, f, n);
-    ct_matrix_multiply_transposed(out, s->S, s->B, n, f, n);
-    for (int j = 0; j < n && symmetric; j++)
-        for (int i = 0; i < j; i++)
-            out[i + n * j] = out[j + n * i] = (out[i + n * j] + out[j + n * i]) / 2;
-}
-
-// V' H V = diag(value), V' W V = 1: W are the masses, and a little where there are none.
-static void find_stiffness(struct search *s)
-{
-    const int n = s->n;
-    const double little = 1e-6;
-    double *W = s->A, mean = 0;
-    restrict_to(s, W, s->l->Mr, true);
-    for (int i = 0; i < n; i++)
-        mean += W[i + n * i] / n;
-    for (int i = 0; i < n; i++)
-        W[i + n * i] += little * fmax(W[i + n * i], mean > 0 ? mean : 1 / little);
-    restrict_to(s, s->H, s->l->Kr, true);
-    ct_cholesky(W, n, n);
-    ct_cholesky_congruence(s->H, W, n, n);
-    ct_symmetric_eigen(s->value, s->H, n, n, s->work);
-    memcpy(s->V, s->H, (size_t)n * (size_t)n * sizeof *s->V);
-    for (int j = 0; j < n; j++)
-        ct_cholesky_solve_transposed(s->V + (size_t)n * (size_t)j, W, n, n);
-}
-
-// Forces p along S, and the sizes of what they are the sum of: constraints, weights, and stiffness over one unit.
-static void find_forces(struct search *s)
-{
-    const struct ct_linear *l = s->l;
-    const int f = l->nfree, nu = l->nu;
-    double weight = 0;
-    for (int k = 0; k < 3; k++)
-        weight = fmax(weight, fabs(ct_model_number(l->m->model, l->m->model->gravity.e[k])));
-    for (int j = 0; j < nu; j++) {
-        s->gross[j] = l->scale[j];
-        for (int i = 0; i < nu; i++)
-            s->gross[j] += fabs(l->M[j + nu * i]) * weight + fabs(l->K[j + nu * i]);
-    }
-    ct_matrix_multiply_transposed(s->p, s->S, l->force, s->n, f, 1);
-    for (int k = 0; k < s->n; k++) {
-        s->scale[k] = 0;
-        for (int i = 0; i < f; i++)
-            for (int j = 0; j < nu && s->S[i + f * k] != 0; j++)
-                s->scale[k] += fabs(s->S[i + f * k] * l->Z[j + nu * i]) * s->gross[j];
-    }
-}
-
-// Is the stiffness positive beyond its round-off? Its pivots are compared each with its own diagonal, so that a structure of
-// many elements, whose soft directions are far below its stiff ones, is not taken for a mechanism.
-static bool is_positive(struct search *s)
-{
-    const int n = s->n;
-    double *L = s->A, *diagonal = s->dq;
-    restrict_to(s, L, s->l->Kr, true);
-    for (int i = 0; i < n; i++)
-        diagonal[i] = L[i + n * i];
-    if (!ct_cholesky(L, n, n))
-        return false;
-    for (int i = 0; i < n; i++)
-        if (!(L[i + n * i] * L[i + n * i] > 16 * n * DBL_EPSILON * diagonal[i]))
-            return false;
-    return true;
-}
-
-// Step c (n) along the directions of S.
-static void find_step(struct search *s, double *c)
-{
-    const int n = s->n;
-    const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[n - 1]));
-    s->is_newton = s->value[0] > flat * stiffest || is_positive(s);
-    memset(c, 0, (size_t)n * sizeof *c);
-    if (s->is_newton) { // exact, with forces that have no potential
-        restrict_to(s, s->A, s->l->Kr, false);
-        if (ct_lu(s->A, s->pivot, n, n)) {
-            for (int i = 0; i < n; i++)
-                c[i] = -s->p[i];
-            ct_lu_solve(c, s->A, s->pivot, n, n, 1, n, false);
-            return;
-        }
-    }
-    for (int k = 0; k < n; k++) {
-        const double *v = s->V + (size_t)n * (size_t)k, far = 1e30;
-        double g = 0, size = 0;
-        for (int i = 0; i < n; i++) {
-            g += v[i] * s->p[i];
-            size += fabs(v[i]) * s->scale[i];
-        }
-        const bool is_flat = fabs(s->value[k]) <= flat * stiffest;
-        const double along = !is_flat                   ? -g / fabs(s->value[k])
-                           : fabs(g) <= balanced * size ? 0
-                                                        : copysign(far, -g);
-        for (int i = 0; i < n; i++)
-            c[i] += along * v[i];
-    }
+    const struct ct_evaluator *m = l->m;
+    memcpy(l->y, s->kept_y, (m->nq + m->nu + 1) * sizeof *l->y);
+    memcpy(l->lam, s->kept_lam, m->nrow * sizeof *l->lam);
+    memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
 // The part of dq that the limits allow.
-static double allowed(const struct search *s)
+static double allowed(const struct ct_equilibrium_search *s)
 {
     double part = 1;
     for (int k = 0; k < s->l->nu; k++) {
@@ -211,31 +76,40 @@ static double allowed(const struct search *s)
     return part;
 }
 
-// Work of the forces along dq at the place in l: they are known along independent speeds.
-static double slope(const struct search *s)
+static void scale_step(struct ct_equilibrium_search *s, double part)
 {
-    double sum = 0;
-    for (int i = 0; i < s->l->nfree; i++)
-        sum += s->l->force[i] * s->dq[s->l->independent[i]];
-    return sum;
+    for (int k = 0; k < s->l->nu; k++)
+        s->dq[k] *= part;
+    for (int k = 0; k < s->l->nrow; k++)
+        s->dlam[k] *= part;
 }
 
-// Go along dq as far as the forces still push on: the place is in l, linearised. False without a diagnostic if no
-// part of the step can be taken.
-static bool go(struct search *s)
+// Take the step. False where the loops do not close, or there is nothing finite.
+static bool take_step(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
-    const double before = slope(s), part = allowed(s), turned_back = 0.5;
+    ct_evaluator_retract(l->m, l->y, s->dq);
+    for (int k = 0; k < l->nrow; k++)
+        l->lam[k] += s->dlam[k];
+    return ct_linear_close(l) && s->method->evaluate(s);
+}
+
+// Go along the step as far as the forces still push on, more or less. False if no part of it
+// can be taken; mostly without a diagnostic.
+static bool go(struct ct_equilibrium_search *s)
+{
+    struct ct_linear *l = s->l;
+    const double before = s->method->slope(s), part = allowed(s), turned_back = 0.5;
     const size_t nu = (size_t)l->nu;
-    for (size_t k = 0; k < nu; k++)
-        s->dq[k] *= part;
+    scale_step(s, part);
     const bool is_fine
-        = s->is_newton && ct_vector_largest(s->dq, nu) < nearly; // slopes are round-off here
-    keep(s, false);
+        = s->is_newton
+       && ct_vector_largest(s->dq, nu) < CT_EQUILIBRIUM_FINE; // slopes are round-off here
+    keep(s);
     for (int i = 0; i < MOST_HALVINGS; i++) {
-        ct_evaluator_retract(l->m, l->y, s->dq);
-        if (ct_linear_close(l) && ct_linear_rest(l)
-            && (is_fine || slope(s) <= turned_back * fabs(before) * ldexp(1, -i) * part)) {
+        if (take_step(s)
+            && (is_fine
+                || s->method->slope(s) <= turned_back * fabs(before) * ldexp(1, -i) * part)) {
             if (i == 0 && part < 1)
                 s->length *= 2;
             else if (i)
@@ -244,17 +118,66 @@ static bool go(struct search *s)
         }
         if (l->ctx->nerror)
             return false;
-        keep(s, true);
-        for (size_t k = 0; k < nu; k++)
-            s->dq[k] /= 2;
+        go_back(s);
+        scale_step(s, 0.5);
     }
     return false;
 }
 
-// ---- the search ---------------------------------------------------------------------------------------------
-
-bool ct_equilibrium_missing(const struct ct_linear *l, int k)
+// The size of the step against the coordinates.
+static double step_size(const struct ct_equilibrium_search *s)
 {
+    const struct ct_linear *l = s->l;
+    return ct_vector_largest(s->dq, (size_t)l->nu) / (1 + ct_vector_largest(l->y, l->m->nq));
+}
+
+// Is what is left of the coordinates their round-off? `last`: the step before.
+static bool has_arrived(double size, double last)
+{
+    return size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2);
+}
+
+// ---- along a path of loads ------------------------------------------------------------------
+
+bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out)
+{
+    enum { MOST = 25 };
+    struct ct_equilibrium_search s
+        = search_create(l, l->M ? &ct_equilibrium_dense : &ct_equilibrium_sparse);
+    double last = INFINITY;
+    const size_t before = l->ctx->nerror;
+    s.length
+        = INFINITY; // a path may lead far; what jumps to another one does not converge steadily
+    *out = (struct ct_equilibrium_result){0};
+    if (!s.method->evaluate(&s))
+        return false;
+    for (; !s.method->is_balanced(&s); out->iterations++) {
+        if (!s.method->find_newton_step(&s))
+            return false;
+        const double size = out->last_step = step_size(&s);
+        if (has_arrived(size, last)) {
+            for (int k = 0; k < l->nrow; k++)
+                l->lam[k] += s.dlam[k];
+            break;
+        }
+        if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1 || size > last / 2)
+            return false;
+        last = size;
+        if (!take_step(&s) || l->ctx->nerror != before)
+            return false;
+    }
+    return l->ctx->nerror == before;
+}
+
+// ---- the search -----------------------------------------------------------------------------
+
+static bool report_missing(const struct ct_equilibrium_search *s)
+{
+    const struct ct_linear *l = s->l;
+    int k = 0;
+    for (int i = 0; i < l->nu; i++)
+        if (fabs(s->dq[i]) > fabs(s->dq[k]))
+            k = i;
     const struct ct_u *u = &l->m->e->u[k];
     const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
                               : u->body >= 0  ? l->m->model->body[u->body].instance.mark
@@ -265,89 +188,22 @@ bool ct_equilibrium_missing(const struct ct_linear *l, int k)
                     ct_linear_coordinate(l->m->e, l->arena, k));
 }
 
-static int moves_most(const struct search *s)
-{
-    int most = 0;
-    for (int k = 0; k < s->l->nu; k++)
-        if (fabs(s->dq[k]) > fabs(s->dq[most]))
-            most = k;
-    return most;
-}
-
-static double place_size(const struct ct_linear *l)
-{
-    return 1 + ct_vector_largest(l->y, l->m->nq);
-}
-
-// Nothing but round-off is left. Where the stiffness vanishes, steps would follow it off the path.
-static bool is_balanced(const struct search *s)
-{
-    for (int k = 0; k < s->n; k++)
-        if (fabs(s->p[k]) > 8 * DBL_EPSILON * s->scale[k])
-            return false;
-    return true;
-}
-
-bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out)
-{
-    enum { MOST = 25 };
-    struct search s = search_create(l, NULL);
-    double last = INFINITY;
-    const size_t before = l->ctx->nerror;
-    s.length
-        = INFINITY; // a path may lead far; what jumps to another one does not converge steadily
-    *out = (struct ct_equilibrium_result){0};
-    if (!ct_linear_rest(l))
-        return false;
-    for (;; out->iterations++) {
-        const int f = l->nfree;
-        find_directions(&s);
-        find_forces(&s);
-        if (is_balanced(&s))
-            break;
-        memcpy(s.A, l->Kr, (size_t)f * (size_t)f * sizeof *s.A);
-        for (int i = 0; i < f; i++)
-            s.g[i] = -l->force[i];
-        if (f && !ct_lu(s.A, s.pivot, f, f))
-            return false;
-        if (f)
-            ct_lu_solve(s.g, s.A, s.pivot, f, f, 1, f, false);
-        ct_linear_expand(l, s.dq, s.g);
-        const double size = ct_vector_largest(s.dq, (size_t)l->nu) / place_size(l);
-        out->last_step = size;
-        if (size <= arrived || (size <= nearly && size > last / 2))
-            break;
-        if (!isfinite(size) || out->iterations == MOST || allowed(&s) < 1 || size > last / 2)
-            return false;
-        last = size;
-        ct_evaluator_retract(l->m, l->y, s.dq);
-        if (!ct_linear_close(l) || !ct_linear_rest(l) || l->ctx->nerror != before)
-            return false;
-    }
-    return true;
-}
-
-// Down the forces. False, without a diagnostic of its own, if that leads nowhere: s->dq is the last step that was sought.
-static bool descend(struct search *s, struct ct_equilibrium_result *out)
+// Down the forces, from a place that is evaluated. False, without a diagnostic of its own, if
+// that leads nowhere: s->dq is the last step that was sought.
+static bool descend(struct ct_equilibrium_search *s, struct ct_equilibrium_result *out)
 {
     struct ct_linear *l = s->l;
-    double last = INFINITY, *c = s->g;
+    double last = INFINITY;
     *out = (struct ct_equilibrium_result){0};
-    if (!ct_linear_rest(l))
-        return false;
     for (;; out->iterations++) {
-        find_directions(s);
-        find_forces(s);
-        if (!s->n)
+        if (!s->method->find_step(s))
+            return false;
+        const double size = out->last_step = step_size(s);
+        if (has_arrived(size, last)) {
+            for (int k = 0; k < l->nrow; k++)
+                l->lam[k] += s->dlam[k];
             return true;
-        find_stiffness(s);
-        find_step(s, c);
-        ct_matrix_multiply(s->B, s->S, c, l->nfree, s->n, 1);
-        ct_linear_expand(l, s->dq, s->B);
-        const double size = ct_vector_largest(s->dq, (size_t)l->nu) / place_size(l);
-        out->last_step = size;
-        if (size <= arrived || (size <= nearly && size > last / 2))
-            return true;
+        }
         last = size;
         if (out->iterations == MOST_STEPS || !go(s))
             return false;
@@ -367,21 +223,41 @@ static bool has_no_potential(const struct ct_linear *l)
     return odd > roundoff * largest;
 }
 
-bool ct_equilibrium_find(struct ct_linear *l, const bool *held,
-                         struct ct_equilibrium_result *out)
+bool ct_equilibrium_find(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
-    struct search s = search_create(l, held), start = s;
+    if (!ct_linear_rest(l)) // with room for the matrices
+        return false;
+    struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_dense), start = s;
     start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
     start.kept_memory = CT_NEWN(l->arena, double, l->m->e->nmemory + 1);
-    keep(&start, false);
-    if (!held) {
-        if (!ct_linear_rest(l))
-            return false;
-        if (has_no_potential(l) && ct_equilibrium_rates(l, out))
+    keep(&start);
+    if (has_no_potential(l)) {
+        if (ct_equilibrium_rates(l, out))
             return true;
-        keep(&start, true);
+        go_back(&start);
     }
-    if (descend(&s, out))
+    if (ct_linear_rest(l) && descend(&s, out))
         return true;
-    return l->ctx->nerror ? false : ct_equilibrium_missing(l, moves_most(&s));
+    return l->ctx->nerror ? false : report_missing(&s);
+}
+
+bool ct_equilibrium_find_sparse(struct ct_linear *l, struct ct_equilibrium_result *out,
+                                bool *applies)
+{
+    struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_sparse);
+    const size_t nu = (size_t)l->nu, nrow = (size_t)l->nrow;
+    memset(l->a, 0, nu * sizeof *l->a);
+    memset(l->lam, 0, nrow * sizeof *l->lam);
+    *applies = ct_vector_largest(l->y + l->m->nq, nu) == 0 && s.method->evaluate(&s)
+            && ct_vector_largest(s.p->v, nrow) == 0;
+    if (!*applies)
+        return true;
+    if (!descend(&s, out)) {
+        // without one step nothing can be said about it with these factors
+        *applies = out->iterations > 0 || l->ctx->nerror;
+        return *applies && !l->ctx->nerror ? report_missing(&s) : !*applies;
+    }
+    l->acceleration = 0;
+    l->is_resting = true;
+    return true;
 }

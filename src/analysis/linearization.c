@@ -69,7 +69,7 @@ static bool is_finite(const double *v, size_t n)
     return true;
 }
 
-// ---- the state ------------------------------------------------------------------------------------------
+// ---- the state ------------------------------------------------------------------------------
 
 // d (nu, out): the shortest vector with J d = -r; J is that of the evaluator.
 static void shortest(struct ct_linear *l, double *d, const double *r)
@@ -124,7 +124,7 @@ bool ct_linear_close(struct ct_linear *l)
     return true;
 }
 
-// ---- matrices --------------------------------------------------------------------------------------------
+// ---- matrices -------------------------------------------------------------------------------
 
 static const double *scatter(double *A, size_t n, size_t nu, const struct ct_slope *s,
                              size_t ns, const double *value)
@@ -182,7 +182,7 @@ static bool slopes(struct ct_linear *l)
     return true;
 }
 
-// ---- independent speeds -----------------------------------------------------------------------------------
+// ---- independent speeds ---------------------------------------------------------------------
 
 static void choose(struct ct_linear *l, const double *J)
 {
@@ -257,7 +257,8 @@ void ct_linear_project(const struct ct_linear *l, double *v, const double *f)
     ct_matrix_multiply_transposed(v, l->Z, f, l->nfree, l->nu, 1);
 }
 
-// G = (E Z) at the independent speeds: a rotation vector th in axes that turn at w has the rate dw + th x w.
+// G = (E Z) at the independent speeds: a rotation vector th in axes that turn at w has the rate
+// dw + th x w.
 static void turning_chart(struct ct_linear *l)
 {
     const double *w = l->y + l->m->nq;
@@ -331,7 +332,7 @@ static void reduce(struct ct_linear *l)
                 || ct_vector_max_norm(l->G, ff) > 0;
 }
 
-// ---- balance ------------------------------------------------------------------------------------------------
+// ---- balance --------------------------------------------------------------------------------
 
 // r (nu, out) = M a - Q - J' lam
 static void residual(struct ct_linear *l, double *r, const double *a, const double *lam)

@@ -1,12 +1,15 @@
 // The equations to first order about a state.  (formulation 9.4)
 //
-//     M da + C du + K dq = J' dlam + B f,   J dq = 0,   J du + D dq = 0        full: nu speeds, nrow rows
+// full, nu speeds and nrow rows:
+//     M da + C du + K dq = J' dlam + B f,   J dq = 0,   J du + D dq = 0
+// reduced, nfree:
 //     dq = Z y,   du = Z w + X y,   da = Z w' + X w + X2 y,   y' = w + G y
-//     Mr w' + Cr w + Kr y = Z' B f                                             reduced: nfree
+//     Mr w' + Cr w + Kr y = Z' B f
 //
-// K has the derivative of -J' lam at the multipliers of the state. dq is a motion in the speeds: rotations are varied
-// in the chart at the state. Z has unit rows at the independent speeds, so that y are their coordinates and w
-// their speeds; X, X2 and G vanish at rest. What does not change with time about a steady motion is exact.
+// K has the derivative of -J' lam at the multipliers of the state. dq is a motion in the
+// speeds: rotations are varied in the chart at the state. Z has unit rows at the independent
+// speeds, so that y are their coordinates and w their speeds; X, X2 and G vanish at rest. What
+// does not change with time about a steady motion is exact.
 #ifndef CT_ANALYSIS_LINEARIZATION_H
 #define CT_ANALYSIS_LINEARIZATION_H
 
@@ -34,22 +37,24 @@ struct ct_linear {
     double *G, *Mr, *Cr, *Kr;     // nfree x nfree
     bool is_moving;               // X, X2 or G is not zero
 
+    struct ct_point *point; // sparse matrices; see ct_point_here
+
     // workspace
     double *r, *A, *b, *d, *work, *Jd;
     int *iwork, *pivot, *column;
 };
 
-/// For a machine whose equations have a residual. Matrices get their room when they are first asked for. Everything
-/// lives in arena.
+/// For an evaluator whose equations have a residual. Matrices get their room when they are
+/// first asked for. Everything lives in arena.
 struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
                                    struct ct_evaluator *m);
 
-/// Take l->y to the nearest place and speeds that meet the rows at l->t; memories and comparisons follow.
-/// False where Newton does not arrive; no diagnostic.
+/// Take l->y to the nearest place and speeds that meet the rows at l->t; memories and
+/// comparisons follow. False where Newton does not arrive; no diagnostic.
 bool ct_linear_close(struct ct_linear *l);
 
-/// At l->y, l->t: u' = 0 but for what drivers ask for, multipliers that leave the least force unbalanced, all matrices.
-/// Errors: CT_E_SINGULAR when something is not finite.
+/// At l->y, l->t: u' = 0 but for what drivers ask for, multipliers that leave the least force
+/// unbalanced, all matrices. Errors: CT_E_SINGULAR when something is not finite.
 bool ct_linear_rest(struct ct_linear *l);
 /// The same with the accelerations of the motion.
 bool ct_linear_move(struct ct_linear *l);

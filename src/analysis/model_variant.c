@@ -6,7 +6,7 @@
 
 static const char axes[] = "xyz";
 
-// ---- copies -------------------------------------------------------------------------------------------
+// ---- copies ---------------------------------------------------------------------------------
 
 struct ct_model *ct_variant_create(struct ct_ctx *own, const struct ct_model *m, size_t most)
 {
@@ -70,7 +70,7 @@ static struct ct_value *own_value(struct ct_ctx *own, struct ct_instance *self, 
     return v;
 }
 
-// ---- names ----------------------------------------------------------------------------------------------
+// ---- names ----------------------------------------------------------------------------------
 
 // Is the name "OWNER.PROPERTY" with the given property at `dot`? The owner's name, or NULL.
 static const char *owner_of(struct ct_arena *a, const char *name, const char *property)
@@ -180,7 +180,7 @@ size_t ct_variant_standard_inputs(struct ct_ctx *own, const struct ct_model *m,
     return l.n;
 }
 
-// ---- inputs -----------------------------------------------------------------------------------------------
+// ---- inputs ---------------------------------------------------------------------------------
 
 static bool no_input(struct ct_ctx *own, const struct ct_model *m, const char *name)
 {
@@ -226,7 +226,7 @@ bool ct_variant_input(struct ct_ctx *own, struct ct_model *v, const char *name,
     return no_input(own, v, name);
 }
 
-// ---- loads ------------------------------------------------------------------------------------------------
+// ---- loads ----------------------------------------------------------------------------------
 
 static void scale(struct ct_model *v, struct ct_value *value, ct_ex factor)
 {

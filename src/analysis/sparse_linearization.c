@@ -21,6 +21,13 @@ struct ct_point *ct_point_create(struct ct_linear *l)
     return p;
 }
 
+struct ct_point *ct_point_here(struct ct_linear *l)
+{
+    if (!l->point)
+        l->point = ct_point_create(l);
+    return l->point;
+}
+
 // Entries of one level (place, speed, acceleration) out of all, their directions counted from 0.
 static size_t pick(struct ct_arena *a, const struct ct_number *all, size_t n, size_t level,
                    size_t nu, struct ct_number **out)
@@ -95,7 +102,7 @@ double ct_point_largest(const struct ct_number *A, size_t n)
     return max;
 }
 
-// ---- factors ----------------------------------------------------------------------------------------------
+// ---- factors --------------------------------------------------------------------------------
 
 struct entries {
     struct ct_arena *a;
@@ -136,19 +143,19 @@ static struct ct_sparse *factor(struct entries *s, size_t n, size_t nrow)
     return matrix && ct_sparse_factor(matrix, s->value) ? matrix : NULL;
 }
 
-struct ct_sparse *ct_point_factor(struct ct_point *p, double k, double m)
+struct ct_sparse *ct_point_factor(struct ct_point *p, double stiffness, double mass)
 {
-    const struct ct_evaluator *machine = p->l->m;
-    const size_t n = machine->nu + machine->nrow;
-    struct entries s = reserve(p->a, p->nK + p->nM + 2 * machine->e->nJ + n);
-    for (size_t i = 0; i < p->nK && k != 0; i++)
-        add(&s, p->K[i].row, p->K[i].direction, k * p->K[i].value);
-    for (size_t i = 0; i < p->nM && m != 0; i++)
-        add(&s, p->M[i].row, p->M[i].direction, m * p->M[i].value);
-    add_rows(&s, machine);
+    const struct ct_evaluator *m = p->l->m;
+    const size_t n = m->nu + m->nrow;
+    struct entries s = reserve(p->a, p->nK + p->nM + 2 * m->e->nJ + n);
+    for (size_t i = 0; i < p->nK && stiffness != 0; i++)
+        add(&s, p->K[i].row, p->K[i].direction, stiffness * p->K[i].value);
+    for (size_t i = 0; i < p->nM && mass != 0; i++)
+        add(&s, p->M[i].row, p->M[i].direction, mass * p->M[i].value);
+    add_rows(&s, m);
     for (size_t i = 0; i < n; i++) // a place for every pivot
         add(&s, i, i, 0);
-    return factor(&s, n, machine->nrow);
+    return factor(&s, n, m->nrow);
 }
 
 bool ct_point_shortest(struct ct_linear *l, double *d, const double *r)

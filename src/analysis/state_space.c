@@ -1,6 +1,8 @@
 // See state_space.h.
 //
-//     y = T z + N2 y2,  z = (y_p, y_1)      y_p: coordinates with mass; N1 y_1, N2 y2: massless, with dampers and without
+//     y = T z + N2 y2,  z = (y_p, y_1)
+//
+// y_p: coordinates with mass; N1 y_1, N2 y2: massless ones, with dampers and without.
 //
 //     M_pp w_p' + C_pp w_p + C_p1 y_1' + K_p z = g_p      rows T' of the equations, y2 put in from
 //     C_1p w_p + C_11 y_1' + K_1 z = g_1                  N2' K (T z + N2 y2) = N2' g
@@ -32,7 +34,7 @@ struct split {
     double *T;            // f x (k + n1): unit vectors of the heavy ones, N1
 };
 
-// ---- directions -----------------------------------------------------------------------------------------------
+// ---- directions -----------------------------------------------------------------------------
 
 // N (f x n0): null space of Mr, n0 counted.
 static void find_massless(struct split *s)
@@ -142,7 +144,7 @@ static bool not_held(struct split *s)
                     ct_linear_coordinate(e, s->a, s->l->independent[s->light[0]]));
 }
 
-// ---- the equations in z -----------------------------------------------------------------------------------------
+// ---- the equations in z ---------------------------------------------------------------------
 
 struct reduced {
     int m;                 // k + n1
@@ -212,7 +214,7 @@ static bool reduce(struct split *s, struct reduced *r)
     return true;
 }
 
-// ---- states --------------------------------------------------------------------------------------------------------
+// ---- states ---------------------------------------------------------------------------------
 
 // X (n x k) <- A^-1 X for the square part of P (ld) from `at`, n rows.
 static bool divide(struct split *s, double *X, const double *P, int at, int n, int ld, int k)

@@ -1,9 +1,10 @@
-// See arpack.h. Implicitly restarted Lanczos in shift-invert mode (3), driven by reverse
-// communication.
+// See arpack.h.
+//
+// ARPACK's implicitly restarted Lanczos iteration, driven by reverse communication: it asks for
+// products with OP and with M. Its mode 3 is used with shift 0, so that it returns 1/theta.
 #include "numeric/arpack.h"
 
-#if CT_HAS_ARPACK
-
+#include <math.h>
 #include <string.h>
 
 // Fortran passes the length of each character argument behind the others.
@@ -18,16 +19,17 @@ extern void dseupd_(const int *rvec, const char *howmny, const int *select, doub
                     int *ipntr, double *workd, double *workl, const int *lworkl, int *info,
                     size_t, size_t, size_t);
 
-enum { FEWEST_VECTORS = 20, MOST_RESTARTS = 300 };
+enum { FEWEST_VECTORS = 20, MOST_RESTARTS = 300, NO_LARGER_BASIS = -9999 /* of dsaupd */ };
 
 struct run {
     const struct ct_operator *op;
     int n, nconverged;
-    const double *converged; // n x nknown
-    double *Mconverged;      // M known
+    const double *converged; // n x nconverged
+    double *Mconverged;      // M converged
+    double *work, *image;    // n each
 };
 
-// x <- x - known known' M x
+// x <- x - converged converged' M x
 static void deflate(const struct run *s, double *x)
 {
     for (int j = 0; j < s->nconverged; j++) {
@@ -41,76 +43,107 @@ static void deflate(const struct run *s, double *x)
     }
 }
 
-// y = (K - shift M)^-1 f, without what is known
-static void apply(const struct run *s, double *y, const double *f)
+// y = OP x in the complement of what is converged
+static void apply(const struct run *s, double *y, const double *x, const double *Mx)
 {
-    s->op->solve(s->op->data, y, f);
+    s->op->apply(s->op->data, y, x, Mx);
     deflate(s, y);
 }
 
-static void serve_request(const struct run *s, int ido, const int *ipntr, double *workd,
-                          double *work)
+static void serve_request(const struct run *s, int ido, const int *ipntr, double *workd)
 {
     double *x = workd + ipntr[0] - 1, *y = workd + ipntr[1] - 1;
     if (ido == 2) {
-        s->op->masses(s->op->data, y, x);
+        s->op->metric(s->op->data, y, x);
     } else if (ido == 1) { // M x is there already
-        apply(s, y, workd + ipntr[2] - 1);
+        apply(s, y, x, workd + ipntr[2] - 1);
     } else {
-        s->op->masses(s->op->data, work, x);
-        apply(s, y, work);
+        s->op->metric(s->op->data, s->work, x);
+        apply(s, y, x, s->work);
     }
 }
 
+// The only vector that there is room for: OP x is parallel to it.
+static int find_single(const struct run *s, const double *start, double *theta, double *v)
+{
+    const int n = s->n;
+    const struct ct_operator *op = s->op;
+    double squared = 0, *Mv = s->work;
+    op->metric(op->data, Mv, start);
+    apply(s, v, start, Mv);
+    op->metric(op->data, Mv, v);
+    for (int i = 0; i < n; i++)
+        squared += v[i] * Mv[i];
+    if (!(squared > 0))
+        return 0;
+    for (int i = 0; i < n; i++)
+        v[i] /= sqrt(squared);
+    op->metric(op->data, Mv, v);
+    double *y = s->image;
+    op->apply(op->data, y, v, Mv);
+    *theta = 0;
+    for (int i = 0; i < n; i++)
+        *theta += Mv[i] * y[i];
+    return 1;
+}
+
+// The iteration with a basis of ncv vectors. Returns how many eigenvalues have converged. Where the
+// range of OP has fewer dimensions than the basis, *dimension (out) is their number, else 0.
+// -1 where ARPACK fails otherwise.
+static int iterate(struct ct_arena *a, const struct run *s, int nev, int ncv,
+                   const double *start, int *dimension, double *theta, double *V)
+{
+    const int n = s->n, lworkl = ncv * (ncv + 8), rvec = 1;
+    const double to_roundoff = 0, shift = 0;
+    int ido = 0, info = 1, iparam[11] = {1, 0, MOST_RESTARTS, 1, 0, 0, 3}, ipntr[11];
+    double *resid = CT_NEWN(a, double, n), *basis = CT_NEWN(a, double, (size_t)n *(size_t)ncv),
+           *workd = CT_NEWN(a, double, 3 * (size_t)n), *workl = CT_NEWN(a, double, lworkl),
+           *d = CT_NEWN(a, double, nev + 1);
+    int *select = CT_NEWN(a, int, ncv);
+    *dimension = 0;
+    memcpy(resid, start, (size_t)n * sizeof *resid);
+    for (;;) {
+        dsaupd_(&ido, "G", &n, "LM", &nev, &to_roundoff, resid, &ncv, basis, &n, iparam, ipntr,
+                workd, workl, &lworkl, &info, 1, 2);
+        if (ido != -1 && ido != 1 && ido != 2)
+            break;
+        serve_request(s, ido, ipntr, workd);
+    }
+    if (info == NO_LARGER_BASIS)
+        *dimension = iparam[4];
+    if (info < 0)
+        return -1;
+    const int found = iparam[4] < nev ? iparam[4] : nev;
+    dseupd_(&rvec, "A", select, d, basis, &n, &shift, "G", &n, "LM", &nev, &to_roundoff, resid,
+            &ncv, basis, &n, iparam, ipntr, workd, workl, &lworkl, &info, 1, 1, 2);
+    if (info != 0)
+        return -1;
+    for (int j = 0; j < found; j++)
+        theta[j] = 1 / d[j];
+    memcpy(V, basis, (size_t)n * (size_t)found * sizeof *V);
+    return found;
+}
+
 int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
-                      const double *converged, int nconverged, const double *start,
+                      int room, const double *converged, int nconverged, const double *start,
                       double *theta, double *V)
 {
     struct run s = {.op = op, .n = n, .nconverged = nconverged, .converged = converged};
     const size_t size = (size_t)n;
-    int ncv = 2 * nev + 1 > FEWEST_VECTORS ? 2 * nev + 1 : FEWEST_VECTORS;
-    ncv = ncv < n ? ncv : n;
-    const int lworkl = ncv * (ncv + 8), rvec = 1;
-    int ido = 0, info = 1, iparam[11] = {1, 0, MOST_RESTARTS, 1, 0, 0, 3}, ipntr[11];
-    const double tolerance = 0,
-                 zero = 0; // to round-off; no shift: eigenvalues of OP are wanted
-    double *resid = CT_NEWN(a, double, n), *basis = CT_NEWN(a, double, size *(size_t)ncv),
-           *workd = CT_NEWN(a, double, 3 * size), *workl = CT_NEWN(a, double, lworkl),
-           *work = CT_NEWN(a, double, n), *d = CT_NEWN(a, double, nev + 1);
-    int *select = CT_NEWN(a, int, ncv);
+    s.work = CT_NEWN(a, double, size);
+    s.image = CT_NEWN(a, double, size);
     s.Mconverged = CT_NEWN(a, double, size *(size_t)nconverged + 1);
     for (int j = 0; j < nconverged; j++)
-        op->masses(op->data, s.Mconverged + size * (size_t)j, converged + size * (size_t)j);
-    memcpy(resid, start, size * sizeof *resid);
-    for (;;) {
-        dsaupd_(&ido, "G", &n, "LM", &nev, &tolerance, resid, &ncv, basis, &n, iparam, ipntr,
-                workd, workl, &lworkl, &info, 1, 2);
-        if (ido != -1 && ido != 1 && ido != 2)
-            break;
-        serve_request(&s, ido, ipntr, workd, work);
+        op->metric(op->data, s.Mconverged + size * (size_t)j, converged + size * (size_t)j);
+    while (room > 1) { // ARPACK wants a basis of more vectors than it returns
+        const int wanted = nev < room ? nev : room - 1;
+        const int ncv = 2 * wanted + 1 > FEWEST_VECTORS ? 2 * wanted + 1 : FEWEST_VECTORS;
+        int dimension;
+        const int found
+            = iterate(a, &s, wanted, ncv < room ? ncv : room, start, &dimension, theta, V);
+        if (found >= 0 || dimension <= 0 || dimension >= room)
+            return found;
+        room = dimension;
     }
-    if (info < 0)
-        return -1;
-    const int found = iparam[4] < nev ? iparam[4] : nev;
-    dseupd_(&rvec, "A", select, d, basis, &n, &zero, "G", &n, "LM", &nev, &tolerance, resid,
-            &ncv, basis, &n, iparam, ipntr, workd, workl, &lworkl, &info, 1, 1, 2);
-    if (info != 0)
-        return -1;
-    for (int j = 0; j < found; j++) // with shift 0 they come as 1/theta
-        theta[j] = 1 / d[j];
-    memcpy(V, basis, size * (size_t)found * sizeof *V);
-    return found;
+    return find_single(&s, start, theta, V);
 }
-
-#else
-
-int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
-                      const double *converged, int nconverged, const double *start,
-                      double *theta, double *V)
-{
-    (void)a, (void)op, (void)n, (void)nev, (void)converged, (void)nconverged, (void)start;
-    (void)theta, (void)V;
-    return -1;
-}
-
-#endif

@@ -9,19 +9,35 @@
 
 #include <stdbool.h>
 
-/// OP = (K - shift M)^-1 M, symmetric in the metric M.
+/// An operator OP that is symmetric in the metric M: x' M OP y = y' M OP x. M may be singular on
+/// what OP takes to 0.
 struct ct_operator {
-    void (*solve)(void *data, double *y, const double *f);  // y = (K - shift M)^-1 f
-    void (*masses)(void *data, double *y, const double *x); // y = M x
+    /// y (n, out) = OP x; Mx (n) = M x
+    void (*apply)(void *data, double *y, const double *x, const double *Mx);
+    /// y (n, out) = M x
+    void (*metric)(void *data, double *y, const double *x);
     void *data;
 };
 
-/// The nev eigenvalues of OP that are largest by size, theta (nev, out), and vectors V (n x nev,
-/// out) with V' M V = 1, in the complement of `known` (n x nknown), vectors of unit size found
-/// before. start (n): where to begin. 0 < nev < n. Returns how many have converged; -1 where
-/// ARPACK is not available or fails. What it needs meanwhile lives in a.
+/**
+ * The eigenvalues of OP that are largest by size, to round-off.
+ *
+ * op      in   n unknowns
+ * nev     in   how many are wanted, nev > 0
+ * room    in   no more independent vectors are in the range of OP and M-orthogonal to `converged`;
+ *              room > 0
+ * converged   in   n x nconverged, vectors found before, unit in M: the search is in their
+ *              complement
+ * start   in   n, where to begin
+ * theta   out  nev
+ * V       out  n x nev, V' M V = 1
+ * a       in   workspace
+ *
+ * Returns how many have converged, fewer than nev where there is no room for more; -1 where ARPACK
+ * fails.
+ */
 int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
-                      const double *known, int nknown, const double *start, double *theta,
-                      double *V);
+                      int room, const double *converged, int nconverged, const double *start,
+                      double *theta, double *V);
 
 #endif

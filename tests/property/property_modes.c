@@ -87,7 +87,7 @@ static bool find_motions(struct system *s, struct variant *v, bool with_multipli
     const char *how;
     ct_initial_state_apply(&s->start, v->m, l->y);
     memset(l->y + v->m->nq, 0, v->m->nu * sizeof *l->y);
-    if (!ct_linear_close(l) || !ct_equilibrium_find(l, NULL, &result))
+    if (!ct_linear_close(l) || !ct_equilibrium_find(l, &result))
         return false;
     if (!with_multipliers) { // K of the forces alone
         for (size_t i = 0; i < v->m->nrow; i++)

@@ -62,4 +62,45 @@ compare chain 3e-5 1/10
 # two of each bending frequency
 beams 1 200 1/12 >"$work/round.yaml"
 compare round 6e-5 1/12
+# 60 bodies in absolute coordinates, 360 speeds, with ten freedoms, all of which are modes: as through the joints
+hinges() {
+  awk 'BEGIN {
+    print "cotree: 1\ngravity: [0, 0, 0]\nbodies:"
+    for (i = 0; i < 60; i++)
+      print "  b" i ": {type: rigid, mass: 1, inertia: [0.1, 0.2, 0.3], points: {tip: [1, 0, 0]}}"
+    print "joints:"
+    for (i = 0; i < 60; i++)
+      print "  j" i ": {type: " (i % 6 ? "weld" : "revolute, axis: " (i % 4 ? "z" : "y") ", stiffness: 1000") \
+        ", from: " (i ? "b" i - 1 ".tip" : "ground") ", to: b" i "}"
+  }'
+}
+hinges >"$work/hinges.yaml"
+"$COTREE" modes "$work/hinges.yaml" --tree joints --count 12 -o "$work/joints.csv" -q
+"$COTREE" modes "$work/hinges.yaml" --tree absolute --count 12 -o "$work/absolute.csv" 2>"$work/summary"
+grep -q 'sparse symmetric' "$work/summary" || { echo 'hinges: not sparse'; exit 1; }
+if grep 'left out' "$work/summary"; then exit 1; fi
+awk -F, '
+  FNR == NR { joints[FNR] = $3; n = FNR; next }
+  FNR > 1 { d = $3 / joints[FNR] - 1; if (d * d > 1e-20) { print "hinges, mode " $1 ": " $3 ", wanted " joints[FNR]; bad = 1 } }
+  END { exit bad || n != 11 || FNR != 11 }' "$work/joints.csv" "$work/absolute.csv"
+# 60 bodies that turn each on its own: many equal frequencies sqrt(k/I), and two bodies without mass that have none
+alone() {
+  awk 'BEGIN {
+    print "cotree: 1\ngravity: [0, 0, 0]\nbodies:"
+    for (i = 0; i < 60; i++)
+      print "  b" i ": {type: rigid, mass: " (i == 7 || i == 33 ? 0 : "1, inertia: [0.1, 0.2, 0.3]") "}"
+    print "joints:"
+    for (i = 0; i < 60; i++)
+      print "  j" i ": {type: revolute, axis: " (i % 2 ? "z" : "y") ", from: ground, to: b" i ", stiffness: " (i < 40 ? 1000 : 2000) "}"
+  }'
+}
+alone >"$work/alone.yaml"
+"$COTREE" modes "$work/alone.yaml" --tree absolute --count 50 -o "$work/alone.csv" 2>"$work/summary"
+grep -q 'sparse symmetric' "$work/summary" || { echo 'alone: not sparse'; exit 1; }
+awk -F, 'NR > 1 {
+    want = sqrt(NR <= 19 ? 1000 / 0.3 : NR <= 39 ? 1000 / 0.2 : NR <= 49 ? 2000 / 0.3 : 2000 / 0.2)
+    d = $3 / want - 1
+    if (d * d > 1e-20) { print "alone, mode " $1 ": " $3 ", wanted " want; bad = 1 }
+  }
+  END { exit bad || NR != 51 }' "$work/alone.csv"
 echo same

@@ -1,0 +1,173 @@
+// Steps towards an equilibrium with dense matrices, along the independent speeds.
+//
+// V' Kr V = diag(value), V' W V = 1 with the masses W. A direction of positive stiffness takes
+// Newton's step, one of negative stiffness the opposite one, one without stiffness goes as far
+// as it may if a force acts along it.
+#include "analysis/equilibrium_step.h"
+#include "formulate/build.h"
+#include "numeric/dense.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// Of the stiffest direction: no stiffness.
+static const double flat = 1e-11;
+// Of the forces that meet: none along a direction without stiffness.
+static const double balanced = 1e-9;
+
+static void reserve(struct ct_equilibrium_search *s)
+{
+    struct ct_arena *a = s->l->arena;
+    const size_t n = (size_t)s->l->nu + 1;
+    double **const squares[] = {&s->H, &s->V, &s->A};
+    for (size_t i = 0; i < COUNT(squares); i++)
+        *squares[i] = CT_NEWN(a, double, n *n);
+    double **const vectors[] = {&s->scale, &s->gross, &s->value, &s->x};
+    for (size_t i = 0; i < COUNT(vectors); i++)
+        *vectors[i] = CT_NEWN(a, double, n);
+    s->work = CT_NEWN(a, double, n + ct_symmetric_eigenvalues_work((int)n));
+    s->pivot = CT_NEWN(a, int, n);
+}
+
+static bool evaluate(struct ct_equilibrium_search *s)
+{
+    return ct_linear_rest(s->l);
+}
+
+// The symmetric part of A (nfree x nfree).
+static void symmetric_part(const struct ct_equilibrium_search *s, double *out, const double *A)
+{
+    const int n = s->l->nfree;
+    memcpy(out, A, (size_t)n * (size_t)n * sizeof *out);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            out[i + n * j] = out[j + n * i] = (out[i + n * j] + out[j + n * i]) / 2;
+}
+
+static void find_stiffness(struct ct_equilibrium_search *s)
+{
+    const int n = s->l->nfree;
+    const double little = 1e-6; // of the masses: added, so that massless directions have some
+    double *W = s->A, mean = 0;
+    symmetric_part(s, W, s->l->Mr);
+    for (int i = 0; i < n; i++)
+        mean += W[i + n * i] / n;
+    for (int i = 0; i < n; i++)
+        W[i + n * i] += little * fmax(W[i + n * i], mean > 0 ? mean : 1 / little);
+    symmetric_part(s, s->H, s->l->Kr);
+    ct_cholesky(W, n, n);
+    ct_cholesky_congruence(s->H, W, n, n);
+    ct_symmetric_eigen(s->value, s->H, n, n, s->work);
+    memcpy(s->V, s->H, (size_t)n * (size_t)n * sizeof *s->V);
+    for (int j = 0; j < n; j++)
+        ct_cholesky_solve_transposed(s->V + (size_t)n * (size_t)j, W, n, n);
+}
+
+// Sizes of what the forces are the sum of: constraints, weights, and stiffness over one unit.
+static void find_scale(struct ct_equilibrium_search *s)
+{
+    const struct ct_linear *l = s->l;
+    const int nu = l->nu;
+    double weight = 0;
+    for (int k = 0; k < 3; k++)
+        weight = fmax(weight, fabs(ct_model_number(l->m->model, l->m->model->gravity.e[k])));
+    for (int j = 0; j < nu; j++) {
+        s->gross[j] = l->scale[j];
+        for (int i = 0; i < nu; i++)
+            s->gross[j] += fabs(l->M[j + nu * i]) * weight + fabs(l->K[j + nu * i]);
+    }
+    for (int k = 0; k < l->nfree; k++) {
+        s->scale[k] = 0;
+        for (int j = 0; j < nu; j++)
+            s->scale[k] += fabs(l->Z[j + nu * k]) * s->gross[j];
+    }
+}
+
+// Is the stiffness positive beyond its round-off? Its pivots are compared each with its own
+// diagonal, so that a structure of many elements, whose soft directions are far below its stiff
+// ones, is not taken for a mechanism.
+static bool is_positive(struct ct_equilibrium_search *s)
+{
+    const int n = s->l->nfree;
+    double *L = s->A, *diagonal = s->x;
+    symmetric_part(s, L, s->l->Kr);
+    for (int i = 0; i < n; i++)
+        diagonal[i] = L[i + n * i];
+    if (!ct_cholesky(L, n, n))
+        return false;
+    for (int i = 0; i < n; i++)
+        if (!(L[i + n * i] * L[i + n * i] > 16 * n * DBL_EPSILON * diagonal[i]))
+            return false;
+    return true;
+}
+
+// With the whole stiffness, so that forces without a potential count.
+static bool find_newton_step(struct ct_equilibrium_search *s)
+{
+    const struct ct_linear *l = s->l;
+    const int n = l->nfree;
+    if (n) {
+        memcpy(s->A, l->Kr, (size_t)n * (size_t)n * sizeof *s->A);
+        if (!ct_lu(s->A, s->pivot, n, n))
+            return false;
+        for (int i = 0; i < n; i++)
+            s->x[i] = -l->force[i];
+        ct_lu_solve(s->x, s->A, s->pivot, n, n, 1, n, false);
+    }
+    ct_linear_expand(l, s->dq, s->x);
+    return true;
+}
+
+static bool find_step(struct ct_equilibrium_search *s)
+{
+    const struct ct_linear *l = s->l;
+    const int n = l->nfree;
+    double *y = s->x;
+    memset(s->dq, 0, (size_t)l->nu * sizeof *s->dq);
+    if (!n)
+        return true;
+    find_scale(s);
+    find_stiffness(s);
+    const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[n - 1]));
+    s->is_newton = s->value[0] > flat * stiffest || is_positive(s);
+    if (s->is_newton && find_newton_step(s))
+        return true;
+    memset(y, 0, (size_t)n * sizeof *y);
+    for (int k = 0; k < n; k++) {
+        const double *v = s->V + (size_t)n * (size_t)k, far = 1e30;
+        double g = 0, size = 0;
+        for (int i = 0; i < n; i++) {
+            g += v[i] * l->force[i];
+            size += fabs(v[i]) * s->scale[i];
+        }
+        const bool is_flat = fabs(s->value[k]) <= flat * stiffest;
+        const double along = !is_flat                   ? -g / fabs(s->value[k])
+                           : fabs(g) <= balanced * size ? 0
+                                                        : copysign(far, -g);
+        for (int i = 0; i < n; i++)
+            y[i] += along * v[i];
+    }
+    ct_linear_expand(l, s->dq, y);
+    return true;
+}
+
+static double slope(const struct ct_equilibrium_search *s)
+{
+    double sum = 0;
+    for (int i = 0; i < s->l->nfree; i++)
+        sum += s->l->force[i] * s->dq[s->l->independent[i]];
+    return sum;
+}
+
+static bool is_balanced(struct ct_equilibrium_search *s)
+{
+    find_scale(s);
+    for (int k = 0; k < s->l->nfree; k++)
+        if (fabs(s->l->force[k]) > 8 * DBL_EPSILON * s->scale[k])
+            return false;
+    return true;
+}
+
+const struct ct_equilibrium_method ct_equilibrium_dense
+    = {reserve, evaluate, find_step, find_newton_step, slope, is_balanced};
