@@ -79,7 +79,7 @@ struct ct_repetition {
     struct ct_repetition_stream stream[CT_REROLL_STREAMS];
     int nstream;
     int32_t before, behind;           // rows for edges
-    uint32_t keep_first, keep_behind; // see leave_ends
+    uint32_t keep_first, keep_behind; // see drop_end_rows
 
     // rows side by side, see choose_lanes
     bool is_vectorized;
@@ -135,7 +135,7 @@ static inline struct ct_repetition *ct_repetition_of(const struct ct_repetitions
     return r;
 }
 
-enum { CT_LEAST_ROWS = 4 };
+enum { CT_LEAST_ROWS = CT_ROWS_TOGETHER }; // that fill a vector
 
 /// All of them, ascending. is_alone, rows: those of ct_reroll_find.
 void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND],
