@@ -56,7 +56,8 @@ static double find_slope(const struct search *s)
 static bool find_least(struct search *s, double *size)
 {
     enum { MOST = 100 };
-    const double flat = 1e-7; // the root of round-off: what a misfit tells of where it is least
+    // the root of round-off: what a misfit tells of where it is least
+    const double flat = sqrt(DBL_EPSILON);
     const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
     double mu = 1e-3, now = find_misfit(s, s->y);

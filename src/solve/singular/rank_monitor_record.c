@@ -7,11 +7,20 @@
 #include <math.h>
 #include <string.h>
 
-// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence.
+// A way that is searched is looked at in PARTS; from the best of them the search is narrowed NARROWED
+// times to an eighth. Positions are then known to `resolved` of the way.
+enum { PARTS = 16, NARROWED = 3 };
+static const double narrower = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
+
+// Part of the way, to either side of a position, where its dependence is looked at.
+static const double distance = 1.0 / (4 * PARTS);
+
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
+// `distance` or nearer: entries of rows that take part are of order 1, those of others of order
+// distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out (tests/cli/singular.sh).
 static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 {
-    const double involved
-        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const double involved = 1e-3; // of the largest entry
     const int n = w->s->rank;
     double most = 0;
     for (int i = 0; i < n; i++)
@@ -58,12 +67,10 @@ typedef double measure(struct ct_rank_monitor *w, const struct passage *p, doubl
 static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct passage *p,
                         double theta, double d)
 {
-    enum { LOOKS = 3 };
-    const double nearer = 0.125;
-    for (int i = 0; i < LOOKS; i++) {
+    for (int i = 0; i < NARROWED; i++) {
         const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
-        d *= nearer;
+        d *= narrower;
     }
     return theta;
 }
@@ -73,12 +80,10 @@ static double narrow(struct ct_rank_monitor *w, const struct passage *p, double 
     return narrow_by(pivot_on, w, p, theta, d);
 }
 
-enum { PARTS = 16 }; // of a way that is searched
-
 // Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if it is not.
 static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p, double zero)
 {
-    const double beside = 0.1, theta = narrow(w, p, 0.5, beside);
+    const double theta = narrow(w, p, 0.5, 1.0 / PARTS);
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
@@ -101,7 +106,7 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                         double *theta)
 {
-    const double part = 1.0 / PARTS, near = part / 4;
+    const double part = 1.0 / PARTS;
     struct ct_tangent_basis *last = w->along, *next = w->here;
     int n = 0;
     double before = pivot_on(w, p, 0);
@@ -110,7 +115,7 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
         const double at = i * part, behind = pivot_on(w, p, at);
         ct_tangent_basis_find(w->s, next);
         if (ct_singularity_test_sign_changed(w->s, last, next)) {
-            theta[n] = narrow(w, p, at - behind / (before + behind) * part, near);
+            theta[n] = narrow(w, p, at - behind / (before + behind) * part, distance);
             n += pivot_on(w, p, theta[n]) < zero;
         }
         struct ct_tangent_basis *v = last;
@@ -125,18 +130,17 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
                             struct ct_singular_configuration *at)
 {
-    const double d = 0.02, nearer = 0.5;
     double far, near;
     const int n = w->s->rank;
     memset(at->row, 0, w->m->nrow * sizeof *at->row);
     at->rank_loss = 0;
-    pivot_on(w, p, theta - d);
+    pivot_on(w, p, theta - distance);
     if (!ct_partition_dependence(w->s, w->x, &far))
         return;
-    pivot_on(w, p, theta - d * nearer);
+    pivot_on(w, p, theta - distance / 2);
     if (!ct_partition_dependence(w->s, w->x, &near))
         return;
-    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
+    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(0.5))));
     mark_rows(w, at->row);
 }
 
@@ -176,9 +180,8 @@ static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, do
 
 static void find_positions(struct ct_rank_monitor *w, const struct passage *p, struct found *f)
 {
-    const double vanished
-        = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
-    const double zero = vanished * pivot_on(w, p, 0);
+    // the pivot falls linearly from where the crossing began: a zero is one to what is resolved
+    const double zero = resolved * pivot_on(w, p, 0);
     double theta[PARTS];
     if (find_foreseen(w, p, zero, f))
         return;
@@ -218,10 +221,10 @@ static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, 
 static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
                        const struct found *f)
 {
-    const double beside = 4e-4;
     w->npole = 0;
     for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
-        w->pole[w->npole++] = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], beside));
+        w->pole[w->npole++]
+            = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], 4 * resolved));
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,

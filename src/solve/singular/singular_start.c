@@ -7,6 +7,7 @@
 
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -72,7 +73,8 @@ static void move(struct probe *p, struct ct_arena *scratch, double way)
 static bool close(struct probe *p, double way)
 {
     enum { MOST = 20 };
-    const double closed = 1e-9; // [m, rad]: far below what is looked for in J
+    const double closed
+        = sqrt(DBL_EPSILON); // [m, rad]: J errs by as much, what is lost by 1e-5
     for (int i = 0; i < MOST; i++) {
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
