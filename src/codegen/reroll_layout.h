@@ -50,7 +50,8 @@ struct ct_source {
         at; // instruction of the body; value; input at row 0; instruction of the other body; column
     uint32_t other; // CT_SOURCE_RESULTS: repeat
     int32_t row,
-        step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+        // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+        step;
 };
 
 // Storage of a live-out result: all rows; one strip of rows; one slot for all rows, where the next

@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-// ---- the stage -------------------------------------------------------------------------------------------
+// ---- the stage ----------------------------------------------------------------------------------
 
 static const char *kind_name(const struct ct_build *b, size_t i)
 {
@@ -85,7 +85,8 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
         b->eqs->augmented = ct_beam_augmented_derive(b);
 }
 
-// The choice must not depend on the trees: where these do not show what drives a beam, trees through joints are asked.
+// The choice must not depend on the trees: where these do not show what drives a beam, trees
+// through joints are asked.
 static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
                                  const struct ct_model *m, const struct ct_formulate_options *o,
                                  struct ct_build *b)
@@ -107,8 +108,8 @@ static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
     return linear;
 }
 
-// Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear
-// make a new build on the same trees.
+// Beams that leave their formulation to the program: what is known of their motion decides, and
+// those that stay linear make a new build on the same trees.
 static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                          const struct ct_formulate_options *o, struct ct_build **b)
 {

@@ -1,5 +1,5 @@
-// Composite sums, over what hangs on an anchor: what a spin of a cluster reaches, first moments, inertia. For mass_matrix.c, which says
-// what they are for.
+// Composite sums, over what hangs on an anchor: what a spin of a cluster reaches, first moments,
+// inertia. For mass_matrix.c, which says what they are for.
 #ifndef CT_FORMULATE_DYNAMICS_COMPOSITE_SUMS_H
 #define CT_FORMULATE_DYNAMICS_COMPOSITE_SUMS_H
 
@@ -35,7 +35,8 @@ enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int
 bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster,
                                   int star_cluster);
 
-/// In ground components: the first moment of an augmented body, and the vector from an anchor's parent to it, in its plane.
+/// In ground components: the first moment of an augmented body, and the vector from an anchor's
+/// parent to it, in its plane.
 ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star);
 ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor);
 /// Sum of the vectors on the path to an anchor that turn with a cluster.
@@ -43,7 +44,8 @@ ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int clus
 /// First moments outboard of an anchor: of everything, and of what turns with a cluster.
 ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor);
 ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor, int cluster);
-/// Inertia of everything that turns with a cluster, about the point where its vectors start: added to sum.
+/// Inertia of everything that turns with a cluster, about the point where its vectors start: added
+/// to sum.
 void ct_composite_sums_add_full(struct ct_composite_sums *s, int anchor, int cluster,
                                 ct_ex33 *sum);
 

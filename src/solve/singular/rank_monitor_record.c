@@ -1,4 +1,5 @@
-// Rank monitor: finds and records the singular configurations on a crossing, for the report and for dense output. See singular.h.
+// Rank monitor: finds and records the singular configurations on a crossing, for the report and for
+// dense output. See singular.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
@@ -7,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-// A way that is searched is looked at in PARTS; from the best of them the search is narrowed NARROWED
-// times to an eighth. Positions are then known to `resolved` of the way.
+// A way that is searched is looked at in PARTS; from the best of them the search is narrowed
+// NARROWED times to an eighth. Positions are then known to `resolved` of the way.
 enum { PARTS = 16, NARROWED = 3 };
 static const double narrower = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
 
@@ -62,8 +63,8 @@ static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, doubl
 
 typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
 
-// From where the pivot is nearly as small as it becomes, within d: it falls and rises about linearly, so that its sizes before and
-// behind tell.
+// From where the pivot is nearly as small as it becomes, within d: it falls and rises about
+// linearly, so that its sizes before and behind tell.
 static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct passage *p,
                         double theta, double d)
 {
@@ -80,7 +81,8 @@ static double narrow(struct ct_rank_monitor *w, const struct passage *p, double 
     return narrow_by(pivot_on, w, p, theta, d);
 }
 
-// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if it is not.
+// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if
+// it is not.
 static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p, double zero)
 {
     const double theta = narrow(w, p, 0.5, 1.0 / PARTS);
@@ -102,7 +104,8 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// Where the test function changes its sign. theta (PARTS, out); returns how many such places there are.
+// Where the test function changes its sign. theta (PARTS, out); returns how many such places there
+// are.
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                         double *theta)
 {
@@ -126,7 +129,8 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
     return n;
 }
 
-// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
+// Rows that depend there and by how much the rank falls: with d the distance from the position det
+// J_d is as d^loss.
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
                             struct ct_singular_configuration *at)
 {
@@ -144,7 +148,8 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
     mark_rows(w, at->row);
 }
 
-// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it begins, if that is known?
+// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it
+// begins, if that is known?
 static bool tells_of(struct ct_rank_monitor *w, const struct passage *p, int rank_loss)
 {
     pivot_on(w, p, 1);
@@ -160,8 +165,8 @@ struct found {
     bool is_seen; // one, of which all is known in the last of w->passed
 };
 
-// One in the middle, where it has been foreseen, as most often. False if there may be others: multipliers tell two of them apart that are next
-// to each other.
+// One in the middle, where it has been foreseen, as most often. False if there may be others:
+// multipliers tell two of them apart that are next to each other.
 static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, double zero,
                           struct found *f)
 {
@@ -217,7 +222,8 @@ static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, 
     return ct_partition_retained_pivot(w->s);
 }
 
-// To as many digits as the way has: what multipliers make of a position is divided by the time to it.
+// To as many digits as the way has: what multipliers make of a position is divided by the time to
+// it.
 static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
                        const struct found *f)
 {
@@ -243,7 +249,8 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
     return has_passed;
 }
 
-// Steps came across a position, or close by, where on their way the pivot falls below this part of what it is at both ends.
+// Steps came across a position, or close by, where on their way the pivot falls below this part of
+// what it is at both ends.
 static const double nearly_zero = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
@@ -254,7 +261,8 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
     return part > 0 && part < 1;
 }
 
-// Is there a position within s seconds of y, the speeds being what they are? The machine is left next to it.
+// Is there a position within s seconds of y, the speeds being what they are? The machine is left
+// next to it.
 static bool is_within(struct ct_rank_monitor *w, double t, const double *y, double s)
 {
     const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};
