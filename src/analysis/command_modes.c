@@ -255,21 +255,24 @@ bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char
     return modes && ct_enter(ctx, write_modes, &o);
 }
 
-static void print_summary(const struct ct_modes *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_modes *s = object;
     ct_configuration_print(&s->at, out);
     fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
             s->at.l->nfree ? "freedoms" : "speeds",
-            s->at.l->nfree ? s->at.l->nfree : s->at.l->nu, s->how, s->n, s->all);
+            s->at.l->nfree ? s->at.l->nfree - (int)s->at.e->nstate : s->at.l->nu, s->how, s->n,
+            s->all);
 }
 
 void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_modes_summary(const struct ct_modes *s)
+{
+    return ct_print_text(print_summary, s);
 }
 
 // ---- the picture ---------------------------------------------------------------------------

@@ -53,7 +53,8 @@ static struct ct_build *rigid_scene(struct ct_build *b)
     struct ct_build *r = ct_build_create(b->ctx, b->arena, b->model, &o, NULL);
     if (!ct_build_choose_trees(&r, &o, &unused) || !(r->is_derived || ct_build_derive(r, true)))
         return NULL;
-    if (r->eqs->nrow || r->eqs->nu > MOST || r->eqs->nmemory || r->eqs->nswitch > MOST_MODES)
+    if (r->eqs->nrow || r->eqs->nstate || r->eqs->nu > MOST || r->eqs->nmemory
+        || r->eqs->nswitch > MOST_MODES)
         return NULL;
     ct_dynamics_derive(r);
     return b->rigid = r;

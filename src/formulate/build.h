@@ -18,6 +18,7 @@
 #ifndef CT_FORMULATE_BUILD_H
 #define CT_FORMULATE_BUILD_H
 
+#include "base/pairs.h"
 #include "component/model.h"
 #include "formulate/equations.h"
 #include "graph/graph.h"
@@ -181,8 +182,9 @@ struct ct_kinematics_cache {
     } * cluster; // by cluster
     struct ct_anchor_cache {
         ct_ex3 d;       // R_cluster local [m]
+        ct_ex3 p;       // [m]
         ct_ex3 v, a[2]; // [m/s], [m/s^2]
-        bool has_d, has_v, has_a[2];
+        bool has_d, has_p, has_v, has_a[2];
     } * anchor;             // by anchor
     struct ct_piece *piece; // of the path sought last (nanchor + 2)
     bool *marked;           // clusters that matter to it (ncluster)
@@ -194,9 +196,10 @@ struct ct_lumped_masses {
     bool is_lumped;
     struct ct_augmented_body *augmented_body;
     size_t naugmented_body, augmented_body_cap;
-    int *child;       // anchors, augmented body by augmented body
-    ct_ex33 *inertia; // by cluster: augmented inertia, local [kg m^2]
-    ct_ex *mass;      // by anchor: of everything outboard [kg]
+    struct ct_pairs of; // number of the augmented body of (anchor, cluster)
+    int *child;         // anchors, augmented body by augmented body
+    ct_ex33 *inertia;   // by cluster: augmented inertia, local [kg m^2]
+    ct_ex *mass;        // by anchor: of everything outboard [kg]
 };
 
 /// A load: force F at the head, torque T on the head, the opposite on the tail along the same line.
@@ -225,6 +228,7 @@ struct ct_signal_state {
     const ct_ex *from, *to;
     size_t nreplaced;
     int resolving;   // depth of signals within signals
+    bool is_rate;    // of a state, not a force
     bool is_open;    // a reaction was met that this planar model leaves open
     bool in_outputs; // accelerations and multipliers may be used, comparisons stay as they are
     struct ct_kept_quaternion {

@@ -67,6 +67,7 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     b->coordinate_cap = b->ncoordinate;
     COPY(a, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body);
     b->dynamics.masses.augmented_body_cap = b->dynamics.masses.naugmented_body;
+    b->dynamics.masses.of = (struct ct_pairs){0}; // listed anew when one is added
     COPY(a, b->dynamics.load, b->dynamics.nload);
     b->dynamics.load_cap = b->dynamics.nload;
     b->rows.multiplier_wrench_cap = b->rows.nmultiplier_wrench;

@@ -3,14 +3,17 @@
 
 struct ct_augmented_body *ct_augmented_body_of(struct ct_build *b, int anchor, int cluster)
 {
-    for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++)
-        if (b->dynamics.masses.augmented_body[i].anchor == anchor
-            && b->dynamics.masses.augmented_body[i].cluster == cluster)
-            return &b->dynamics.masses.augmented_body[i];
-    const struct ct_augmented_body s = {.anchor = anchor, .cluster = cluster};
-    CT_PUSH(b->arena, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body,
-            b->dynamics.masses.augmented_body_cap, s);
-    return &b->dynamics.masses.augmented_body[b->dynamics.masses.naugmented_body - 1];
+    struct ct_lumped_masses *s = &b->dynamics.masses;
+    for (size_t i = s->of.n; i < s->naugmented_body; i++)
+        ct_pairs_put(b->arena, &s->of, s->augmented_body[i].anchor,
+                     s->augmented_body[i].cluster, (int)i);
+    const int found = ct_pairs_get(&s->of, anchor, cluster);
+    if (found >= 0)
+        return &s->augmented_body[found];
+    const struct ct_augmented_body one = {.anchor = anchor, .cluster = cluster};
+    ct_pairs_put(b->arena, &s->of, anchor, cluster, (int)s->naugmented_body);
+    CT_PUSH(b->arena, s->augmented_body, s->naugmented_body, s->augmented_body_cap, one);
+    return &s->augmented_body[s->naugmented_body - 1];
 }
 
 void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)

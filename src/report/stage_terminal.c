@@ -316,6 +316,20 @@ static void put_forces(struct ct_derivation *d)
         put_force(d, &d->m->force[i]);
 }
 
+static void put_states(struct ct_derivation *d)
+{
+    if (!d->m->nstate)
+        return;
+    ct_page_heading(&d->page, "states");
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < d->m->nstate; i++) {
+        const struct ct_state *z = &d->m->state[i];
+        const ct_ex derivative = d->e->u[d->e->nmotion + i].derivative;
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, derivative),
+                         ct_derivation_text(d, z->rate), NULL);
+    }
+}
+
 void ct_stage_terminal(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Terminal equations");
@@ -330,5 +344,6 @@ void ct_stage_terminal(struct ct_derivation *d)
     ct_beams_put_arms(d);
     put_joints(d);
     put_forces(d);
+    put_states(d);
     d->page.about = NULL;
 }

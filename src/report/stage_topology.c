@@ -126,9 +126,8 @@ static void put_tree_matrices(struct ct_derivation *d, bool cutsets)
 
 // ---- cutsets --------------------------------------------------------------------------------------
 
-// F(own) + F(...) - ... = 0 for row i of a cutset matrix.
-static const char *cutset_text(struct ct_derivation *d, const struct ct_incidence *rows, int i,
-                               int own, const char *letter)
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
+                                 int i, int own, const char *letter)
 {
     const char *s = ct_derivation_of(d, letter, d->e->edge_name[own]);
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
@@ -166,9 +165,9 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
                 || !has_balance(d, own, of_rotation))
                 continue;
             if (n++ < MOST_EQUATIONS)
-                ct_page_equation(&d->page, NULL,
-                                 cutset_text(d, &rows, i, own, of_rotation ? "T" : "F"), "0",
-                                 NULL);
+                ct_page_equation(
+                    &d->page, NULL,
+                    ct_derivation_cutset(d, &rows, i, own, of_rotation ? "T" : "F"), "0", NULL);
         }
     put_more(d, n);
 }
@@ -282,9 +281,8 @@ void ct_stage_cutset(struct ct_derivation *d)
 
 // ---- circuits -------------------------------------------------------------------------------------
 
-// The chord from the branches on the way from its tail to its head.
-static const char *circuit_text(struct ct_derivation *d, const struct ct_tree *t, int chord,
-                                bool of_rotation)
+const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
+                                  bool of_rotation)
 {
     const struct ct_equations *e = d->e;
     const bool latex = ct_derivation_is_latex(d);
@@ -325,7 +323,7 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
             ct_page_equation(
                 &d->page, NULL,
                 ct_derivation_of(d, of_rotation ? "S" : "d", e->edge_name[t->chord[i]]),
-                circuit_text(d, t, t->chord[i], of_rotation), NULL);
+                ct_derivation_circuit(d, t, t->chord[i], of_rotation), NULL);
     }
     if (n > MOST_EQUATIONS)
         ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);

@@ -124,7 +124,7 @@ static void put_unknowns(struct ct_derivation *d)
     ct_page_heading(&d->page, "unknown coordinates");
     ct_page_table(&d->page, "LLll");
     CT_PAGE_ROW(&d->page, "coordinate", "speed", "unit", "meaning");
-    for (size_t i = 0; i < e->nu; i++) {
+    for (size_t i = 0; i < e->nmotion; i++) {
         const struct ct_u *u = &e->u[i];
         const char *unit;
         const char *speed = ct_derivation_text(d, u->symbol);
@@ -149,11 +149,25 @@ static void put_unknowns(struct ct_derivation *d)
             const char *last = strrchr(e->q[i + 3].name, '.');
             CT_PAGE_ROW(
                 &d->page,
-                d->page.look == CT_LOOK_LATEX
+                ct_derivation_is_latex(d)
                     ? ct_derivation_text(d, e->q[i].symbol)
                     : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
                 "", "", meaning);
         }
+}
+
+static void put_states(struct ct_derivation *d)
+{
+    const struct ct_model *m = d->m;
+    if (!m->nstate)
+        return;
+    ct_page_heading(&d->page, "states");
+    ct_page_table(&d->page, "LlL");
+    CT_PAGE_ROW(&d->page, "state", "unit", "starts at");
+    for (size_t i = 0; i < m->nstate; i++)
+        CT_PAGE_ROW(&d->page, ct_derivation_name(d, m->state[i].name),
+                    m->state[i].unit ? m->state[i].unit : "",
+                    ct_derivation_text(d, m->state[i].initial));
 }
 
 static void put_drivers(struct ct_derivation *d)
@@ -242,6 +256,7 @@ void ct_stage_tree(struct ct_derivation *d)
         ct_page_sentence(&d->page, "chosen: %s", d->e->how);
     put_trees(d);
     put_unknowns(d);
+    put_states(d);
     put_dependent(d);
     put_drivers(d);
     put_rows(d);

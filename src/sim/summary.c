@@ -33,7 +33,7 @@ const char *ct_sim_solver(const struct ct_sim *sim)
 
 long ct_sim_freedoms(const struct ct_sim *sim)
 {
-    return (long)sim->system->equations.nu - sim->report.rank;
+    return (long)sim->system->equations.nmotion - sim->report.rank;
 }
 
 long ct_sim_redundant(const struct ct_sim *sim)

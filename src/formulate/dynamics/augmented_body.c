@@ -17,18 +17,23 @@ static void add_inertia(struct ct_build *b, const struct ct_body *body,
         L->e[i] = ct_ex_add(b->x, L->e[i], turned.e[i]);
 }
 
+// Every anchor's link belongs to one augmented body; all of them exist.
 static void link_children(struct ct_build *b)
 {
-    size_t cap = 0, n = 0;
-    for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++) {
-        struct ct_augmented_body *s = &b->dynamics.masses.augmented_body[i];
-        s->first_child = (int)n;
-        for (size_t a = 1; a < b->kinematics->nanchor; a++)
-            if (b->kinematics->anchor[a].parent == s->anchor
-                && b->kinematics->anchor[a].cluster == s->cluster) {
-                CT_PUSH(b->arena, b->dynamics.masses.child, n, cap, (int)a);
-                s->nchild++;
-            }
+    const struct ct_kinematics *k = b->kinematics;
+    struct ct_lumped_masses *s = &b->dynamics.masses;
+    int *n = CT_NEWN(b->arena, int, s->naugmented_body + 1), first = 0;
+    for (size_t a = 1; a < k->nanchor; a++)
+        ct_augmented_body_of(b, k->anchor[a].parent, k->anchor[a].cluster)->nchild++;
+    for (size_t i = 0; i < s->naugmented_body; i++) {
+        s->augmented_body[i].first_child = first;
+        first += s->augmented_body[i].nchild;
+    }
+    s->child = CT_NEWN(b->arena, int, k->nanchor);
+    for (size_t a = 1; a < k->nanchor; a++) {
+        const struct ct_augmented_body *of
+            = ct_augmented_body_of(b, k->anchor[a].parent, k->anchor[a].cluster);
+        s->child[of->first_child + n[of - s->augmented_body]++] = (int)a;
     }
 }
 

@@ -312,6 +312,8 @@ void ct_dynamics_derive(struct ct_build *b)
 
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
 {
+    if (ct_speed_is_state(b->eqs, (size_t)speed))
+        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->dynamics.effort[speed]);
     return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed),
                      b->dynamics.effort[speed]);
 }
@@ -411,6 +413,18 @@ static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k
         push_coordinate(b, e->first_coordinate + k, f.total, f.potential, f.power);
 }
 
+// Rates of the model's states, as generalised forces on them.
+static void derive_rates(struct ct_build *b)
+{
+    struct ct_equations *e = b->eqs;
+    b->signals.is_rate = true;
+    for (size_t i = 0; i < e->nstate; i++) {
+        b->signals.holding = b->model->state[i].rate_mark;
+        e->Q[e->nmotion + i] = ct_build_value(b, b->model->state[i].rate);
+    }
+    b->signals.is_rate = false;
+}
+
 bool ct_loads_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
@@ -427,6 +441,7 @@ bool ct_loads_derive(struct ct_build *b)
         b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->dynamics.load[i].potential);
         b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->dynamics.load[i].power);
     }
+    derive_rates(b);
     b->dynamics.effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
         b->dynamics.effort[k] = b->eqs->Q[k]; // so far these are all that is in Q

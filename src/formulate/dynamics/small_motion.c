@@ -195,7 +195,7 @@ bool ct_small_motion_derive(struct ct_build *b)
         return true;
     b->eqs->is_small = s.is_small;
     truncate_masses(b, &s);
-    truncate(b, &s, b->eqs->Q, b->eqs->nu);
+    truncate(b, &s, b->eqs->Q, b->eqs->nmotion);
     return true;
 }
 
@@ -203,5 +203,5 @@ void ct_small_motion_momenta(struct ct_build *b, ct_ex *p)
 {
     struct small s = {0};
     if (collect(b, &s) && s.n)
-        truncate(b, &s, p, b->eqs->nu);
+        truncate(b, &s, p, b->eqs->nmotion);
 }

@@ -136,6 +136,22 @@ static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
     }
 }
 
+// A state of the model, as a speed that moves nothing.
+static void add_state(struct ct_build *b, const char *name)
+{
+    struct ct_equations *s = b->eqs;
+    const uint32_t k = (uint32_t)s->nu;
+    const struct ct_u z
+        = {.name = name,
+           .symbol = ct_ex_sym(b->x, CT_SYM_U, name, k),
+           .derivative = ct_ex_sym(b->x, CT_SYM_A, ct_arena_printf(b->arena, "%s'", name), k),
+           .q = -1,
+           .joint = -1,
+           .body = -1};
+    CT_PUSH(b->arena, s->u, s->nu, s->u_cap, z);
+    s->nstate++;
+}
+
 void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 {
     kinematics->edge = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
@@ -165,9 +181,18 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
     for (size_t i = 0; i < b->topology->nedge; i++)
         if (b->topology->edge[i].beam >= 0)
             find_station(b, kinematics, &b->topology->edge[i]);
+    b->eqs->nmotion = b->eqs->nu;
+    for (size_t i = 0; i < b->model->nstate; i++)
+        add_state(b, b->model->state[i].name);
 }
 
 // ---- rates ----------------------------------------------------------------------------------------
+
+static bool is_moving(const struct ct_exs *x, ct_ex e, unsigned moving)
+{
+    const struct ct_sym *sym = ct_ex_symbol(x, e);
+    return sym && (moving & 1u << sym->kind);
+}
 
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
 {
@@ -177,15 +202,17 @@ ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few
-    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1),
-          *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
-    size_t n = 0;
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
+    size_t n = 0;
+    for (size_t i = 0; i < nwalk; i++)
+        n += is_moving(b->x, (ct_ex){b->x->stack[i]}, moving);
+    ct_ex *from = CT_NEWN(b->arena, ct_ex, n + 1), *to = CT_NEWN(b->arena, ct_ex, n + 1);
+    n = 0;
     for (size_t i = 0; i < nwalk; i++) {
         const ct_ex leaf = {b->x->stack[i]};
-        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
-        if (!sym || !(moving & 1u << sym->kind))
+        if (!is_moving(b->x, leaf, moving))
             continue;
+        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
         from[n] = leaf;
         to[n++] = sym->kind == CT_SYM_TIME ? CT_EX_ONE : s->q[sym->index].rate;
     }

@@ -258,9 +258,13 @@ ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
 
 static ct_ex3 anchor_position(struct ct_build *b, int i)
 {
-    return i ? ct_ex3_add(b->x, anchor_position(b, b->kinematics->anchor[i].parent),
-                          ct_link_vector(b, i))
-             : zero3;
+    struct ct_anchor_cache *c = &b->cache.anchor[i];
+    if (i && !c->has_p) {
+        c->p = ct_ex3_add(b->x, anchor_position(b, b->kinematics->anchor[i].parent),
+                          ct_link_vector(b, i));
+        c->has_p = true;
+    }
+    return c->p;
 }
 
 static ct_ex3 anchor_velocity(struct ct_build *b, int i)
@@ -379,17 +383,22 @@ static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
 
 // From ground over many pieces: places and velocities that nodes on the way share cost less than a
 // sum of one's own.
-static bool is_long(const struct path *p, int tail)
+static bool is_long(const struct ct_build *b, int tail, int head)
 {
-    return tail == 0 && p->n > CT_LONG_PATH;
+    const struct ct_kinematics *k = b->kinematics;
+    int n = !ct_ex3_is_zero(k->placement[head].local);
+    for (int a = k->placement[head].anchor; tail == 0 && a > 0 && n <= CT_LONG_PATH;
+         a = k->anchor[a].parent)
+        n += !ct_ex3_is_zero(k->anchor[a].local);
+    return n > CT_LONG_PATH;
 }
 
 ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
 {
+    if (is_long(b, tail, head))
+        return ct_node_position(b, head);
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
-    if (is_long(&p, tail))
-        return ct_node_position(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
     return sum;
@@ -397,10 +406,10 @@ ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
 
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head)
 {
+    if (is_long(b, tail, head))
+        return ct_node_velocity(b, head);
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
-    if (is_long(&p, tail))
-        return ct_node_velocity(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_velocity(b, &p.piece[i]));
     return sum;

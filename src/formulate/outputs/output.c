@@ -176,10 +176,33 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     b->signals.in_outputs = true;
     for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
         ok &= coordinate_columns(b, &b->model->joint[j]);
+    for (size_t i = 0;
+         i < b->model->nstate && more == CT_MORE_COORDINATES && b->model->noutput == 0; i++)
+        ok &= new_columns(b, b->model->state[i].name, b->model->state[i].mark);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= effort_columns(b, j);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= reaction_columns(b, j);
     b->signals.in_outputs = false;
+    return ok;
+}
+
+bool ct_outputs_list_reactions(struct ct_build *b, struct ct_result **list, size_t *n)
+{
+    struct ct_equations *e = b->eqs;
+    struct ct_result *const before = e->result;
+    const size_t nbefore = e->nresult, cap = e->result_cap;
+    bool ok = true;
+    e->result = NULL;
+    e->nresult = e->result_cap = 0;
+    b->signals.in_outputs = true;
+    for (size_t j = 0; j < b->model->njoint; j++)
+        ok &= reaction_columns(b, j);
+    b->signals.in_outputs = false;
+    *list = e->result;
+    *n = e->nresult;
+    e->result = before;
+    e->nresult = nbefore;
+    e->result_cap = cap;
     return ok;
 }

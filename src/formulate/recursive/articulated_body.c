@@ -260,5 +260,9 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
     w.body[0].a = ct_members_gravity_acceleration(b);
     for (size_t i = 1; i < s->n; i++)
         accelerate(&w, (int)i, out);
+    for (size_t k = b->eqs->nmotion; k < b->eqs->nu; k++) {
+        out[k] = effort[k];
+        pivot[k] = CT_EX_ONE;
+    }
     return out;
 }

@@ -356,7 +356,7 @@ static bool own_speeds(struct ct_member_build *w)
                 return false;
             *of = (int)m;
         }
-    for (size_t k = 0; k < nu; k++)
+    for (size_t k = 0; k < w->b->eqs->nmotion; k++)
         if (!w->of_speed[k] && !w->b->eqs->u[k].beam)
             return false;
     w->s->of_speed = w->of_speed;

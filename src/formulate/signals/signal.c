@@ -381,6 +381,11 @@ bool ct_signal_resolve(struct ct_build *b, const char *name, struct ct_mark mark
     int frame;
     *out = CT_EX_ZERO;
     *s = (struct ct_signal){.name = name, .mark = mark};
+    const int state = ct_names_get(&b->model->state_index, name);
+    if (state >= 0) {
+        *out = b->eqs->u[b->eqs->nmotion + (size_t)state].symbol;
+        return true;
+    }
     if (!split(b, name, s, &frame))
         return ct_signal_unknown(b, s, "a signal is written OWNER.PROPERTY");
     if (!strcmp(s->owner, "system") || !strcmp(s->owner, "energy")
@@ -447,14 +452,15 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
 
 static const int deepest_signal = 64; // a force that measures a force that measures ... itself
 
-// The error of a force that depends on what follows from forces.
+// The error of a force, or the rate of a state, that depends on what follows from forces.
 static void refuse(struct ct_build *b, const struct ct_signal *s)
 {
-    ct_error(
-        b->ctx, s->mark, CT_E_SIGNAL_USE,
-        "a force cannot depend on '%s': accelerations, reactions, energies and work follow "
-        "from it",
-        s->name);
+    ct_error(b->ctx, s->mark, CT_E_SIGNAL_USE,
+             "a %s cannot depend on '%s': accelerations, reactions, energies and work %s",
+             b->signals.is_rate ? "rate" : "force", s->name,
+             b->signals.is_rate
+                 ? "are found after it; use positions, speeds, applied forces, states"
+                 : "follow from it");
 }
 
 // The signal e, in an expression of a force.

@@ -235,6 +235,27 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
         = "absolute coordinates: through the joints the beams would fill the mass matrix";
 }
 
+// A pair that is asked for by its number among those weighed.
+static bool pick(struct ct_build *b, int number, struct ct_tree_pair *p,
+                 struct ct_tree_report *report)
+{
+    const size_t size = b->topology->nedge * sizeof(bool);
+    if (number > report->ncandidate && report->ncandidate)
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: there is no pair %d, %d are listed by 'cotree graph --trees'",
+                        number, report->ncandidate);
+    if (number > report->ncandidate)
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: there is no pair %d, as none was searched (%s)", number,
+                        report->how);
+    const struct ct_tree_candidate *c = &report->candidate[number - 1];
+    memcpy(p->trans, c->trans, size);
+    memcpy(p->rot, c->rot, size);
+    report->cost = c->cost;
+    report->how = ct_arena_printf(b->arena, "number %d of the pairs weighed", number);
+    return true;
+}
+
 bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options *o,
                            const struct ct_pair_trials *trials, struct ct_tree_report *report)
 {
@@ -258,6 +279,8 @@ bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options
         improve(b, &r, trials, &p, report);
         count_from_ground(b, o, trials, &p, report);
     }
+    if (o->tree == CT_TREE_AUTO && o->pick && !pick(b, o->pick, &p, report))
+        return false;
     if (!ct_tree_from_branches(b->arena, &b->topology->graph, p.trans, &b->T))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                         "tree: the translational branches are no spanning tree");

@@ -450,15 +450,14 @@ static void start_near_targets(struct ct_assembler *s, int try)
     ct_evaluator_normalise(s->m, s->y);
     draw_motion(s, try);
     ct_evaluator_retract(s->m, s->y, s->b);
-    for (size_t i = 0; i < s->e->nmemory; i++)
-        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;
-             k++) {
-            const struct ct_coordinate *c = &s->e->coordinate[k];
-            const struct ct_edge_info *e = &s->e->build->topology->edge[c->edge];
-            if (e->kind == CT_EDGE_JOINT && e->index == s->e->memory[i].joint
-                && c->index == s->e->memory[i].index)
-                memory[i] = s->q[k].value;
-        }
+    const struct ct_topology *t = s->e->build->topology;
+    for (size_t i = 0; i < s->e->nmemory; i++) {
+        const struct ct_memory *angle = &s->e->memory[i];
+        const int joint = angle->kind == CT_MEMORY_ANGLE ? angle->joint : -1,
+                  edge = joint >= 0 ? t->edge_of_joint[joint] : -1;
+        if (edge >= 0 && angle->index < t->edge[edge].ncoordinate)
+            memory[i] = s->q[t->edge[edge].first_coordinate + angle->index].value;
+    }
     ct_evaluator_set(s->m, 0, s->y);
     ct_switches_start(s->m, 0, s->y, NULL);
     ct_memory_start(s->m);

@@ -36,25 +36,32 @@ bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, i
 
 // ---- natural scales -----------------------------------------------------------------------------
 
+static double square_distance(const double a[3], const double b[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+        square += (a[k] - b[k]) * (a[k] - b[k]);
+    return square;
+}
+
 // The largest distance between two points of one body, the ground included, at which joints act; 1
 // m if there is none. It does not change when the mechanism is moved or turned.
 static double natural_length(const struct ct_assembler *s, const struct ct_model *model)
 {
     double largest = 0;
-    for (size_t i = 0; i < s->nframe; i++)
+    // frames of a body, chained; numbers plus one
+    size_t *last = CT_NEWN(s->ctx->scratch, size_t, model->nbody + 1),
+           *before = CT_NEWN(s->ctx->scratch, size_t, s->nframe + 1);
+    for (size_t i = 0; i < s->nframe; i++) {
+        const int body = model->frame[s->frame[i]].body;
         for (int k = 0; k < 3; k++)
             s->point[3 * i + (size_t)k]
                 = ct_model_number(model, model->frame[s->frame[i]].at.e[k]);
-    for (size_t i = 0; i < s->nframe; i++)
-        for (size_t j = 0; j < i; j++) {
-            double square = 0;
-            for (size_t k = 0; k < 3; k++) {
-                const double d = s->point[3 * i + k] - s->point[3 * j + k];
-                square += d * d;
-            }
-            if (model->frame[s->frame[i]].body == model->frame[s->frame[j]].body)
-                largest = fmax(largest, square);
-        }
+        before[i] = last[body];
+        last[body] = i + 1;
+        for (size_t j = before[i]; j > 0; j = before[j - 1])
+            largest = fmax(largest, square_distance(s->point + 3 * i, s->point + 3 * (j - 1)));
+    }
     return largest > 0 ? sqrt(largest) : 1;
 }
 

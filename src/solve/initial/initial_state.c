@@ -19,6 +19,13 @@ void ct_initial_state_of_beams(const struct ct_equations *e, const double *value
     }
 }
 
+// States of the model, which nothing constrains.
+static void start_states(const struct ct_model *model, const struct ct_equations *e, double *u)
+{
+    for (size_t i = 0; i < e->nstate; i++)
+        u[e->nmotion + i] = ct_model_number(model, model->state[i].initial);
+}
+
 void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluator *m, double *y)
 {
     const struct ct_equations *e = m->e;
@@ -44,6 +51,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
             if (s->elastic_rate)
                 y[m->nq + (size_t)c->u] = s->elastic_rate[k];
         }
+    start_states(m->model, e, y + m->nq);
     ct_evaluator_normalise(m, y);
     ct_evaluator_set(m, 0, y);
     ct_switches_start(m, 0, y, NULL);
