@@ -162,35 +162,50 @@ static bool formulate_settled(struct ct_system *s, const struct ct_system_option
     return s->held_equations.nrow == 0 || formulate(s, &f, &s->moving_equations, &unused);
 }
 
+// Of the motion, in coordinates of the chosen trees.
+static struct ct_formulate_options options_of_motion(const struct ct_system_options *o)
+{
+    struct ct_formulate_options f = {.keep_all = o->keep_all,
+                                     .with_energy = true,
+                                     .with_outputs = true,
+                                     .with_solution = true,
+                                     .frees_beams = o->for_analysis,
+                                     .for_analysis = o->for_analysis};
+    f.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
+           : o->columns == CT_COLUMNS_EFFORTS     ? CT_MORE_EFFORTS
+                                                  : CT_MORE_NONE;
+    return f;
+}
+
+// Of the start, through joints: it must not depend on the trees of the motion.
+static struct ct_formulate_options options_of_start(const struct ct_system *s,
+                                                    const struct ct_system_options *o)
+{
+    return (struct ct_formulate_options){.tree = CT_TREE_JOINTS,
+                                         .keep_all = o->keep_all,
+                                         .frees_beams = o->for_analysis,
+                                         .measure_all = true,
+                                         .measured_for = &s->equations,
+                                         .like = &s->equations,
+                                         .without_dynamics = true};
+}
+
+// The pipeline. ct_formulate (formulate/formulate.c) tells how equations come about; what is done
+// with them begins with ct_system_assemble, which finds consistent initial values.
 static bool build(struct ct_system *s, const struct source *from,
                   const struct ct_system_options *o)
 {
-    struct ct_formulate_options motion = {.keep_all = o->keep_all,
-                                          .with_energy = true,
-                                          .with_outputs = true,
-                                          .with_solution = true,
-                                          .frees_beams = o->for_analysis,
-                                          .for_analysis = o->for_analysis};
-    // the start must not depend on the trees that the equations use
-    motion.more = o->columns == CT_COLUMNS_COORDINATES ? CT_MORE_COORDINATES
-                : o->columns == CT_COLUMNS_EFFORTS     ? CT_MORE_EFFORTS
-                                                       : CT_MORE_NONE;
-    const struct ct_formulate_options start = {.tree = CT_TREE_JOINTS,
-                                               .keep_all = o->keep_all,
-                                               .frees_beams = o->for_analysis,
-                                               .measure_all = true,
-                                               .measured_for = &s->equations,
-                                               .like = &s->equations,
-                                               .without_dynamics = true};
+    struct ct_formulate_options motion = options_of_motion(o);
+    const struct ct_formulate_options start = options_of_start(s, o);
     struct ct_tree_report unused;
     s->published = CT_NEW(s->own.model, struct ct_published);
-    if (!choose_tree(&s->own, o->tree, &motion) // which branches, if any are given
-        || !read_model(s, from, o))             // text -> component instances
-        return false;
-    return formulate(s, &motion, &s->equations, &s->tree) // graph, trees, equations of motion
-        && formulate(s, &start, &s->start_equations, &unused) // equations for assembling
+    return choose_tree(&s->own, o->tree, &motion)         // which branches, if any are given
+        && read_model(s, from, o)                         // text -> component instances
+        && formulate(s, &motion, &s->equations, &s->tree) // equations of motion
+        && formulate(s, &start, &s->start_equations,
+                     &unused) // positions, to assemble the start
         && (!ct_initial_equilibrium_is_wanted(&s->model)
-            || formulate_settled(s, o)); // and for static shapes
+            || formulate_settled(s, o)); // statics, for beams that start in equilibrium
 }
 
 struct load {

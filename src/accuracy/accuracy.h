@@ -56,7 +56,8 @@ bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s);
 // Destroys a->sim.
 void ct_accuracy_end_run(struct ct_accuracy *a);
 
-// One run of at most `limit` seconds, each sample given to row; *p (out): what it cost, without an error. a->sim stays.
+// One run of at most `limit` seconds, each sample given to row; *p (out): what it cost, without an
+// error. a->sim stays.
 enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting *s,
                                  double limit,
                                  bool (*row)(void *, double, const double *, size_t),
@@ -71,12 +72,13 @@ enum ct_ending ct_accuracy_run(struct ct_accuracy *a, const struct ct_setting *s
                                bool (*row)(void *, double, const double *, size_t),
                                struct ct_work_precision_point *p);
 
-// Largest |y - x| / max |x| over the columns that are more than round-off; x, y (nsample, nresult); scale (nresult, out):
-// max |x|, 0 for those that are not.
+// Largest |y - x| / max |x| over the columns that are more than round-off; x, y (nsample, nresult);
+// scale (nresult, out): max |x|, 0 for those that are not.
 double ct_accuracy_compare(const struct ct_accuracy *a, const double *x, const double *y,
                            double *scale);
 
-// Fills a->reference, scale, source and uncertainty by tight runs that agree. Errors: CT_E_REFERENCE.
+// Fills a->reference, scale, source and uncertainty by tight runs that agree. Errors:
+// CT_E_REFERENCE.
 bool ct_accuracy_find_reference(struct ct_accuracy *a);
 
 // The same from a file of samples. Errors: CT_E_TABLE, CT_E_TABLE_DATA.

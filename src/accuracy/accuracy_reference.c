@@ -1,5 +1,5 @@
-// The reference of a study of speed against error: tight runs of different methods that agree, runs in quadruple
-// precision, or a file.
+// The reference of a study of speed against error: tight runs of different methods that agree, runs
+// in quadruple precision, or a file.
 #include "accuracy/accuracy.h"
 
 #include "expr/unit.h"
@@ -83,7 +83,8 @@ static void drop_small(struct ct_accuracy *a)
             a->scale[i] = 0;
 }
 
-// No two came to their end: one alone must do. Its digits are not known, so that what is small counts as round-off.
+// No two came to their end: one alone must do. Its digits are not known, so that what is small
+// counts as round-off.
 static void choose_single(struct ct_accuracy *a, const struct candidate *c, int n)
 {
     for (int i = 0; i < n && !a->reference; i++)
@@ -110,8 +111,8 @@ static bool is_in_time(void *user)
     return ct_monotonic_time() < *end;
 }
 
-// Two runs with different steps; the first is the reference if they agree better than runs in double precision do, and
-// with those as well as they among each other.
+// Two runs with different steps; the first is the reference if they agree better than runs in
+// double precision do, and with those as well as they among each other.
 static void run_quad(struct ct_accuracy *a)
 {
     const double tolerance[2] = {1e-26, 1e-22};

@@ -1,5 +1,5 @@
 // Static buckling: load factors at which the stiffness of an equilibrium vanishes in some
-// direction.  (formulation 9.5)
+// direction.  (section 9.5)
 #ifndef CT_ANALYSIS_BUCKLING_H
 #define CT_ANALYSIS_BUCKLING_H
 

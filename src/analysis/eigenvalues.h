@@ -1,4 +1,4 @@
-// Natural motions of linearised equations: eigenvalues and shapes.  (formulation 9.4)
+// Natural motions of linearised equations: eigenvalues and shapes.  (section 9.4)
 #ifndef CT_ANALYSIS_EIGENVALUES_H
 #define CT_ANALYSIS_EIGENVALUES_H
 

@@ -1,4 +1,4 @@
-// Linearised equations as x' = A x + B f, positions and speeds as states.  (formulation 9.4)
+// Linearised equations as x' = A x + B f, positions and speeds as states.  (section 9.4)
 #ifndef CT_ANALYSIS_STATE_SPACE_H
 #define CT_ANALYSIS_STATE_SPACE_H
 

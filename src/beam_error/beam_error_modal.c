@@ -41,8 +41,9 @@ static double square(double x)
     return fmin(x * x, most);
 }
 
-// (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h, in pieces whose amplitudes are those of their middles, where
-// it is to second order. Where h is more than one piece and amplitudes do little, with what they do on the mean of a period.
+// (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h, in pieces whose amplitudes are
+// those of their middles, where it is to second order. Where h is more than one piece and
+// amplitudes do little, with what they do on the mean of a period.
 static void step_nonlinear(double x[2], double h, double W, double c, double F, double b,
                            double g)
 {
@@ -211,7 +212,8 @@ void ct_beam_error_modal_reset_base(struct ct_beam_error_modal *s, const double 
     memcpy(s->base, base, sizeof s->base);
 }
 
-// W x + 2 g x^3 = F by Newton's method from W x = F on, which overshoots: it comes down monotonically.
+// W x + 2 g x^3 = F by Newton's method from W x = F on, which overshoots: it comes down
+// monotonically.
 static double static_amplitude(double W, double g, double F)
 {
     enum { MOST = 60 };

@@ -14,7 +14,7 @@ static const double arrived = 1e-12; // relative change of a frequency
 static const double farthest
     = 2500; // omega^2 over that of the first: what is faster follows at once
 
-// ---- numbers along the beam -----------------------------------------------------------------------------
+// ---- numbers along the beam ---------------------------------------------------------------------
 
 struct lump { // a body that a weld holds to a point of the beam
     double mass, x;
@@ -117,7 +117,7 @@ static int element_at(const struct line *s, double x, double *xi)
     return e;
 }
 
-// ---- matrices of a plane -----------------------------------------------------------------------------------
+// ---- matrices of a plane ------------------------------------------------------------------------
 
 static void add(struct line *s, double *A, int e, int j, int k, double v)
 {
@@ -142,7 +142,8 @@ static void carry(struct line *s, int e, double mass, double x, const double pla
     }
 }
 
-// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear shapes from locking.
+// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear
+// shapes from locking.
 static void add_stiffness(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
@@ -250,7 +251,7 @@ static void number_freedoms(struct line *s)
         }
 }
 
-// ---- bending shapes -------------------------------------------------------------------------------------------
+// ---- bending shapes -----------------------------------------------------------------------------
 
 // y (n, out) = A v, and v' A v
 static double apply(const struct line *s, double *y, const double *A, const double *v)
@@ -282,8 +283,8 @@ struct found {
     double *v[CT_PLANE_SHAPES], *Mv[CT_PLANE_SHAPES];
 };
 
-// Inverse iteration, K v = M v, across the shapes found before; the next one becomes v[n], not counted. Returns omega^2, 0 if it does not settle.
-// L: the factor of K
+// Inverse iteration, K v = M v, across the shapes found before; the next one becomes v[n], not
+// counted. Returns omega^2, 0 if it does not settle. L: the factor of K
 static double next_shape(const struct line *s, const double *L, struct found *all)
 {
     const int n = s->n;
@@ -404,7 +405,8 @@ static double drawn_in(const struct line *s, int e, double xi, const double *v)
     return sum;
 }
 
-// What far swings do: the mass that is drawn along the beam, and the curvature. See beam_error_modal.h.
+// What far swings do: the mass that is drawn along the beam, and the curvature. See
+// beam_error_modal.h.
 static void find_amplitudes(const struct line *s, const double *v, struct ct_beam_mode *out)
 {
     const struct ct_beam *beam = s->f->beam;
@@ -432,7 +434,8 @@ static void find_amplitudes(const struct line *s, const double *v, struct ct_bea
     }
 }
 
-// phi sqrt(m) at the points of the elements and at welded masses: products of two shapes add up to integrals.
+// phi sqrt(m) at the points of the elements and at welded masses: products of two shapes add up to
+// integrals.
 static void sample(const struct line *s, const double *v, struct ct_bending_shape *out)
 {
     const struct ct_beam *beam = s->f->beam;

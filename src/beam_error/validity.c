@@ -80,7 +80,7 @@ double ct_validity_interval(const struct ct_validity *v)
     return shortest;
 }
 
-// ---- choice -----------------------------------------------------------------------------------------------------
+// ---- choice -------------------------------------------------------------------------------------
 
 // Modes that depend on time alone, at the time in value.
 static bool set_switches(struct ct_build *b, double *value)
@@ -132,7 +132,8 @@ static void prepare(struct ahead *p, const struct ct_validity *v)
         (void)ct_ex_value(x, out[k], p->value);
 }
 
-// To the time t; modes as they are there, and the jumps of rates that come with them. False: modes are not known.
+// To the time t; modes as they are there, and the jumps of rates that come with them. False: modes
+// are not known.
 static bool advance_modes(struct ahead *p, double t)
 {
     struct ct_beam_error_modal *s = &p->swings;
@@ -207,8 +208,8 @@ static bool is_alike(double a, double b)
         || (a > CT_ESTIMATED_ERROR_LIMIT && b > CT_ESTIMATED_ERROR_LIMIT);
 }
 
-// What is ahead; NULL, or why it is not known. Where a run is too long to look at all that may move the beam, two
-// looks that fall on other instants must see the same.
+// What is ahead; NULL, or why it is not known. Where a run is too long to look at all that may move
+// the beam, two looks that fall on other instants must see the same.
 static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
                               struct prospect *out)
 {

@@ -7,7 +7,7 @@
 #include "codegen/reroll.h"
 #include "codegen/x86.h"
 
-enum { CT_NREGISTER = 16, CT_ROWS_TOGETHER = 4 };
+enum { CT_NREGISTER = 16 };
 
 // Beyond CT_AREA_WORK: what a stream of a loop points at.
 enum ct_area { CT_AREA_NONE, CT_AREA_INPUT, CT_AREA_OUT, CT_AREA_WORK, CT_NAREA };

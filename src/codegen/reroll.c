@@ -7,11 +7,6 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-enum {
-    MOST_CUTS = 3,     // see cut
-    MOST_END_ROWS = 8, // rows at an end, see leave_ends
-};
-
 // ---- how operands are reached -----------------------------------------------------------------
 
 static bool is_made_before(const struct ct_repetitions *p, const struct ct_repetition *r,
@@ -127,7 +122,6 @@ static void add_edge(const struct ct_repetitions *p, const struct ct_repetition 
 static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition *r,
                             uint32_t operand, struct ct_source *out)
 {
-    enum { MOST_EDGES = 8 };
     const uint32_t middle = r->count / 2;
     int32_t row[2];
     uint32_t slot[2], nedge = 0;
@@ -149,8 +143,9 @@ static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition
         if (ct_repetition_of(p, v, &its, &which) == other && its == at && which == slot[0])
             continue;
         if ((at >= 0 && at < (int32_t)other->count) || !is_made_before(p, r, v)
-            || ++nedge > MOST_EDGES || !is_edge_free(other, slot[0], at, v, &is_new))
+            || !is_edge_free(other, slot[0], at, v, &is_new))
             return false;
+        nedge++;
     }
     if (!use_stream(r, CT_SOURCE_RESULTS, (uint32_t)(other - p->repetition), step))
         return false;
@@ -266,16 +261,13 @@ static void regular_rows(const struct ct_repetitions *p, const struct ct_repetit
 }
 
 // Drop irregular rows at the ends for an operand that would be copied or has no address.
-static bool drop_end_rows(const struct ct_repetitions *p, struct ct_repetition *r,
+static void drop_end_rows(const struct ct_repetitions *p, struct ct_repetition *r,
                           uint32_t operand)
 {
     uint32_t first, behind;
     regular_rows(p, r, operand, &first, &behind);
-    if (first > MOST_END_ROWS || behind + MOST_END_ROWS < r->count)
-        return false;
     r->keep_first = first > r->keep_first ? first : r->keep_first;
     r->keep_behind = behind < r->keep_behind ? behind : r->keep_behind;
-    return true;
 }
 
 static uint32_t dropped_rows(const struct ct_repetition *r)
@@ -289,7 +281,10 @@ static bool copies_cost_more(const struct ct_repetitions *p, struct ct_repetitio
 {
     size_t nsaved = 0;
     for (size_t i = 0; i < r->ncolumn; i++)
-        nsaved += r->column[i].is_copied && drop_end_rows(p, r, r->column[i].operand);
+        if (r->column[i].is_copied) {
+            drop_end_rows(p, r, r->column[i].operand);
+            nsaved++;
+        }
     return 2 * nsaved * r->count > dropped_rows(r) * r->period;
 }
 
@@ -306,8 +301,7 @@ static bool resolve_operands(const struct ct_repetitions *p, struct ct_repetitio
             if (out->kind != CT_SOURCE_OPEN || resolve_inputs(p, r, operand, out)
                 || resolve_results(p, r, operand, out) || resolve_column(p, r, operand, out))
                 continue;
-            if (!drop_end_rows(p, r, operand))
-                return false;
+            drop_end_rows(p, r, operand);
             all = false;
         }
     const size_t ncopied = count_copied(p, r);
@@ -315,6 +309,7 @@ static bool resolve_operands(const struct ct_repetitions *p, struct ct_repetitio
         return false;
     r->keep_first = 0;
     r->keep_behind = r->count;
+    // a copy is a load and a store: a quarter of what a row does at most
     return 8 * ncopied <= r->period
         && use_stream(r, CT_SOURCE_RESULTS, (uint32_t)(r - p->repetition), 1);
 }
@@ -351,7 +346,7 @@ static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
 {
     static const struct {
         unsigned first, less; // rows
-    } without[MOST_CUTS] = {{1, 1}, {0, 1}, {1, 2}};
+    } without[] = {{1, 1}, {0, 1}, {1, 2}};
     assign_range(p, r, none);
     const uint32_t left = dropped_rows(r);
     if (r->ncut == 0 && left && r->count >= left + CT_LEAST_ROWS) {
@@ -365,7 +360,7 @@ static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
         r->whole_count = r->count;
     }
     r->is_dropped
-        = r->ncut == MOST_CUTS || r->whole_count < without[r->ncut].less + CT_LEAST_ROWS;
+        = r->ncut == COUNT(without) || r->whole_count < without[r->ncut].less + CT_LEAST_ROWS;
     if (r->is_dropped)
         return;
     r->first = r->whole_first + without[r->ncut].first * r->period;

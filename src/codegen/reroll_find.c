@@ -4,13 +4,10 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-enum {
-    WINDOW = 16, // instructions of the rolling hash
-    NEAR = 64,   // distances to operands up to this are part of the hash
-    MOST_PERIOD = 8192,
-    MOST_TRIES = 64,
-    LEAST_SAVED = 48, // instructions
-};
+// Instructions of the rolling hash; distances to operands within it are part of the hash. Costs
+// time only: ten times as many find the same loops but for rows that are shorter, a tenth leaves
+// more windows to compare.
+enum { WINDOW = 16 };
 
 static bool is_commutative(unsigned op)
 {
@@ -47,7 +44,7 @@ static void hash_instructions(struct ct_repetitions *p, const bool is_alone[CT_N
             h = mix(h, (uint64_t)i + CT_NKIND);
         for (uint32_t k = 0; k < ins->narg; k++) {
             const uint32_t from = p->at[ct_repetition_operand(p, i, k)];
-            h = mix(h, from != none && i - from < NEAR ? i - from : 0);
+            h = mix(h, from != none && i - from < WINDOW ? i - from : 0);
         }
         p->sign[i] = h;
     }
@@ -75,14 +72,18 @@ static void link_windows(struct ct_repetitions *p)
     }
 }
 
-// The repetition at i that saves most instructions.
+// Instructions that a loop adds to each row at most: strides are added, the end is compared and
+// branched on. What is saved is about as much for each instruction that is not fetched.
+enum { ADDED = CT_REROLL_STREAMS + 2 };
+
+// The repetition at i that saves most instructions. Rows that the instruction cache does not hold
+// gain nothing by being the same.
 static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t i,
                                         uint32_t *longest)
 {
     struct ct_repetition best = {.first = i};
-    uint32_t saved = LEAST_SAVED - 1, c = p->again[i];
-    for (int tries = 0; tries < MOST_TRIES && c > i && c != none && c - i <= MOST_PERIOD;
-         tries++) {
+    uint32_t saved = 0, c = p->again[i];
+    while (c > i && c != none && c - i <= CT_REROLL_CACHED) {
         const uint32_t period = c - i;
         uint32_t same = 0;
         if (best.count && period % best.period == 0) { // saves less than that did
@@ -92,7 +93,8 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
         while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
             same++;
         const uint32_t count = same / period + 1;
-        if (count >= CT_LEAST_ROWS && (count - 1) * period > saved) {
+        if (count >= CT_LEAST_ROWS && (count - 1) * period > saved
+            && (count - 1) * period > count * ADDED) {
             saved = (count - 1) * period;
             best.period = period;
             best.count = count;

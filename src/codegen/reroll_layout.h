@@ -50,7 +50,8 @@ struct ct_source {
         at; // instruction of the body; value; input at row 0; instruction of the other body; column
     uint32_t other; // CT_SOURCE_RESULTS: repeat
     int32_t row,
-        step; // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+        // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+        step;
 };
 
 // Storage of a live-out result: all rows; one strip of rows; one slot for all rows, where the next
@@ -79,7 +80,7 @@ struct ct_repetition {
     struct ct_repetition_stream stream[CT_REROLL_STREAMS];
     int nstream;
     int32_t before, behind;           // rows for edges
-    uint32_t keep_first, keep_behind; // see leave_ends
+    uint32_t keep_first, keep_behind; // see drop_end_rows
 
     // rows side by side, see choose_lanes
     bool is_vectorized;
@@ -135,7 +136,7 @@ static inline struct ct_repetition *ct_repetition_of(const struct ct_repetitions
     return r;
 }
 
-enum { CT_LEAST_ROWS = 4 };
+enum { CT_LEAST_ROWS = CT_ROWS_TOGETHER }; // that fill a vector
 
 /// All of them, ascending. is_alone, rows: those of ct_reroll_find.
 void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND],

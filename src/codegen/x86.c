@@ -443,17 +443,13 @@ void ct_emitter_list_uses(struct ct_emitter *e)
         e->next[v] = e->start[v];
 }
 
-// Instructions from which loops are searched: about 8 bytes each, as many fill the first-level
-// instruction cache of 32 KiB.
-enum { LEAST_REROLLED = 4000 };
-
 static void roll_up(struct ct_emitter *e)
 {
     bool is_alone[CT_NKIND];
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
-    if (e->norder < LEAST_REROLLED)
-        return;
+    if (e->norder < CT_REROLL_CACHED)
+        return; // all of it stays in the instruction cache
     e->reroll
         = ct_reroll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
                          e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,

@@ -1,7 +1,9 @@
-// A copy of equations that may grow: their store of expressions, and all that is derived when it is first asked for.
+// A copy of equations that may grow: their store of expressions, and all that is derived when it is
+// first asked for.
 //
-// Expressions are numbers in a store, so that a copy of the store gives them the same meaning. What the derivation of mass
-// matrices, residuals and signals writes is copied; what it only reads (trees, names, lists of terms) is shared.
+// Expressions are numbers in a store, so that a copy of the store gives them the same meaning. What
+// the derivation of mass matrices, residuals and signals writes is copied; what it only reads
+// (trees, names, lists of terms) is shared.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/formulate.h"

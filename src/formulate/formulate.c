@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-// ---- the stage -------------------------------------------------------------------------------------------
+// ---- the stage ----------------------------------------------------------------------------------
 
 static const char *kind_name(const struct ct_build *b, size_t i)
 {
@@ -85,7 +85,8 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
         b->eqs->augmented = ct_beam_augmented_derive(b);
 }
 
-// The choice must not depend on the trees: where these do not show what drives a beam, trees through joints are asked.
+// The choice must not depend on the trees: where these do not show what drives a beam, trees
+// through joints are asked.
 static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
                                  const struct ct_model *m, const struct ct_formulate_options *o,
                                  struct ct_build *b)
@@ -107,8 +108,8 @@ static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
     return linear;
 }
 
-// Beams that leave their formulation to the program: what is known of their motion decides, and those that stay linear
-// make a new build on the same trees.
+// Beams that leave their formulation to the program: what is known of their motion decides, and
+// those that stay linear make a new build on the same trees.
 static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                          const struct ct_formulate_options *o, struct ct_build **b)
 {
@@ -155,38 +156,50 @@ static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
     }
 }
 
+// What follows from the equations: their residual form, energies, and the columns of results.
+static bool derive_results(struct ct_build *b, const struct ct_formulate_options *o)
+{
+    if (o->with_residual)
+        ct_residual_derive(b, CT_SLOPES_AUTO);
+    if (o->with_energy)
+        ct_energies_derive(b);
+    if (o->measure_all)
+        measure_all(b, o->measured_for);
+    else if (o->with_outputs && (!ct_outputs_derive(b) || !ct_outputs_add(b, o->more)))
+        return false;
+    if (o->with_energy)
+        ct_validity_monitor(b);
+    return true;
+}
+
+static void hand_over(struct ct_build *b, const char *how, struct ct_equations *out)
+{
+    describe_graph(b);
+    b->eqs->coordinate = b->coordinate;
+    b->eqs->ncoordinate = b->ncoordinate;
+    b->eqs->build = b;
+    b->eqs->how = how;
+    *out = *b->eqs;
+}
+
 bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report)
 {
     const size_t before = ctx->nerror;
-    struct ct_build *b = ct_build_create(ctx, a, m, options, NULL);
     *report = (struct ct_tree_report){0};
-    if (ctx->nerror > before || !ct_build_choose_trees(&b, options, report)
-        || !(b->is_derived || ct_build_derive(b, !options->without_dynamics))
-        || !choose_beams(ctx, a, m, options, &b))
+    struct ct_build *b = ct_build_create(ctx, a, m, options, NULL); // linear graph, its plane
+    if (ctx->nerror > before
+        || !ct_build_choose_trees(&b, options, report) // translational and rotational tree
+        || !(b->is_derived // kinematics, constraint rows and loads; of a trial already
+             || ct_build_derive(b, !options->without_dynamics))
+        || !choose_beams(ctx, a, m, options, &b)) // linear, or with foreshortening
         return false;
     if (!options->without_dynamics && !b->is_derived)
-        derive_dynamics(b, options);
-    if (ctx->nerror > before)
+        derive_dynamics(b, options); // mass matrix and forces, or accelerations in closed form
+    if (ctx->nerror > before || !derive_results(b, options))
         return false;
-    if (options->with_residual)
-        ct_residual_derive(b, CT_SLOPES_AUTO);
-    if (options->with_energy)
-        ct_energies_derive(b);
-    if (options->measure_all)
-        measure_all(b, options->measured_for);
-    else if (options->with_outputs
-             && (!ct_outputs_derive(b) || !ct_outputs_add(b, options->more)))
-        return false;
-    if (options->with_energy)
-        ct_validity_monitor(b);
-    describe_graph(b);
-    b->eqs->coordinate = b->coordinate;
-    b->eqs->ncoordinate = b->ncoordinate;
-    b->eqs->build = b;
-    b->eqs->how = report->how;
-    *out = *b->eqs;
+    hand_over(b, report->how, out);
     if (!options->like) {
         warn_of_cuts(ctx, b);
         ct_warn_of_excluded_loads(ctx, b);

@@ -5,7 +5,7 @@
 #include "formulate/equations.h"
 
 enum ct_tree_choice {
-    CT_TREE_AUTO, // least weight, then improved by the exact operation count (formulation 2.3)
+    CT_TREE_AUTO,     // least weight, then improved by the exact operation count (section 2.3)
     CT_TREE_JOINTS,   // through joints only
     CT_TREE_ABSOLUTE, // every body's own coordinates
     CT_TREE_GIVEN     // branches by name

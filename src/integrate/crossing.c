@@ -1,15 +1,16 @@
-// See crossing.h. The stages are 2 m: the zeros of a Chebyshev polynomial with the ends of the step, put onto the
-// two intervals that the gap leaves,
+// See crossing.h. The stages are 2 m: the zeros of a Chebyshev polynomial with the ends of the
+// step, put onto the two intervals that the gap leaves,
 //
 //     c = (1 -+ sqrt(s)) / 2,   s_j = g^2 + (1 - g^2) (1 + cos(2 pi j / (2 m - 1))) / 2,   j = 0 ... m - 1
 //
 // with g the gap as part of the step. In s they are nodes of least growth of the node polynomial,
-// and s = x^2 makes one interval of the two. Stages are found by sweeps, y_j = y + h sum_i A_ji f(y_i) with the newest
-// values: f is not stiff. The first sweep extrapolates, from stage to stage. The error is taken to be
-// the change when two of the inner stages are left out, which is more than it is.
+// and s = x^2 makes one interval of the two. Stages are found by sweeps, y_j = y + h sum_i A_ji
+// f(y_i) with the newest values: f is not stiff. The first sweep extrapolates, from stage to stage.
+// The error is taken to be the change when two of the inner stages are left out, which is more than
+// it is.
 //
-// Source: collocation as in Hairer, Norsett and Wanner (1993), II.7, key hairer1993; the nodes are those of least
-// Chebyshev norm on two symmetric intervals.
+// Source: collocation as in Hairer, Norsett and Wanner (1993), II.7, key hairer1993; the nodes are
+// those of least Chebyshev norm on two symmetric intervals.
 #include "integrate/crossing.h"
 
 #include "numeric/dense.h"
@@ -29,15 +30,17 @@ enum {
 // Part of the step in whose middle nothing is evaluated.
 static const double gap = 0.3;
 
-// Sweeps end when stages move less than this part of the tolerance, or less than this part of themselves: then
-// the checks of the step are not spoilt by what sweeps have left at coarse tolerances.
+// Sweeps end when stages move less than this part of the tolerance, or less than this part of
+// themselves: then the checks of the step are not spoilt by what sweeps have left at coarse
+// tolerances.
 static const double settled = 0.02, settled_fine = 1e-10;
 const double ct_crossing_mismatch_limit = 1e-9;
 const double ct_crossing_roundoff = 5e-13;
 // Further off than that and so many times the tolerance there is nothing to be had from nearer by.
 static const double held_tolerance = 100;
-// Round-off stops sweeps: they end, too, when a sweep does not gain this factor any more and moves stages by less than
-// this many times the tolerance. Most of what moves then are coordinates that the constraints determine.
+// Round-off stops sweeps: they end, too, when a sweep does not gain this factor any more and moves
+// stages by less than this many times the tolerance. Most of what moves then are coordinates that
+// the constraints determine.
 static const double slow = 0.5, roundoff = 10;
 
 struct work {
@@ -57,8 +60,8 @@ struct work {
 
 // --- weights ---------------------------------------------------------------------------------
 
-// p (STAGES, out): for each j the product of (x - c_i) over the stages of `set` but j, from those before j and those
-// behind it.
+// p (STAGES, out): for each j the product of (x - c_i) over the stages of `set` but j, from those
+// before j and those behind it.
 static void products(double *p, const double *c, const bool *set, double x)
 {
     double before = 1, behind = 1;
@@ -82,8 +85,8 @@ static void find_norms(double *norm, const double *c, const bool *set)
     }
 }
 
-// w (STAGES, out): integral of the Lagrange polynomials on the stages of `set`, which has these norms, from 0 to x;
-// others get 0.
+// w (STAGES, out): integral of the Lagrange polynomials on the stages of `set`, which has these
+// norms, from 0 to x; others get 0.
 static void integrate_lagrange(double *w, const double *c, const bool *set, const double *norm,
                                double x)
 {
@@ -176,8 +179,8 @@ struct task {
     struct ct_integrate_stats *stats;
 };
 
-// f at stage j, put onto the constraints: how far it lies off them would be divided by a small pivot. The stage
-// itself stays the polynomial's.
+// f at stage j, put onto the constraints: how far it lies off them would be divided by a small
+// pivot. The stage itself stays the polynomial's.
 static enum ct_eval evaluate(const struct task *s, int j)
 {
     struct work *w = s->w;
@@ -272,16 +275,18 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
-// Where rows depend what they miss there is no more than round-off: what polynomials err by counts by its square. A pivot as small as the
-// root of the miss divides round-off by the miss: where that leaves the digits that are wanted, steps can follow the motion.
+// Where rows depend what they miss there is no more than round-off: what polynomials err by counts
+// by its square. A pivot as small as the root of the miss divides round-off by the miss: where that
+// leaves the digits that are wanted, steps can follow the motion.
 static double allowed_mismatch(const struct ct_problem *p)
 {
     const double met = 1e-12, eps = 0.05 * DBL_EPSILON;
     return fmin(ct_crossing_mismatch_limit, fmax(met, eps / p->accuracy));
 }
 
-// What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle may be all there is of it, which less
-// of a step leaves less of. Else the mechanism only passes by.
+// What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle
+// may be all there is of it, which less of a step leaves less of. Else the mechanism only passes
+// by.
 static double judge(const struct task *s, double mismatch, double error)
 {
     const double in_gap = 30; // times as much is open there, of rows that bend by 1/m or 1/rad
@@ -309,8 +314,8 @@ static void begin_at(struct work *w, double begin)
         w->rest[j] = w->e[j] - (w->rest[j] - before[j]);
 }
 
-// All stages from the state within the whole. Sweeps begin with stages along the tangent dy, which the first of them puts onto the
-// constraints.
+// All stages from the state within the whole. Sweeps begin with stages along the tangent dy, which
+// the first of them puts onto the constraints.
 static enum ct_eval sweep_from(const struct task *s, double begin, const double *dy)
 {
     struct work *w = s->w;

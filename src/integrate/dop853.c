@@ -1,4 +1,4 @@
-// Dormand-Prince 8(5,3): twelve stages a step and three more for an interpolant of order 7.
+// Dormand-Prince 8(5,3): twelve stages a step and three more for dense output of order 7.
 //
 // The error of a step is put together from two embedded results, of order 5 and 3: with E5 and E3
 // their distances to the step, |E5|^2 / sqrt(|E5|^2 + 0.01 |E3|^2) behaves as h^8. With

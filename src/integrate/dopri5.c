@@ -1,6 +1,6 @@
 // Dormand-Prince 5(4): six stages a step, the seventh is the first of the next.
 //
-// Two interpolants correct the cubic Hermite polynomial of the step, with t = theta:
+// Dense output: two interpolants correct the cubic Hermite polynomial of the step, with t = theta:
 //
 //     quartic   t^2 (1 - t)^2 h sum d_i k_i        error of order h^5, costs nothing; for roots
 //     quintic   t^2 (1 - t)^2 h (a + b t)          error of order h^6 like the step; for samples

@@ -1,8 +1,9 @@
 // See driver.h: round-off in f.
 //
-// Stiff forces answer a round-off of places by accelerations: eps omega^2 |q|, where a step errs by h times as much, however short
-// it is. Control that takes this for an error of its order shortens steps a hundredfold in vain. Round-off shows where a step that
-// was refused and then shortened errs by more than any truncation would: then f is asked what it makes of a change of places far
+// Stiff forces answer a round-off of places by accelerations: eps omega^2 |q|, where a step errs by
+// h times as much, however short it is. Control that takes this for an error of its order shortens
+// steps a hundredfold in vain. Round-off shows where a step that was refused and then shortened
+// errs by more than any truncation would: then f is asked what it makes of a change of places far
 // above round-off, and that is no error as long as steps are as short.
 #include "integrate/driver.h"
 
@@ -10,20 +11,23 @@
 #include <math.h>
 #include <string.h>
 
-// Places are changed by this part of the largest of them, and what f changes by is taken for that of a round-off.
+// Places are changed by this part of the largest of them, and what f changes by is taken for that
+// of a round-off.
 static const double change = 0x1p-40;
-// Errors of truncation fall faster than with this power of the step, those of round-off with the first one: as long as a step is
-// shorter than 1 over the fastest frequency. Longer ones are held by stability and their errors have no order.
+// Errors of truncation fall faster than with this power of the step, those of round-off with the
+// first one: as long as a step is shorter than 1 over the fastest frequency. Longer ones are held
+// by stability and their errors have no order.
 static const double between = 3;
 // Places are changed by different parts, so that nothing cancels.
 static const double golden = 0.618033988749895;
-// After so many steps it is measured anew, or for the first time, as steps that round-off keeps short may not be refused: as many
-// thousandths of an evaluation a step as there are speeds.
+// After so many steps it is measured anew, or for the first time, as steps that round-off keeps
+// short may not be refused: as many thousandths of an evaluation a step as there are speeds.
 enum { STEPS_BETWEEN = 1000 };
 
-// What is damped forgets errors of steps, whatever makes them, but for the last ones: there they count. A vibration of omega answers a
-// change of speeds by omega times one of places with 2 zeta of the answer to that. Each speed is changed alone: what turns answers with the
-// others, undamped. du: the change.
+// What is damped forgets errors of steps, whatever makes them, but for the last ones: there they
+// count. A vibration of omega answers a change of speeds by omega times one of places with 2 zeta
+// of the answer to that. Each speed is changed alone: what turns answers with the others, undamped.
+// du: the change.
 static void leave_out_damped(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
@@ -38,7 +42,8 @@ static void leave_out_damped(struct ct_driver *r, double du)
     }
 }
 
-// Places by `part` of the largest, each by a share of its own in [1, 2): by another one with each k.
+// Places by `part` of the largest, each by a share of its own in [1, 2): by another one with each
+// k.
 static enum ct_eval move_places(struct ct_driver *r, double part, int k, double *dy)
 {
     const struct ct_problem *p = r->p;
@@ -47,8 +52,9 @@ static enum ct_eval move_places(struct ct_driver *r, double part, int k, double 
     return ct_stepper_rhs(p, r->t, r->point, dy, r->stats);
 }
 
-// What the arithmetic of f leaves by itself, as where a mass matrix is next to singular: with places changed to both sides what is
-// linear in them cancels. The largest of a few looks, as one may be zero by chance.
+// What the arithmetic of f leaves by itself, as where a mass matrix is next to singular: with
+// places changed to both sides what is linear in them cancels. The largest of a few looks, as one
+// may be zero by chance.
 static void find_arithmetic_roundoff(struct ct_driver *r, double part)
 {
     enum { LOOKS = 3 };

@@ -7,16 +7,17 @@
 // What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
 static const double safety = 0.9;
 
-// A step across a singular configuration that fails is tried again from nearer, after so many times not any more: then
-// the position is not singular but only nearly so.
+// A step across a singular configuration that fails is tried again from nearer, after so many times
+// not any more: then the position is not singular but only nearly so.
 static const double nearer = 0.5;
 static const int most_crossings = 6;
-// This much further away than where it should begin, a crossing may begin at once; after one that failed only where
-// a step to there has ended.
+// This much further away than where it should begin, a crossing may begin at once; after one that
+// failed only where a step to there has ended.
 static const double early = 1.3, on_time = 1.02;
 // Times to a position that differ by such a factor are those of two.
 static const double other = 2;
-// The end of a run is reached by a crossing, too, when it is this part of its reach before the position.
+// The end of a run is reached by a crossing, too, when it is this part of its reach before the
+// position.
 static const double beside = 0.5;
 double ct_driver_step_limit(const struct ct_driver *r)
 {
@@ -52,11 +53,12 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
     return stop;
 }
 
-// The fewest even steps up to the stop that are not longer than the one asked for: those that were left at the last step, less
-// one, where that ended as planned.
+// The fewest even steps up to the stop that are not longer than the one asked for: those that were
+// left at the last step, less one, where that ended as planned.
 static double fit_fixed(struct ct_driver *r, double stop)
 {
-    // a stop that is a whole number of steps away but for round-off, that of t in each step before added up, must not cost one more
+    // a stop that is a whole number of steps away but for round-off, that of t in each step before
+    // added up, must not cost one more
     const double roundoff = 1e-6, rest = stop - r->t;
     struct ct_fixed_steps *e = &r->even;
     if (e->stop == stop && e->next == r->t && e->left > 1) {
@@ -70,8 +72,8 @@ static double fit_fixed(struct ct_driver *r, double stop)
     return h;
 }
 
-// The step across a singular configuration, centred on it. Beyond the end of the run f is the same function, beyond a
-// time event it is not.
+// The step across a singular configuration, centred on it. Beyond the end of the run f is the same
+// function, beyond a time event it is not.
 static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
                           struct ct_planned_step *s)
 {
@@ -102,7 +104,8 @@ static bool has_crossing(const struct ct_driver *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
-// s (out): member by member, because steps are short against the time that a copy of it waits for its parts.
+// s (out): member by member, because steps are short against the time that a copy of it waits for
+// its parts.
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s)
 {
@@ -118,7 +121,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
         plan_remainder(r, stop, is_time, s);
         return;
     }
-    // the run may end before the position, but beside it; one that begins beside it can only come from a crossing
+    // the run may end before the position, but beside it; one that begins beside it can only come
+    // from a crossing
     if (has_crossing(r) && reach > 0
         && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
@@ -156,7 +160,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     double reach;
     const double before = r->singular_in;
     r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
-    // none, or another one; or what has failed was begun for one that had been taken to be much farther off
+    // none, or another one; or what has failed was begun for one that had been taken to be much
+    // farther off
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
@@ -168,7 +173,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
-// The rest of a crossing that began nearer to the position than it should have ends where that would have begun.
+// The rest of a crossing that began nearer to the position than it should have ends where that
+// would have begun.
 static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double whole

@@ -1,5 +1,5 @@
-// See event_location.h. Location is a bracketed secant iteration for all roots at once that always keeps
-// the leftmost crossing, after Hiebert and Shampine (1980), key hiebert1980.
+// See event_location.h. Location is a bracketed secant iteration for all roots at once that always
+// keeps the leftmost crossing, after Hiebert and Shampine (1980), key hiebert1980.
 #include "integrate/event_location.h"
 
 #include <float.h>
@@ -10,16 +10,17 @@
 // so these three add half of the cost of a step of six stages.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
-// Between probes a root may cross and come back: where the parabola through three of them turns, unless it turns back before
-// zero by more than this part of its second difference. So much it may err by where the motion is smooth over a step.
+// Between probes a root may cross and come back: where the parabola through three of them turns,
+// unless it turns back before zero by more than this part of its second difference. So much it may
+// err by where the motion is smooth over a step.
 const double ct_event_location_margin = 0.1;
-// It is looked for with ever closer places, each time so much closer, and is found where it is deeper beyond zero than
-// this part of what g is in the step: some thousand round-off errors.
+// It is looked for with ever closer places, each time so much closer, and is found where it is
+// deeper beyond zero than this part of what g is in the step: some thousand round-off errors.
 static const double closer = 0.125, least_depth = 1e-12;
 enum { CLOSEST = 5 };
 
-// Time is resolved to this part of max(|t|, h). Some thousand round-off errors, so that secants still
-// see a change of g, and far below what a tolerance of 1e-12 does to a state.
+// Time is resolved to this part of max(|t|, h). Some thousand round-off errors, so that secants
+// still see a change of g, and far below what a tolerance of 1e-12 does to a state.
 static const double resolution = 1e-12;
 
 // How much later, in parts of a usual step, a root is looked at that has just fired: g changes
@@ -239,7 +240,7 @@ static enum ct_eval evaluate_end(struct ct_event_location *w, const struct ct_st
     return e;
 }
 
-// ---- roots that come back between probes -------------------------------------------------------------
+// ---- roots that come back between probes --------------------------------------------------------
 
 bool ct_event_location_may_dip(double a, double b, double c)
 {
@@ -248,8 +249,9 @@ bool ct_event_location_may_dip(double a, double b, double c)
         && 2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend;
 }
 
-// A place within the step where root i, which has not crossed at places `spacing` apart about theta, is beyond zero by more than
-// `depth`; g is left in w->high. *theta (in, out): 2 if there is none.
+// A place within the step where root i, which has not crossed at places `spacing` apart about
+// theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if there is
+// none.
 static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                              int i, const double *f, double depth, double spacing,
                              double *theta)
@@ -276,7 +278,8 @@ static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_steppe
     return CT_EVAL_OK;
 }
 
-// The first place before probe `end` where a root is beyond zero that is not so at the probes; else 2.
+// The first place before probe `end` where a root is beyond zero that is not so at the probes; else
+// 2.
 static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_stepper_span *s,
                                 int end, double before, double *theta)
 {
@@ -301,7 +304,8 @@ static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_ste
     return CT_EVAL_OK;
 }
 
-// The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in w->high.
+// The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in
+// w->high.
 static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_span *s,
                            double low, double high, bool is_dip, double *theta)
 {
@@ -310,7 +314,8 @@ static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_
     return e == CT_EVAL_OK ? mark(w, s, *theta, is_dip ? high - *theta : INFINITY) : e;
 }
 
-// If a root comes back from beyond zero before `before`, where the probe `end` does not see it: *theta, else 2.
+// If a root comes back from beyond zero before `before`, where the probe `end` does not see it:
+// *theta, else 2.
 static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                                int end, double before, double *theta)
 {

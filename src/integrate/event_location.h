@@ -39,7 +39,8 @@ bool ct_event_location_accumulates(struct ct_event_location *w, double t, double
 
 /// Between probes roots are taken for parabolas that err by this part of their second difference.
 extern const double ct_event_location_margin;
-/// May a smooth function that is a, b, c > 0 at three equidistant places be less than zero between them?
+/// May a smooth function that is a, b, c > 0 at three equidistant places be less than zero between
+/// them?
 bool ct_event_location_may_dip(double a, double b, double c);
 
 void ct_event_location_init(struct ct_event_location *w, const struct ct_problem *p,

@@ -18,8 +18,8 @@ struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
     return (struct ct_periodic_tolerance){.t0 = t0, .t1 = t1, .small = small, .share = 1};
 }
 
-// A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four times the largest
-// speed. What has not turned yet has not repeated anything.
+// A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four
+// times the largest speed. What has not turned yet has not repeated anything.
 static double turns_so_far(const struct ct_periodic_tolerance *r)
 {
     const double far_q = fmax(sqrt(r->range_q), r->small),

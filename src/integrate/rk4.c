@@ -35,8 +35,8 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     return w;
 }
 
-// point (n, out) = y + c h k. Stages come from the one before alone, which has just been stored number by number: where there are
-// few, a wider read would wait for that.
+// point (n, out) = y + c h k. Stages come from the one before alone, which has just been stored
+// number by number: where there are few, a wider read would wait for that.
 static inline void go(double *restrict point, const double *y, double h, double c,
                       const double *k, int n)
 {

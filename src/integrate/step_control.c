@@ -7,8 +7,9 @@
 #include <stdint.h>
 #include <string.h>
 
-// Steps aim at this part of what the error would allow. Over the reference problems explicit methods reach an error with
-// 5 % fewer evaluations at 0.8 than at 0.9: fewer steps are made in vain.
+// Steps aim at this part of what the error would allow. Over the reference problems explicit
+// methods reach an error with 5 % fewer evaluations at 0.8 than at 0.9: fewer steps are made in
+// vain.
 static const double safety = 0.8, implicit_safety = 0.9;
 static const double most_shrink = 0.2; // an error estimate is not trusted further than this
 static const double most_growth
@@ -17,8 +18,8 @@ static const double remembered_error
     = 1e-4; // least error the controller remembers: smaller ones
             // are luck and would make it shrink the next step
 
-// Steps that are a ten-thousandth longer or shorter are as good, so powers need four digits: the exponent of a number and a
-// polynomial of its mantissa, a tenth of the time of log and exp.
+// Steps that are a ten-thousandth longer or shorter are as good, so powers need four digits: the
+// exponent of a number and a polynomial of its mantissa, a tenth of the time of log and exp.
 enum { EXPONENT_AT = 52, BIAS = 1023 };
 
 // log2(x), x >= 0 finite, to 2e-4, continuous; of zero -1023.
@@ -50,7 +51,8 @@ struct ct_step_control ct_step_control_start(void)
     return (struct ct_step_control){.log_before = least, .log_least = least};
 }
 
-// Runs whose steps have stopped to grow are not begun in earnest if they would take so many times the steps allowed.
+// Runs whose steps have stopped to grow are not begun in earnest if they would take so many times
+// the steps allowed.
 static const double endless = 3, growing = 1.1;
 enum { WINDOWS = 1000 };
 
@@ -97,11 +99,13 @@ void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m
         learn(c, m);
     c->is_starting = c->is_starting && error < remembered_error;
     const double log_error = near_log2(error);
-    // safety error_before^beta / error^alpha: what the error says about the next step, in parts of this one, without limits
+    // safety error_before^beta / error^alpha: what the error says about the next step, in parts of
+    // this one, without limits
     const double power = c->log_safety + c->beta * c->log_before - c->alpha * log_error;
     c->log_before = ct_larger(log_error, c->log_least);
     if (power > c->log_steady[0] && power < c->log_steady[1]) {
-        // nothing is written where nothing changes: the next step need not wait for the error of this one
+        // nothing is written where nothing changes: the next step need not wait for the error of
+        // this one
         if (c->was_refused || h > c->h)
             c->h = h;
         c->was_refused = false;

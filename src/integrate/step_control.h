@@ -1,7 +1,7 @@
 // Step size control: how long the next step is to be, from the error of the last one.
 //
-// The PI controller of Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett and Wanner (1993),
-// II.4, key hairer1993; the first step is the one of the same section.
+// The PI controller of Gustafsson (1991), key gustafsson1991, with the constants of Hairer, Norsett
+// and Wanner (1993), II.4, key hairer1993; the first step is the one of the same section.
 #ifndef CT_INTEGRATE_STEP_CONTROL_H
 #define CT_INTEGRATE_STEP_CONTROL_H
 
@@ -24,7 +24,8 @@ struct ct_step_control {
 
 /// Before the first step.
 struct ct_step_control ct_step_control_start(void);
-/// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after it is a crumb.
+/// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after
+/// it is a crumb.
 static inline double ct_step_control_fit(double rest, double wanted)
 {
     const double stretch = 1.1; // a step may be this much longer to end on a stop: no crumbs
@@ -32,11 +33,12 @@ static inline double ct_step_control_fit(double rest, double wanted)
         return rest;
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
-/// Is h, which does not end on a stop, too small to move t by more than round-off? run: the whole time.
+/// Is h, which does not end on a stop, too small to move t by more than round-off? run: the whole
+/// time.
 static inline bool ct_step_control_is_below_roundoff(double h, double t, double run)
 {
-    // 16 * eps leaves room for the stage times; near t = 0 the scale is a millionth of the run, below which no motion of
-    // interest begins
+    // 16 * eps leaves room for the stage times; near t = 0 the scale is a millionth of the run,
+    // below which no motion of interest begins
     const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6, scale = least_scale * run;
     return h <= least_step * (fabs(t) > scale ? fabs(t) : scale);
 }
@@ -53,19 +55,19 @@ struct ct_pace {
     long next;            // steps at its end: before, there is nothing to ask
     double step, to_come; // then: mean step, steps up to the end; 0 while steps still grow
 };
-/// After so many of `most` steps t is reached, and `rest` is left: would the end take several times as many as are allowed?
-/// False while steps still grow.
+/// After so many of `most` steps t is reached, and `rest` is left: would the end take several times
+/// as many as are allowed? False while steps still grow.
 bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,
                                    double rest);
 
 /// The Euler step that looks ahead, from the norms of y and y' against the tolerance.
 double ct_step_control_euler_step(double d0, double d1, double limit);
-/// A first step whose error should be near a hundredth of the tolerance; d1, d2: norms of y' and of its change
-/// over the Euler step h, divided by h.
+/// A first step whose error should be near a hundredth of the tolerance; d1, d2: norms of y' and of
+/// its change over the Euler step h, divided by h.
 double ct_step_control_first(const struct ct_method *m, double h, double d1, double d2,
                              double limit);
-/// The same of a motion that is known to go on at `rate` [1/s]: the first term of its series that the error sees, of order n,
-/// (rate h)^n/n!, is a hundredth of what is asked.
+/// The same of a motion that is known to go on at `rate` [1/s]: the first term of its series that
+/// the error sees, of order n, (rate h)^n/n!, is a hundredth of what is asked.
 double ct_step_control_first_at_rate(const struct ct_method *m, double rate, double rtol);
 
 #endif

@@ -13,10 +13,11 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
     return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
 }
 
-// Four entries at a time, up to four times four side by side: their sums stay in registers, whatever the number of stages. The
-// last four may overlap those before, which are then found twice. Fewer than four are summed side by side, each number of them
-// by code of its own. The newest stage has just been stored number by number and is read so (volatile): a wider read would wait
-// until these stores are done.
+// Four entries at a time, up to four times four side by side: their sums stay in registers,
+// whatever the number of stages. The last four may overlap those before, which are then found
+// twice. Fewer than four are summed side by side, each number of them by code of its own. The
+// newest stage has just been stored number by number and is read so (volatile): a wider read would
+// wait until these stores are done.
 enum { LANES = 4 };
 
 static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
@@ -65,7 +66,8 @@ __attribute__((always_inline)) static inline void add_newest(four *sum, double a
     *sum += a * (four){k[0], k[1], k[2], k[3]};
 }
 
-// Entries from i on, in so many fours; inlined into callers, each with the registers that it may use.
+// Entries from i on, in so many fours; inlined into callers, each with the registers that it may
+// use.
 __attribute__((always_inline)) static inline void some_fours(double *out, const double *y,
                                                              double h, const double *a,
                                                              const double *k, int s, int n,

@@ -14,15 +14,16 @@ static inline double ct_larger(double a, double b)
     return a > b ? a : b;
 }
 
-/// out (n) = v. States have few numbers: through volatile, else a compiler makes it a call that takes longer than the loop.
+/// out (n) = v. States have few numbers: through volatile, else a compiler makes it a call that
+/// takes longer than the loop.
 static inline void ct_stepper_copy(double *out, const volatile double *v, int n)
 {
     for (int i = 0; i < n; i++)
         out[i] = v[i];
 }
 
-/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they have just been stored. Where
-/// their sum is finite they all are, which most often is enough.
+/// True if all n entries are finite: zero times what is not is no number. Read one by one, as they
+/// have just been stored. Where their sum is finite they all are, which most often is enough.
 static inline bool ct_stepper_finite(const volatile double *x, int n)
 {
     double sum = 0, zero = 0;
@@ -44,8 +45,9 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
 void ct_stepper_combine(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, int n);
 
-/// Compensated summation: what round-off has left of the steps so far, now (n) and after the step just taken, next (n).
-/// y + now is nearer to the sum of all steps than y, whose round-off errors would add up in long runs. Source: higham2002.
+/// Compensated summation: what round-off has left of the steps so far, now (n) and after the step
+/// just taken, next (n). y + now is nearer to the sum of all steps than y, whose round-off errors
+/// would add up in long runs. Source: higham2002.
 struct ct_compensation {
     double *now, *next;
     int n;
@@ -60,7 +62,8 @@ void ct_compensation_accept(void *work);
 void ct_stepper_advance(double *restrict out, const double *y, double h, const double *a,
                         const double *k, int s, struct ct_compensation *c);
 
-/// ct_method.swiftness, from what lies between two points at the end of a step, y1 and point, and between f there.
+/// ct_method.swiftness, from what lies between two points at the end of a step, y1 and point, and
+/// between f there.
 double ct_stepper_stiffness_estimate(const struct ct_problem *p, double h, const double *y1,
                                      const double *dy1, const double *point,
                                      const double *dpoint);
@@ -76,8 +79,8 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
 /// e (ny) less what round-off of f, where that is felt, may have in it in a step h.
 void ct_stepper_subtract_roundoff(const struct ct_problem *p, double h, double *e);
 
-/// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for outputs, if that is
-/// more.  (8.6)
+/// `states`, the norm of the error e (ny) of a step that ends at y1, time t1; or what e means for
+/// outputs, if that is more.  (8.6)
 static inline double ct_stepper_larger_error(const struct ct_problem *p,
                                              const struct ct_tolerance *tolerance, double t1,
                                              const double *y1, const double *e, double states)
@@ -95,8 +98,8 @@ double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *t
 /// One error of those of order 5 and 3 of a method of order 8: the source of dop853.c.
 double ct_stepper_join(double e5, double e3);
 
-/// Largest |e_i| / (rtol max(|y_i|, |y1_i|) + atol) over the watched states from `first` on: quadratures, which implicit
-/// methods measure apart. e (ny).
+/// Largest |e_i| / (rtol max(|y_i|, |y1_i|) + atol) over the watched states from `first` on:
+/// quadratures, which implicit methods measure apart. e (ny).
 double ct_stepper_largest(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                           int first, const double *y, const double *y1, const double *e);
 

@@ -1,5 +1,6 @@
-// See stiffness.h. The power method for the fastest motion: Golub and Van Loan (2013), key golub2013, 7.3; that the
-// step times it shows stiffness: Hairer and Wanner (1996), key hairer1996, IV.2.
+// See stiffness.h. The power method for the fastest motion: Golub and Van Loan (2013), key
+// golub2013, 7.3; that the step times it shows stiffness: Hairer and Wanner (1996), key hairer1996,
+// IV.2.
 #include "integrate/stiffness.h"
 
 #include <float.h>
@@ -10,37 +11,43 @@ static const long test_every = 100; // steps
 static const int first_rounds
     = 6; // of the power method, before v has turned to the fastest motion
 static const int suspicious_tests = 3;
-// Where the last step was as long as none follows the fastest motion with, its rate is looked at again so many steps later, until it is
-// known to last: what a hundred more steps would make larger, unseen, is by 13 in each where they are seven times 1/fast.
+// Where the last step was as long as none follows the fastest motion with, its rate is looked at
+// again so many steps later, until it is known to last: what a hundred more steps would make
+// larger, unseen, is by 13 in each where they are seven times 1/fast.
 static const long look_after = 5;
-// Explicit methods become unstable, or lose their accuracy to what is fast, where step * fast is 1 to 6; with
-// half of that the step may be held up.
+// Explicit methods become unstable, or lose their accuracy to what is fast, where step * fast is 1
+// to 6; with half of that the step may be held up.
 static const double suspicious_step = 0.5;
-// With as much no method follows the fastest motion: what changes from step to step at its rate then is no motion but
-// errors at the limit of stability, and `slow` is not known.
+// With as much no method follows the fastest motion: what changes from step to step at its rate
+// then is no motion but errors at the limit of stability, and `slow` is not known.
 static const double unfollowed_step = 3;
 // Motions that go on at the rate of the fastest have to be followed, whatever the method.
 static const double least_separation = 10;
-// Nor if they are vibrations that no output asks the rates of, (8.10): steps of explicit methods, of some 1/fast, are worth a
-// trial where so many of them are made while places change by themselves.
+// Nor if they are vibrations that no output asks the rates of, (8.10): steps of explicit methods,
+// of some 1/fast, are worth a trial where so many of them are made while places change by
+// themselves.
 static const double far_off = 1000;
-// Two applications of J to one motion stay in a plane, to this part of their length: else there are several, whose decay is not known.
+// Two applications of J to one motion stay in a plane, to this part of their length: else there are
+// several, whose decay is not known.
 static const double one_motion = 0.1;
-// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is round-off already. Where the round-off of places
-// alone changes forces by more than the tolerance, it is that which holds them up, far from the limit of stability.
+// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is round-off already.
+// Where the round-off of places alone changes forces by more than the tolerance, it is that which
+// holds them up, far from the limit of stability.
 static const double idle_step = 1e-3;
 // Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
 static const double steps_worth_it = 1000;
-// Until the next trial the number of steps doubles, and their work is this many times that of the trial.
+// Until the next trial the number of steps doubles, and their work is this many times that of the
+// trial.
 static const long put_off_by = 2;
 static const double put_off_work = 10;
 
 // The first steps of a trial bring the step to its size, the others count.
 static const int warming_steps = 6, counted_steps = 12;
-// Steps as long as the tolerance allows at first, of some 3 radians, leave a hundredth of a vibration after so many.
+// Steps as long as the tolerance allows at first, of some 3 radians, leave a hundredth of a
+// vibration after so many.
 static const int damping_steps = 40;
 
-// ---- suspicion ---------------------------------------------------------------------------------------
+// ---- suspicion ----------------------------------------------------------------------------------
 
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
                                          const struct ct_integrate_stats *stats, double rtol,
@@ -100,9 +107,10 @@ static double dot(const struct ct_stiffness *s, const double *a, const double *b
     return s->fast * s->fast * places + speeds;
 }
 
-// The rate at which the fastest motion dies: J^2 x = -2 decay J x - rate^2 x for a vibration, J x = -decay x for one that only
-// dies, by least squares for x, s->v before both applications, J x = gain s->once, s->v after them. Negative where it grows, zero where x is
-// not yet one motion.  (8.32)
+// The rate at which the fastest motion dies: J^2 x = -2 decay J x - rate^2 x for a vibration, J x =
+// -decay x for one that only dies, by least squares for x, s->v before both applications, J x =
+// gain s->once, s->v after them. Negative where it grows, zero where x is not yet one motion.
+// (8.32)
 static double find_decay(const struct ct_stiffness *s, const double *x, double gain)
 {
     const double *Jx = s->once, *JJx = s->v, size = s->fast * s->fast;
@@ -118,7 +126,8 @@ static double find_decay(const struct ct_stiffness *s, const double *x, double g
     return half + sqrt(fmax(0, half * half + a * size));
 }
 
-// Two applications: one turns a vibration's places into speeds and back, its rate is the root of both gains.
+// Two applications: one turns a vibration's places into speeds and back, its rate is the root of
+// both gains.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
     if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
@@ -170,7 +179,8 @@ static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
     return DBL_EPSILON * s->fast * s->fast * place > s->rtol * length(s->f, s->first, s->last);
 }
 
-// The rate at which places change by themselves, of those that have gone further than a unit by a unit.
+// The rate at which places change by themselves, of those that have gone further than a unit by a
+// unit.
 static double find_pace(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, speed = 0;
@@ -192,8 +202,8 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
     return sqrt(change / fmin(place, 1));
 }
 
-// Has the rate of the fastest motion been about the same for some tests? Beside singular configurations it is large for a moment, and
-// nothing turns.
+// Has the rate of the fastest motion been about the same for some tests? Beside singular
+// configurations it is large for a moment, and nothing turns.
 static bool is_persistent(const struct ct_stiffness *s)
 {
     return s->alike >= suspicious_tests;
@@ -206,9 +216,9 @@ static void compare_rates(struct ct_stiffness *s, double before)
     s->alike = is_same ? s->alike + 1 : 1;
 }
 
-// What is left of the fastest motion since it was last excited: decay over the time since then, of which each test measures one
-// value for the steps before it. Without friction, too, it dies and grows at times as masses and stiffnesses change along the motion,
-// at the pace of that.  (8.33)
+// What is left of the fastest motion since it was last excited: decay over the time since then, of
+// which each test measures one value for the steps before it. Without friction, too, it dies and
+// grows at times as masses and stiffnesses change along the motion, at the pace of that.  (8.33)
 static void note_decay(struct ct_stiffness *s, bool is_known, double pace, double start,
                        double t)
 {
@@ -305,8 +315,8 @@ static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x
     return true;
 }
 
-// y'' (ny, out) = J f + df/dt. What follows a driver is carried along with the fastest motion at rest: its rate is a part of f, and J f alone
-// takes that for a vibration.
+// y'' (ny, out) = J f + df/dt. What follows a driver is carried along with the fastest motion at
+// rest: its rate is a part of f, and J f alone takes that for a vibration.
 static bool find_second_derivative(struct ct_stiffness *s, double t, const double *y,
                                    double *out)
 {
@@ -353,7 +363,8 @@ bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, dou
     return is_far && end - t > steps_worth_it * s->step;
 }
 
-// What a step leaves of the term of order p + 1 in exp(z): b' A^p 1 - 1/(p + 1)!, b the last row of A.
+// What a step leaves of the term of order p + 1 in exp(z): b' A^p 1 - 1/(p + 1)!, b the last row of
+// A.
 static double error_constant(const struct ct_method *m)
 {
     const struct ct_tableau *b = m->tableau;
@@ -408,7 +419,7 @@ double ct_cost_step(const struct ct_cost *cost)
     return residuals * cost->residual + cost->tangent + 2 * cost->factorization;
 }
 
-// ---- the trial -----------------------------------------------------------------------------------------
+// ---- the trial ----------------------------------------------------------------------------------
 
 static double work(const struct ct_trial *r)
 {

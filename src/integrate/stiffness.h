@@ -1,12 +1,14 @@
-// Stiffness detection: is an explicit run held up by stability? The fastest motion the equations are capable of against the motion there is.
+// Stiffness detection: is an explicit run held up by stability? The fastest motion the equations
+// are capable of against the motion there is.
 //
 //     fast    |J^2 v|^(1/2), J = df/dy, v the result of the last test: the power method, one round each test
 //     slow    |change of the accelerations| / (h |accelerations|) over one step
 //     stiff   step * fast is near the limit of stability though fast is much more than slow, or
 //             step * slow is next to nothing and round-off errors of places, times fast^2, are felt in the accelerations
 //
-// What always holds: a test costs four evaluations and is made every hundred steps; it changes nothing in the problem.
-// Suspicion is no proof: a trial finds out whether an implicit method is faster.
+// What always holds: a test costs four evaluations and is made every hundred steps; it changes
+// nothing in the problem. Suspicion is no proof: a trial finds out whether an implicit method is
+// faster.
 #ifndef CT_INTEGRATE_STIFFNESS_H
 #define CT_INTEGRATE_STIFFNESS_H
 
@@ -64,39 +66,45 @@ struct ct_trial {
     double pace;          // of all steps, where a trial does not end
 };
 
-/// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations, behind coordinates.
+/// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations,
+/// behind coordinates.
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
                                          const struct ct_integrate_stats *stats, double rtol,
                                          int first, int last);
 
-/// The speed, first to last - 1, that moves most in the fastest motion at t, y; its rate is `fast` then. -1: cannot be told.
+/// The speed, first to last - 1, that moves most in the fastest motion at t, y; its rate is `fast`
+/// then. -1: cannot be told.
 int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
-/// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests were suspicious and
-/// there are many steps to come.
+/// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests
+/// were suspicious and there are many steps to come.
 bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end);
-/// Before the first step from t, y of an explicit method: would it make many steps because of vibrations that are far from the
-/// motion, if it follows them to rtol? Their pace is that of ct_stiffness_pace then.
+/// Before the first step from t, y of an explicit method: would it make many steps because of
+/// vibrations that are far from the motion, if it follows them to rtol? Their pace is that of
+/// ct_stiffness_pace then.
 bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
                           const struct ct_method *method, double rtol);
 /// Was the step that ct_stiffness_detect saw last one with a test?
 bool ct_stiffness_has_tested(const struct ct_stiffness *s);
-/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a quarter of a period later. From y'',
-/// by J^(p-1)/fast^(p+1), p the order of the method: what is slower counts by as much less as it errs less. p + 1 evaluations.
+/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a
+/// quarter of a period later. From y'', by J^(p-1)/fast^(p+1), p the order of the method: what is
+/// slower counts by as much less as it errs less. p + 1 evaluations.
 bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y, int order,
                                  const double **e, const double **later);
 /// Are steps, at the last test, held by the stability of the method alone, with a rate that lasts?
 bool ct_stiffness_is_unstable(const struct ct_stiffness *s);
-/// The longest step that does not make errors in the fastest motion larger; INFINITY where its rate does not last.
+/// The longest step that does not make errors in the fastest motion larger; INFINITY where its rate
+/// does not last.
 double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m);
-/// The longest step with which an explicit method follows a vibration of `fast` for a time so that its phase and size err by rtol
-/// at the end, when the errors of all steps have added up.  (8.14)
+/// The longest step with which an explicit method follows a vibration of `fast` for a time so that
+/// its phase and size err by rtol at the end, when the errors of all steps have added up.  (8.14)
 double ct_stiffness_accurate_step(const struct ct_method *method, double fast, double time,
                                   double rtol);
-/// After a trial that was lost, at time t for the work `spent`: not again before the number of steps has doubled, nor
-/// before steps have cost many times as much.
+/// After a trial that was lost, at time t for the work `spent`: not again before the number of
+/// steps has doubled, nor before steps have cost many times as much.
 void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
                            const struct ct_cost *cost);
-/// When the implicit method has been left, which gained as much time for its work: a trial as soon as steps gain less.
+/// When the implicit method has been left, which gained as much time for its work: a trial as soon
+/// as steps gain less.
 void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost);
 
 /// Time gained for the work of an explicit run between its last two tests.
@@ -108,9 +116,10 @@ bool ct_trial_step(struct ct_trial *r, double t);
 double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
 double ct_trial_pace(const struct ct_trial *r);
-/// After each step of a run that went over to the implicit method, begun as a trial that does not end: true if all of it has
-/// gained less than `pace`. A hard stretch, as where an iteration fails for a while, does not outweigh what was gained before,
-/// and no more is spent than the other method would have.
+/// After each step of a run that went over to the implicit method, begun as a trial that does not
+/// end: true if all of it has gained less than `pace`. A hard stretch, as where an iteration fails
+/// for a while, does not outweigh what was gained before, and no more is spent than the other
+/// method would have.
 bool ct_trial_has_lost(struct ct_trial *r, double t, double pace);
 
 #endif

@@ -22,7 +22,9 @@ struct ct_pattern {
     int n, nz;
     int *start, *row; // of columns (n + 1); (nz)
     double operations,
-        fill; // of real factors: multiplications and additions, entries. After ct_pattern_order, or as estimated
+        // of real factors: multiplications and additions, entries. After ct_pattern_order, or as
+        // estimated
+        fill;
     struct ct_pattern_order *order; // NULL: none
 };
 

@@ -23,7 +23,8 @@ long ct_sim_freedoms(const struct ct_sim *sim);
 long ct_sim_redundant(const struct ct_sim *sim);
 
 enum { CT_MOST_START_TEXT = 256 }; // longer names are cut
-/// Coordinates of the start, and of number i what was asked and found, in out; NULL: not of a joint.
+/// Coordinates of the start, and of number i what was asked and found, in out; NULL: not of a
+/// joint.
 size_t ct_sim_start_count(const struct ct_sim *sim);
 const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, size_t size);
 /// The same for programs, under the key "start".
@@ -31,13 +32,15 @@ void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim);
 
 bool ct_is_arm(const struct ct_equations *e, int edge);
 
-/// Is row i the first of its joint among those that depend (row) there? Rows of no joint count for themselves.
+/// Is row i the first of its joint among those that depend (row) there? Rows of no joint count for
+/// themselves.
 bool ct_is_first_of_joint(const struct ct_equations *e, const bool *row, size_t i);
 
 /// The joint of a row, else the row.
 const char *ct_row_owner(const struct ct_sim *sim, size_t row);
 
-/// How accelerations are formulated: the key for programs, the name for people. By enum ct_formulation.
+/// How accelerations are formulated: the key for programs, the name for people. By enum
+/// ct_formulation.
 struct ct_formulation_name {
     const char *key, *name;
 };

@@ -72,8 +72,8 @@ void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
-// How far coordinate i is from its guess, 1 being a right angle or half the natural length; 0 without a guess. An orientation counts
-// at its first number.
+// How far coordinate i is from its guess, 1 being a right angle or half the natural length; 0
+// without a guess. An orientation counts at its first number.
 static double moved(const struct ct_initial_state *s, size_t i)
 {
     const struct ct_target *t = &s->q_target[i];

@@ -1,14 +1,16 @@
-// The global error of a run, estimated by a second one that is better or at least different, and a third where the second was not.
+// The global error of a run, estimated by a second one that is better or at least different, and a
+// third where the second was not.
 //
 //     tighter tolerance     its error is a small part of the first one's: the difference is the error
 //     half the fixed step   the same with 2^-order of it (Richardson)
 //     looser tolerance      where double precision leaves no room for a tighter one: its error is larger, and so is the difference
 //
-// A second run of nearly the same steps has nearly the same errors, those of round-off included, and the difference says nothing of
-// them: see is_other, (8.31).
+// A second run of nearly the same steps has nearly the same errors, those of round-off included,
+// and the difference says nothing of them: see is_other, (8.31).
 //
-// What always holds: the estimate of an output is the largest difference over samples times a factor that makes up for
-// the error of the second run; both runs use the same equations, so it says nothing about the model.
+// What always holds: the estimate of an output is the largest difference over samples times a
+// factor that makes up for the error of the second run; both runs use the same equations, so it
+// says nothing about the model.
 #include "sim/sim.h"
 
 #include "base/guard.h"
@@ -23,12 +25,14 @@
 static const double tightening = 1. / 30;
 // With less to gain than this, the second run is looser by as much: then it has the larger error.
 static const double least_gain = 5;
-// A run that is compared with may be held to this part of what double precision leaves to the steps of one that is wanted: of
-// motions with many turns errors of truncation go on falling to there. An explicit step errs by round-off errors of h f alone, as those of y
-// are carried over, and by as much less as it is shorter. Not past singular configurations.
+// A run that is compared with may be held to this part of what double precision leaves to the steps
+// of one that is wanted: of motions with many turns errors of truncation go on falling to there. An
+// explicit step errs by round-off errors of h f alone, as those of y are carried over, and by as
+// much less as it is shorter. Not past singular configurations.
 static const double beyond = 0.1;
 static const double second_try = 3; // looser, where the second run failed
-// Errors follow tolerances only roughly, and where they are round-off not at all: two runs that err by as much differ by root 2 of it.
+// Errors follow tolerances only roughly, and where they are round-off not at all: two runs that err
+// by as much differ by root 2 of it.
 static const double tolerance_margin = 1.5;
 // An output holds as long as its error stays within so many tolerances.
 static const double held_tolerances = 10;
@@ -40,8 +44,8 @@ struct companion {
     long nstep;        // out
 };
 
-// A column this small against the largest one is round-off: sums of terms of order 1 leave some hundred eps; without
-// a single digit that agrees, some more.
+// A column this small against the largest one is round-off: sums of terms of order 1 leave some
+// hundred eps; without a single digit that agrees, some more.
 bool ct_is_rounding(double scale, double deviation, double largest)
 {
     const double with_digits = 1e-13, without_digits = 1e-9;
@@ -54,8 +58,8 @@ static bool is_low(const struct ct_method *m)
     return m->is_implicit && m->order < 3;
 }
 
-// Where the method was chosen while the run went on, the second one chooses anew: only so do its steps follow what the tolerance
-// asks for besides their own errors.
+// Where the method was chosen while the run went on, the second one chooses anew: only so do its
+// steps follow what the tolerance asks for besides their own errors.
 static const char *name_method(const struct ct_sim *sim)
 {
     if (is_low(sim->report.method))
@@ -100,7 +104,7 @@ static struct companion choose(const struct ct_sim *sim)
     return held < least_gain * least ? choose_looser(sim) : choose_tighter(sim, least);
 }
 
-// ---- comparing -----------------------------------------------------------------------------------------
+// ---- comparing ----------------------------------------------------------------------------------
 
 struct comparison {
     const struct ct_sim *sim;
@@ -132,8 +136,8 @@ static bool has_digits(const struct ct_output_error_estimate *o)
     return o->absolute < 0.5 * o->scale;
 }
 
-// Outputs without a digit that agrees, and not larger than the errors of others make them, are zero as far as can be
-// seen: the sum of energies that cancel, the momentum of a motion that has none.
+// Outputs without a digit that agrees, and not larger than the errors of others make them, are zero
+// as far as can be seen: the sum of energies that cancel, the momentum of a motion that has none.
 static void find_relative(struct ct_output_error_estimate *o, size_t n)
 {
     const double spread = 100; // sums of outputs add up their errors
@@ -186,7 +190,7 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
                 e->holds_until = k ? c->time[k - 1] : 0;
 }
 
-// ---- the second run --------------------------------------------------------------------------------------
+// ---- the second run -----------------------------------------------------------------------------
 
 static const char *describe(struct ct_arena *a, const struct companion *c)
 {
@@ -195,7 +199,8 @@ static const char *describe(struct ct_arena *a, const struct companion *c)
     return ct_arena_printf(a, "%s with steps held to %.2g", c->method, c->rtol);
 }
 
-// The other method of `auto` as well, also where both its tolerances are what double precision leaves.
+// The other method of `auto` as well, also where both its tolerances are what double precision
+// leaves.
 static void hold_stiff(const struct ct_sim *sim, const struct companion *c,
                        struct ct_run_options *second)
 {
@@ -248,7 +253,8 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct 
     return ok;
 }
 
-// Are its errors others than those of the first run, by (8.31)? If not, steps are held up by something that both runs have in common.
+// Are its errors others than those of the first run, by (8.31)? If not, steps are held up by
+// something that both runs have in common.
 static bool is_other(const struct ct_sim *sim, const struct companion *c)
 {
     const struct ct_method *m = sim->report.method;
@@ -258,8 +264,9 @@ static bool is_other(const struct ct_sim *sim, const struct companion *c)
         || pow(c->rtol < sim->run_options.rtol ? more : 1 / more, m->order) >= least;
 }
 
-// After a second run of nearly the same steps: a third one. Tighter by as much again while there is room, as what holds steps up
-// may be a longest step, or a singular configuration to be crossed; else looser.
+// After a second run of nearly the same steps: a third one. Tighter by as much again while there is
+// room, as what holds steps up may be a longest step, or a singular configuration to be crossed;
+// else looser.
 static struct companion choose_third(const struct ct_sim *sim, const struct companion *second)
 {
     struct companion c = *second;
@@ -321,8 +328,8 @@ static bool find_companion(const struct ct_sim *sim, struct ct_ctx *said, struct
     return run_companion(sim, said, c, comparison);
 }
 
-// True: it was made, and is in the comparison. A looser one of the same steps as well may err by much more, as where stability holds
-// them up: it tells only where the second one told nothing.
+// True: it was made, and is in the comparison. A looser one of the same steps as well may err by
+// much more, as where stability holds them up: it tells only where the second one told nothing.
 static bool add_third(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
                       struct comparison *comparison)
 {

@@ -100,6 +100,13 @@ fails_with 'src/high/b.c:1:' classes
 echo '#include "low/a.h"' >src/high/b.c
 rm -r src/component components
 
+# ---- search terms
+mkdir -p src/integrate
+fails_with "'dense output' leads to nothing" sh "$tests/style/terms.sh" .
+echo '// Dense output' >src/high/c.c
+fails_with "'dense output' leads to high, not to integrate" sh "$tests/style/terms.sh" .
+rm -r src/integrate src/high/c.c
+
 # ---- keys
 keys() {
   sh "$tests/style/keys.sh" "$PWD/references.bib" .

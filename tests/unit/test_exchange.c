@@ -1,4 +1,4 @@
-// The search for a pair of trees (formulation 2.3) against brute force over all edge subsets.
+// The search for a pair of trees (section 2.3) against brute force over all edge subsets.
 #include "graph/exchange.h"
 
 #include "random_graph.h"

@@ -5,7 +5,7 @@
 
 enum { NKIND = CT_NODE_FREEDOM };
 
-// ---- fields at nodes ---------------------------------------------------------------------------------------
+// ---- fields at nodes ----------------------------------------------------------------------------
 
 static ct_ex at_place(struct ct_build *b, const struct ct_flexible *f, ct_ex g, ct_ex place)
 {
@@ -50,7 +50,7 @@ unsigned ct_fields_family(const struct ct_beam *beam)
     return all;
 }
 
-// ---- the start ------------------------------------------------------------------------------------------------
+// ---- the start ----------------------------------------------------------------------------------
 
 bool ct_fields_leave_plane(const struct ct_beam *beam, bool about_z)
 {
@@ -62,7 +62,8 @@ bool ct_fields_leave_plane(const struct ct_beam *beam, bool about_z)
     return false;
 }
 
-// LOCAL: places of the nodes for the stretch that is given, U = s - S, and their rates: S is what bending draws.
+// LOCAL: places of the nodes for the stretch that is given, U = s - S, and their rates: S is what
+// bending draws.
 static void draw_in(struct ct_build *b, const struct ct_flexible *f, ct_ex *value, ct_ex *rate)
 {
     struct ct_exs *x = b->x;

@@ -149,8 +149,8 @@ static bool bends_about_both(const struct ct_flexible *f)
     return (f->deformation & f->beam->known & both) == both;
 }
 
-// Bending about both axes twists a beam by (5.6b), if it is stiffer about one of them; in an analysis the smallest motion
-// counts.
+// Bending about both axes twists a beam by (5.6b), if it is stiffer about one of them; in an
+// analysis the smallest motion counts.
 static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
 {
     return bends_about_both(f)

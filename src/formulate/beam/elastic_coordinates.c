@@ -63,7 +63,8 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-// Foreshortening of one element by the integrals E of slope products and of the sections' rotation gradients.
+// Foreshortening of one element by the integrals E of slope products and of the sections' rotation
+// gradients.
 static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
                              ct_ex *rate, ct_ex *bias)
 {
@@ -228,7 +229,8 @@ static double dot(const double *a, const double *c, size_t n)
     return sum;
 }
 
-// Is a shape a sum of those before it, as the nodes see them? By Gram and Schmidt; marks: by coordinate.
+// Is a shape a sum of those before it, as the nodes see them? By Gram and Schmidt; marks: by
+// coordinate.
 static bool check_shapes(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_mark *marks)
 {

@@ -19,7 +19,7 @@ enum {
     NKIND = CT_NODE_FREEDOM
 };
 
-// ---- freedoms ---------------------------------------------------------------------------------------
+// ---- freedoms -----------------------------------------------------------------------------------
 
 static void number_dofs(struct ct_flexible *f)
 {
@@ -34,9 +34,10 @@ static void number_dofs(struct ct_flexible *f)
         }
 }
 
-// ---- creation -----------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
-// E(xi) = integral of slope_j slope_k, D = xi E(1) - E, and the integral of the sections' rotation gradients.
+// E(xi) = integral of slope_j slope_k, D = xi E(1) - E, and the integral of the sections' rotation
+// gradients.
 static void derive_shortening(struct ct_flexible *f)
 {
     const struct ct_shape xi = {.c = {0, 1}};
@@ -57,8 +58,8 @@ static void derive_shortening(struct ct_flexible *f)
         }
 }
 
-// The mean strain of a section with rotations g is u' + (v'^2 + (I/A) g'^2)/2: with higher-order terms an axis that does
-// not stretch is drawn in by both. I/A of a tapered element is its mean.
+// The mean strain of a section with rotations g is u' + (v'^2 + (I/A) g'^2)/2: with higher-order
+// terms an axis that does not stretch is drawn in by both. I/A of a tapered element is its mean.
 static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_element *e)
 {
     const struct ct_beam *beam = f->beam;
@@ -77,7 +78,8 @@ static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_el
     }
 }
 
-// What deforms where the scene keeps to a plane: bending about the normal; a beam's y or z axis points along it.
+// What deforms where the scene keeps to a plane: bending about the normal; a beam's y or z axis
+// points along it.
 static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (!b->topology->keeps_plane)
@@ -87,8 +89,8 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-// Modes and given shapes hold no room for the places of nodes that foreshortening moves; and it is the stretch that is small,
-// not the places, which are of second order in the slopes.
+// Modes and given shapes hold no room for the places of nodes that foreshortening moves; and it is
+// the stretch that is small, not the places, which are of second order in the slopes.
 static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
@@ -99,8 +101,8 @@ static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible
              : CT_AXIAL_CHAIN;
 }
 
-// Deformations without a stiffness would be free to go anywhere: where the scene does not excite them they are left out,
-// else they are the model's fault.
+// Deformations without a stiffness would be free to go anywhere: where the scene does not excite
+// them they are left out, else they are the model's fault.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
     const struct {

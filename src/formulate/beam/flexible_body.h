@@ -1,4 +1,5 @@
-// Flexible bodies in a floating frame of reference: elastic coordinates of beams, positions along them, their inertia and stiffness.  (formulation 1.2, 5.3)
+// Flexible bodies in a floating frame of reference: elastic coordinates of beams, positions along
+// them, their inertia and stiffness.  (formulation 1.2, 5.3)
 //
 //   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or the share of a mode
 //   freedom f              8 per node (u v w rx ry rz, and rm um of the element before it): sum over k of part coef *
@@ -13,7 +14,8 @@
 //   LINEAR   (1 - xi) u_i + xi u_i+1; to this and to the others 4 xi (1 - xi) um is added
 //   LOCAL    the same of the axial places U = s + c of the nodes, + (a' D a + b' D b)/2,  D = xi E(1) - E(xi)
 //   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,  c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
-// LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element sees its own nodes only.
+// LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element sees its own
+// nodes only.
 #ifndef CT_FORMULATE_BEAM_FLEXIBLE_BODY_H
 #define CT_FORMULATE_BEAM_FLEXIBLE_BODY_H
 
@@ -22,13 +24,15 @@
 
 /// A linear beam is good enough below this indicator.
 #define CT_VALIDITY_LIMIT 0.01
-/// Slope of a section against the frame of its beam up to which displacements of second order in it will do (section 5.3).
+/// Slope of a section against the frame of its beam up to which displacements of second order in it
+/// will do (section 5.3).
 #define CT_SLOPE_LIMIT 0.3
 
-// Dofs below CT_AXIS_DOF move the axis, those of bending are 2 ... CT_BENT_DOF - 1; stretch and twist have CT_LINE_DOF each.
+// Dofs below CT_AXIS_DOF move the axis, those of bending are 2 ... CT_BENT_DOF - 1; stretch and
+// twist have CT_LINE_DOF each.
 enum { CT_DOF = 14, CT_BENT_DOF = 10, CT_MIDDLE_DOF = 10, CT_AXIS_DOF = 11, CT_LINE_DOF = 3 };
-/// Kinds of freedoms of a node. CT_FREEDOM_RM, UM: twist and stretch in the middle of the element before it beyond the mean
-/// of its ends.
+/// Kinds of freedoms of a node. CT_FREEDOM_RM, UM: twist and stretch in the middle of the element
+/// before it beyond the mean of its ends.
 enum ct_freedom_kind {
     CT_FREEDOM_U,
     CT_FREEDOM_V,
@@ -50,7 +54,8 @@ struct ct_part {
 struct ct_elastic {
     const char *name;
     int q, u;
-    int freedom; // that it is, or that its static shape is for; -1: share of a mode or a given shape
+    // that it is, or that its static shape is for; -1: share of a mode or a given shape
+    int freedom;
     ct_ex value, rate, acceleration;
     ct_ex start, start_rate; // with `initial`, of parameters
 };
@@ -72,7 +77,8 @@ struct ct_element {
     ct_ex g[CT_AXIS_DOF]; // CHAIN: d(c of the next element - c)/d(dof)
 };
 
-/// A section of the beam: displacement u of the axis, rotation by angle as of section_rotation.h  (1.7b).
+/// A section of the beam: displacement u of the axis, rotation by angle as of section_rotation.h
+/// (1.7b).
 struct ct_station {
     int element;
     enum ct_axial axial;
@@ -119,7 +125,7 @@ struct ct_axial_field {
     ct_ex slope[CT_AXIS_DOF]; // by the element's own dofs
 };
 
-// ---- flexible_body.c: coordinates and places ----------------------------------------------------------
+// ---- flexible_body.c: coordinates and places ----------------------------------------------------
 
 /// One per beam of the model, in b->flexible; their base is set where nodes are made.
 void ct_flexible_create(struct ct_build *b);
@@ -131,7 +137,8 @@ struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
 struct ct_flexible *ct_flexible_of_edge(const struct ct_build *b, const struct ct_edge_info *e);
 /// Are all coordinates of beam f small, by its formulation or its name?
 bool ct_flexible_is_small(const struct ct_build *b, const struct ct_flexible *f);
-/// Can all beams be articulated bodies (recursive/member.h), as far as their kinematics and coordinates that are small go?
+/// Can all beams be articulated bodies (recursive/member.h), as far as their kinematics and
+/// coordinates that are small go?
 bool ct_flexible_may_be_articulated(const struct ct_build *b);
 /// Unknowns of the elastic coordinates (elastic_coordinates.c), after those of joints and bodies.
 void ct_flexible_unknowns(struct ct_build *b, struct ct_flexible *f);
@@ -143,12 +150,14 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
 /// Slides (m = 0 ... nelastic-1, beam axes) and turns of a station by elastic coordinate.
 void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
-/// The same without what the elements before its own do in a CHAIN; freedoms that follow behind the coordinates, nelastic + number.
+/// The same without what the elements before its own do in a CHAIN; freedoms that follow behind the
+/// coordinates, nelastic + number.
 void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
                              const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn);
 /// Each coordinate is that of one node; what follows is a sum of them.
 bool ct_flexible_is_nodal(const struct ct_flexible *f);
-/// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its start, nothing else.
+/// CHAIN in coordinates of nodes: an element sees its own nodes and the foreshortening at its
+/// start, nothing else.
 bool ct_flexible_is_augmented(const struct ct_flexible *f);
 /// The elastic coordinate that is the foreshortening at the start of an element, 1 ... nstart.
 static inline int ct_flexible_start(const struct ct_flexible *f, int element)

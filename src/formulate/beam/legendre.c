@@ -22,7 +22,7 @@ static void add(struct ct_exs *x, ct_ex *sum, ct_ex v)
     *sum = ct_ex_add(x, *sum, v);
 }
 
-// ---- bending ------------------------------------------------------------------------------------------
+// ---- bending ------------------------------------------------------------------------------------
 
 struct ct_legendre_bending ct_legendre_bending_of(struct ct_exs *x, enum ct_beam_theory theory,
                                                   ct_ex h, const ct_ex *dof)
@@ -68,7 +68,7 @@ void ct_legendre_bending_add_forces(struct ct_exs *x, enum ct_beam_theory theory
     dof[3] = ct_ex_add(x, turns, bend);
 }
 
-// ---- foreshortening -----------------------------------------------------------------------------------
+// ---- foreshortening -----------------------------------------------------------------------------
 
 // Over both planes s_i t_j, and s_j t_i too if these are others.
 static ct_ex products(struct ct_exs *x, const struct ct_legendre_bending s[2],

@@ -1,9 +1,10 @@
 // Rotations of a beam's nodes that move no mass; see massless_rotations.h.
 //
-// Lumped masses without rotary inertia, and sections of Timoshenko's theory without it, leave rotations that nothing
-// accelerates. Where no moment acts on them either, they follow the other freedoms, K_rr r + K_rt t = 0, and are no
-// coordinates. A moment comes from a joint that holds the section's rotation, a torque, an arm off the axis, or a force
-// between nodes; the rotations that it acts on stay coordinates.
+// Lumped masses without rotary inertia, and sections of Timoshenko's theory without it, leave
+// rotations that nothing accelerates. Where no moment acts on them either, they follow the other
+// freedoms, K_rr r + K_rt t = 0, and are no coordinates. A moment comes from a joint that holds the
+// section's rotation, a torque, an arm off the axis, or a force between nodes; the rotations that
+// it acts on stay coordinates.
 #include "formulate/beam/massless_rotations.h"
 #include "formulate/beam/section_properties.h"
 
@@ -19,7 +20,7 @@ struct node_moments {
     unsigned *about; // by node: moments that can act
 };
 
-// ---- what acts on a point --------------------------------------------------------------------------------
+// ---- what acts on a point -----------------------------------------------------------------------
 
 // The axis of the beam that v, in axes of the frame, points along; -1: none.
 static int axis_along(struct ct_build *b, const struct ct_frame *frame, ct_ex3 v)
@@ -89,7 +90,7 @@ static bool moments_at(const struct node_moments *w, size_t frame, unsigned *abo
     return any;
 }
 
-// ---- nodes -------------------------------------------------------------------------------------------------
+// ---- nodes --------------------------------------------------------------------------------------
 
 static void mark_frame(struct node_moments *w, size_t frame)
 {
@@ -108,7 +109,7 @@ static void mark_frame(struct node_moments *w, size_t frame)
     w->about[s.element + 1] |= at_start ? 0 : about;
 }
 
-// ---- the section at the start --------------------------------------------------------------------------------
+// ---- the section at the start -------------------------------------------------------------------
 
 // Axes of the beam, bits, about which joint j alone lets the section at the frame turn.
 static unsigned turns_freely(const struct node_moments *w, size_t j, const struct ct_frame *at)
@@ -166,7 +167,7 @@ int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f)
     return -1;
 }
 
-// ---- all ---------------------------------------------------------------------------------------------------
+// ---- all ----------------------------------------------------------------------------------------
 
 bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_flexible *f,
                                          bool *follows)

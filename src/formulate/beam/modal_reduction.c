@@ -3,9 +3,10 @@
 // Condensed: rotations that move no mass follow the other freedoms.
 //
 // Modal:
-// the nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit displacement of each freedom
-// that joints or loads act on, the others of them held; Phi, the lowest modes with those freedoms held. A beam
-// that nothing acts on beyond its base has modes only.
+// the nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit
+// displacement of each freedom that joints or loads act on, the others of them held; Phi, the
+// lowest modes with those freedoms held. A beam that nothing acts on beyond its base has modes
+// only.
 // Source: Craig & Bampton (1968), key craig1968.
 #include "formulate/beam/modal_reduction.h"
 #include "numeric/dense.h"
@@ -31,7 +32,7 @@ struct reduction {
     double *shape; // n x nshape
 };
 
-// ---- freedoms ---------------------------------------------------------------------------------------------
+// ---- freedoms -----------------------------------------------------------------------------------
 
 // Does a joint or a load act on the beam at this frame?
 static bool is_used(const struct ct_model *m, size_t frame)
@@ -109,7 +110,7 @@ static void assemble(struct reduction *r)
     }
 }
 
-// ---- shapes -------------------------------------------------------------------------------------------------
+// ---- shapes -------------------------------------------------------------------------------------
 
 // Freedoms of these families without a static shape, by number (out). Returns how many.
 static int inner_freedoms(const struct reduction *r, unsigned families, int *out)
@@ -150,8 +151,9 @@ static bool static_shapes(struct reduction *r)
     return true;
 }
 
-// The axis is straight and its sections lie along their principal axes: stretch, twist and both bendings have nothing to do with one another, and
-// what a shape has of another one is round-off of its largest component, 1.
+// The axis is straight and its sections lie along their principal axes: stretch, twist and both
+// bendings have nothing to do with one another, and what a shape has of another one is round-off of
+// its largest component, 1.
 static void drop_rounding(const struct reduction *r, double *v)
 {
     const double roundoff = 1e-12; // n eps of the eigenvectors, n up to some thousand
@@ -164,8 +166,9 @@ static void drop_rounding(const struct reduction *r, double *v)
             v[i] = 0;
 }
 
-// Are modes of one frequency parted? The first `wanted` of w (m, ascending, 1/omega^2) from its end are kept. Equal is what round-off of
-// the eigenvalues cannot tell apart: m eps of the largest, a hundred times for the steps of the solution.
+// Are modes of one frequency parted? The first `wanted` of w (m, ascending, 1/omega^2) from its end
+// are kept. Equal is what round-off of the eigenvalues cannot tell apart: m eps of the largest, a
+// hundred times for the steps of the solution.
 static void find_cut(const struct reduction *r, const double *w, int m, int wanted)
 {
     const double roundoff = 100 * m * DBL_EPSILON * w[m - 1], at = w[m - wanted];
@@ -181,11 +184,12 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
     r->f->uncut[1] = above;
 }
 
-// Entries of a shape that symmetry makes as large as each other: the first one is the largest, not which one round-off says.
+// Entries of a shape that symmetry makes as large as each other: the first one is the largest, not
+// which one round-off says.
 static const double alike = 1e-6;
 
-// Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be singular. Scaled to a largest
-// component of 1.
+// Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be
+// singular. Scaled to a largest component of 1.
 static bool modes(struct reduction *r, unsigned families, int wanted)
 {
     struct ct_arena *scratch = r->b->ctx->scratch;
@@ -327,7 +331,8 @@ bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_
     return true;
 }
 
-// Are the numbers of those without a static shape what the elements always have, and move these no mass?
+// Are the numbers of those without a static shape what the elements always have, and move these no
+// mass?
 static bool is_balanced(const struct reduction *r)
 {
     ct_ex K[CT_DOF][CT_DOF], M[CT_DOF][CT_DOF];

@@ -1,17 +1,19 @@
-// How a section of a beam is turned: Rz(g/2) Ry(b) Rz(g/2) Rx(p) with p twist, b = -dw/dx, g = dv/dx; in bending about one
-// axis Rz(g) or Ry(b).  (1.7b)
+// How a section of a beam is turned: Rz(g/2) Ry(b) Rz(g/2) Rx(p) with p twist, b = -dw/dx, g =
+// dv/dx; in bending about one axis Rz(g) or Ry(b).  (1.7b)
 #ifndef CT_FORMULATE_BEAM_SECTION_ROTATION_H
 #define CT_FORMULATE_BEAM_SECTION_ROTATION_H
 
 #include "formulate/build.h"
 
-/// One of the turns, about a coordinate axis of the frame turned so far, by a share of the angle about that axis.
+/// One of the turns, about a coordinate axis of the frame turned so far, by a share of the angle
+/// about that axis.
 struct ct_section_turn {
     int axis;
     double share;
 };
 
-/// The turns of a section with the angles p, b, g; those that are zero are left out. Returns how many.
+/// The turns of a section with the angles p, b, g; those that are zero are left out. Returns how
+/// many.
 int ct_section_turns(const ct_ex angle[3], struct ct_section_turn turn[4]);
 /// S, from components in the section to components in the beam.
 ct_ex33 ct_section_axes(struct ct_exs *x, const ct_ex angle[3]);
@@ -30,8 +32,8 @@ void ct_section_motion(struct ct_exs *x, bool is_small, const ct_ex j[3], ct_ex3
                        ct_ex3 rate, struct ct_section *out);
 /// Y rate
 ct_ex3 ct_section_turned(struct ct_exs *x, const struct ct_section *s, ct_ex3 rate);
-/// Moment that the rotation of a section takes whose frame turns with w: beyond J al + w x J (w + spin), which it takes anyhow.
-/// second: p'', b'', g''; NULL: without them.
+/// Moment that the rotation of a section takes whose frame turns with w: beyond J al + w x J (w +
+/// spin), which it takes anyhow. second: p'', b'', g''; NULL: without them.
 ct_ex3 ct_section_own(struct ct_exs *x, const struct ct_section *s, ct_ex3 w,
                       const ct_ex3 *second);
 /// What acts on p, b, g through Y, if the frame also has the angular acceleration al.

@@ -95,7 +95,7 @@ ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex le
     return with_power(x, sum, a->power, length);
 }
 
-// ---- shapes ---------------------------------------------------------------------------------------
+// ---- shapes -------------------------------------------------------------------------------------
 
 void ct_shape_line(struct ct_shape f[3])
 {
@@ -126,7 +126,7 @@ void ct_shape_bending(enum ct_beam_theory theory, struct ct_bending *s)
     }
 }
 
-// ---- integrals --------------------------------------------------------------------------------------
+// ---- integrals ----------------------------------------------------------------------------------
 
 static ct_ex place_at(struct ct_exs *x, const struct ct_span *e, double xi)
 {
@@ -145,7 +145,8 @@ static bool is_constant(struct ct_exs *x, const struct ct_profile *g)
     return !(ct_ex_kinds(x, g->value) & 1u << CT_SYM_LOCAL);
 }
 
-// Sum of c_i/(i+1): over a common denominator, so that integer coefficients give the fraction rounded once.
+// Sum of c_i/(i+1): over a common denominator, so that integer coefficients give the fraction
+// rounded once.
 static double unit_integral(const struct ct_shape *p)
 {
     double sum = 0;

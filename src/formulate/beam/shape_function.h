@@ -1,4 +1,5 @@
-// Shape functions of beam elements: polynomials of xi in [0, 1] and their integrals over an element.
+// Shape functions of beam elements: polynomials of xi in [0, 1] and their integrals over an
+// element.
 #ifndef CT_FORMULATE_BEAM_SHAPE_FUNCTION_H
 #define CT_FORMULATE_BEAM_SHAPE_FUNCTION_H
 
@@ -12,7 +13,8 @@ struct ct_shape {
     int power;
 };
 
-/// Where integrals over an element are taken: FULL exactly, MIDDLE at one point, ENDS half at each end.
+/// Where integrals over an element are taken: FULL exactly, MIDDLE at one point, ENDS half at each
+/// end.
 enum ct_rule { CT_RULE_FULL, CT_RULE_MIDDLE, CT_RULE_ENDS };
 
 struct ct_span { // an element on the axis
@@ -47,11 +49,12 @@ bool ct_shape_is_zero(const struct ct_shape *a);
 ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex length);
 double ct_shape_value(const struct ct_shape *a, double xi, double length);
 
-/// Integral of g p over the element. FULL is exact for a constant g (fractions correctly rounded) and for a polynomial
-/// g p up to degree 15; ENDS takes half of the integral of g at each end.
+/// Integral of g p over the element. FULL is exact for a constant g (fractions correctly rounded)
+/// and for a polynomial g p up to degree 15; ENDS takes half of the integral of g at each end.
 ct_ex ct_shape_integral(struct ct_exs *x, const struct ct_profile *g, const struct ct_shape *p,
                         const struct ct_span *e, enum ct_rule rule);
-/// Points of a rule and what of the integral of g belongs to each; returns their number. FULL: n Gauss points.
+/// Points of a rule and what of the integral of g belongs to each; returns their number. FULL: n
+/// Gauss points.
 int ct_shape_points(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
                     enum ct_rule rule, int n, double xi[CT_MAX_GAUSS],
                     ct_ex weight[CT_MAX_GAUSS]);

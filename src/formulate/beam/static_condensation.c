@@ -1,7 +1,8 @@
-// Static condensation: rotations that follow the other freedoms of their beam, at a cost in proportion to its nodes; see static_condensation.h.
+// Static condensation: rotations that follow the other freedoms of their beam, at a cost in
+// proportion to its nodes; see static_condensation.h.
 //
-// They are in equilibrium, K_rr r + K_rt t = 0. Nodes see their neighbours only: K_rr = L D L' has a narrow band, its inverse
-// has none. With numbers A = D^-1 L D, G = -D^-1 K_rt,
+// They are in equilibrium, K_rr r + K_rt t = 0. Nodes see their neighbours only: K_rr = L D L' has
+// a narrow band, its inverse has none. With numbers A = D^-1 L D, G = -D^-1 K_rt,
 //
 //     A y = G t,  L' r = y        from the first to the last, and back
 //
@@ -27,7 +28,7 @@ struct ct_condensation {
     struct follower *row;
 };
 
-// ---- creation ------------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
 static void fill_row(struct ct_condensation *out, const struct ct_condensation_numbers *c,
                      int k, struct follower *row)
@@ -112,7 +113,7 @@ const struct ct_condensation_term *ct_condensation_law(const struct ct_flexible 
     return f->condensation->row[k].law;
 }
 
-// ---- places, forces ----------------------------------------------------------------------------------
+// ---- places, forces -----------------------------------------------------------------------------
 
 static void add(struct ct_exs *x, ct_ex *sum, double by, ct_ex v)
 {

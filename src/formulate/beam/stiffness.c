@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- stiffness and damping ----------------------------------------------------------------------------------
+// ---- stiffness and damping ----------------------------------------------------------------------
 
 // Constant matrices of an element for its four dofs of a plane.
 struct plane_matrices {
@@ -148,7 +148,8 @@ static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e,
     }
 }
 
-// Stretch of the element: the difference of the nodes' s, in LOCAL coordinates by what they and the slopes say.
+// Stretch of the element: the difference of the nodes' s, in LOCAL coordinates by what they and the
+// slopes say.
 struct stretch {
     ct_ex value, rate;
     ct_ex slope[CT_BENT_DOF];
@@ -236,7 +237,7 @@ static void twist_element(struct ct_build *b, const struct ct_flexible *f, int e
     }
 }
 
-// ---- twist with bending ---------------------------------------------------------------------------------------
+// ---- twist with bending -------------------------------------------------------------------------
 
 static bool couples(const struct ct_flexible *f)
 {
@@ -276,8 +277,8 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
     }
 }
 
-// Squares of curvatures that are taken at n points and interpolated in between: with constant sections at Gauss points, where
-// all that is linear in an element is exact.
+// Squares of curvatures that are taken at n points and interpolated in between: with constant
+// sections at Gauss points, where all that is linear in an element is exact.
 enum { MOST_POINTS = 2 };
 
 struct squares {
@@ -426,7 +427,7 @@ static void couple_element(struct ct_build *b, const struct ct_flexible *f, int 
         couple_shear(b, f, e, ct_ex_const(x, xi[i]), GA[i], out);
 }
 
-// ---- elements ---------------------------------------------------------------------------------------------------
+// ---- elements -----------------------------------------------------------------------------------
 
 static struct ct_element_force element_force(struct ct_build *b, const struct ct_flexible *f,
                                              int e)

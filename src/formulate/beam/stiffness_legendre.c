@@ -1,5 +1,5 @@
-// Stiffness of cubic elements with constant sections, by the amplitudes of legendre.h; see stiffness.h. What
-// stiffness.c does with matrices of the dofs, to round-off:
+// Stiffness of cubic elements with constant sections, by the amplitudes of legendre.h; see
+// stiffness.h. What stiffness.c does with matrices of the dofs, to round-off:
 //
 //     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1     stretch u_2 - u_1 + S(1)
 #include "formulate/beam/stiffness.h"
@@ -101,8 +101,8 @@ static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_
     }
 }
 
-// (5.6b) at the two Gauss points z = +-1/sqrt(3), where curvatures of the amplitudes are exact. With the slopes g of v and w of
-// w, p = m + t z/2 and D = E (Iz - Iy)/h if that is positive,
+// (5.6b) at the two Gauss points z = +-1/sqrt(3), where curvatures of the amplitudes are exact.
+// With the slopes g of v and w of w, p = m + t z/2 and D = E (Iz - Iy)/h if that is positive,
 //
 //     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12) + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3 g_2^2)
 //

@@ -1,10 +1,12 @@
-// Integrals over a beam with linear kinematics: constant matrices of its elements; see beam_dynamics.h.
+// Integrals over a beam with linear kinematics: constant matrices of its elements; see
+// beam_dynamics.h.
 //
 // A dof j moves the axis along one direction d(j) by its shape f_j. With
 //
 //     S_jk = int m f_j f_k,  F_j = int m f_j,  X_j = int m x f_j,  R_jk and G_j the same of the rotary inertia
 //
-// and z_a,k = Om_ab q_k + 2 w~_ab q'_k (+ q''_k where a = b), b = d(k), the row of dof j with a = d(j) is
+// and z_a,k = Om_ab q_k + 2 w~_ab q'_k (+ q''_k where a = b), b = d(k), the row of dof j with a =
+// d(j) is
 //
 //     F_j a_a + X_j Om_ax + sum_k S_jk z_a,k        (5.4), (5.5)
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -20,7 +22,7 @@ struct ct_element_mass {
     ct_ex j[3];
 };
 
-// ---- dofs -----------------------------------------------------------------------------------------------
+// ---- dofs ---------------------------------------------------------------------------------------
 
 static int direction(int dof)
 {
@@ -55,7 +57,7 @@ static bool is_free(const struct ct_flexible *f, int e, int dof)
     return f->element[e].freedom[dof] >= 0;
 }
 
-// ---- element matrices -----------------------------------------------------------------------------------
+// ---- element matrices ---------------------------------------------------------------------------
 
 static void place_integrals(struct ct_build *b, const struct ct_flexible *f, int e,
                             struct ct_element_mass *s)
@@ -107,7 +109,7 @@ static void turn_integrals(struct ct_build *b, const struct ct_flexible *f, int 
     }
 }
 
-// ---- sums over a beam ------------------------------------------------------------------------------------
+// ---- sums over a beam ---------------------------------------------------------------------------
 
 // sum_k S_jk v_k
 static ct_ex row_times(struct ct_build *b, const ct_ex *row, const ct_ex *v, int n)
@@ -188,7 +190,7 @@ static ct_ex cross_entry(struct ct_build *b, ct_ex3 w, int a, int c)
     return (a + 1) % 3 == c ? ct_ex_neg(b->x, v) : v;
 }
 
-// ---- the form -----------------------------------------------------------------------------------------------
+// ---- the form -----------------------------------------------------------------------------------
 
 static void add_moments(struct ct_build *b, const struct ct_element *e,
                         const struct ct_element_mass *s, struct ct_inertia *I,

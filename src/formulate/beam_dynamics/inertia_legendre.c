@@ -1,6 +1,6 @@
-// Integrals (5.5) over a beam whose mass per length is constant, by the amplitudes (5.5b) of legendre.h: what
-// inertia_points.c sums over points, to round-off. Where the sections' rotary inertia counts, it stays along the axes of
-// the beam.
+// Integrals (5.5) over a beam whose mass per length is constant, by the amplitudes (5.5b) of
+// legendre.h: what inertia_points.c sums over points, to round-off. Where the sections' rotary
+// inertia counts, it stays along the axes of the beam.
 #include "formulate/beam/legendre.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
@@ -18,9 +18,10 @@ struct ct_legendre_element {
     ct_ex bias[CT_LEGENDRE_AXIAL];   // along the axis, second derivative with u' = 0
 };
 
-// ---- weights --------------------------------------------------------------------------------------------
+// ---- weights ------------------------------------------------------------------------------------
 
-// int mu B^2 dx of the polynomials B that the amplitudes belong to, over the mass of the element: c h^power
+// int mu B^2 dx of the polynomials B that the amplitudes belong to, over the mass of the element: c
+// h^power
 static const struct {
     double c;
     int power;
@@ -59,7 +60,7 @@ bool ct_inertia_has_legendre(struct ct_build *b, const struct ct_flexible *f)
         && !beam->has_quadratic_stretch;
 }
 
-// ---- fields ---------------------------------------------------------------------------------------------
+// ---- fields -------------------------------------------------------------------------------------
 
 static bool is_chain(const struct ct_flexible *f)
 {
@@ -132,7 +133,8 @@ static void derive_element(struct ct_build *b, const struct ct_flexible *f, int 
     s->place[1].e[0] = ct_ex_add(x, ct_ex_scale(x, 0.5, h), s->place[1].e[0]);
 }
 
-// Second derivatives with the symbols u', less the bias. chain: by element, of the foreshortening at its start.
+// Second derivatives with the symbols u', less the bias. chain: by element, of the foreshortening
+// at its start.
 static struct ct_field acceleration_of(struct ct_build *b, const struct ct_flexible *f, int e,
                                        const ct_ex *chain)
 {
@@ -176,9 +178,10 @@ static void push_field(struct ct_build *b, const struct ct_flexible *f, int e,
     dof[CT_AXIS_DOF + 1] = ct_ex_add(x, twist, turn[1].e[0]);
 }
 
-// ---- sums over elements of one weight ---------------------------------------------------------------------
+// ---- sums over elements of one weight -----------------------------------------------------------
 
-// A sum of products by amplitude, multiplied by the weights when the mass or the length of an element changes.
+// A sum of products by amplitude, multiplied by the weights when the mass or the length of an
+// element changes.
 struct sums {
     struct ct_build *b;
     ct_ex m, h;
@@ -219,7 +222,7 @@ static void add_to(struct sums *s, int k, int i, ct_ex v)
     s->of[k][i] = ct_ex_add(s->b->x, s->of[k][i], v);
 }
 
-// ---- the form ---------------------------------------------------------------------------------------------
+// ---- the form -----------------------------------------------------------------------------------
 
 static void derive(struct ct_build *b, struct ct_flexible *f)
 {
@@ -365,7 +368,7 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
     *torque = ct_ex3_add(x, *torque, ct_ex3_add(x, own, ct_ex3_cross(x, m->w, spin)));
 }
 
-// ---- mass of an element -----------------------------------------------------------------------------------
+// ---- mass of an element -------------------------------------------------------------------------
 
 // Forces v on one amplitude of places along the axis, on the dofs.
 static void push_along(struct ct_build *b, const struct ct_flexible *f, int e, int k, ct_ex3 v,

@@ -1,11 +1,12 @@
 // Mass matrix of a beam whose coordinates are shapes of all of it; see beam_dynamics.h.
 //
-// With C (dofs x shapes) of an element, M its matrix between dofs, and a CHAIN: mass m beyond it, g = dc/d dof, so that
-// gamma = C' g is what a shape draws in there,
+// With C (dofs x shapes) of an element, M its matrix between dofs, and a CHAIN: mass m beyond it, g
+// = dc/d dof, so that gamma = C' g is what a shape draws in there,
 //
 //     M_shapes = sum_e C' M C + m gamma gamma' + gamma beta' + beta gamma',   beta = sum_beyond C' int mu dr_x + m gamma
 //
-// from the tip inwards. Going by pairs of dofs would take the square of the elements times that of the shapes.
+// from the tip inwards. Going by pairs of dofs would take the square of the elements times that of
+// the shapes.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
 // Of an element: C, and of its shapes the sums that its dofs have; of those beyond it: beta.

@@ -1,4 +1,5 @@
-// Integrals over a beam as sums over points: Gauss points, or what the beam's rules ask for; see beam_dynamics.h.
+// Integrals over a beam as sums over points: Gauss points, or what the beam's rules ask for; see
+// beam_dynamics.h.
 //
 // With Om = al~ + w~ w~ a point needs
 //
@@ -22,7 +23,7 @@ struct ct_point {
     ct_ex linear_value;                         // axial displacement, of r
 };
 
-// ---- points -----------------------------------------------------------------------------------------
+// ---- points -------------------------------------------------------------------------------------
 
 static ct_ex with_twist(struct ct_build *b, const struct ct_point *p, const ct_ex *of)
 {
@@ -101,7 +102,8 @@ static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, s
     }
 }
 
-// Acceleration of a point with the symbols u', less its bias. chain: by element, of the foreshortening at its start.
+// Acceleration of a point with the symbols u', less its bias. chain: by element, of the
+// foreshortening at its start.
 static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
                                const struct ct_point *p, const ct_ex *chain)
 {
@@ -113,7 +115,7 @@ static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
         {along, dot4(b, p->place, acceleration + 2), dot4(b, p->place, acceleration + 6)}};
 }
 
-// ---- the form ---------------------------------------------------------------------------------------
+// ---- the form -----------------------------------------------------------------------------------
 
 static void derive(struct ct_build *b, struct ct_flexible *f)
 {
@@ -185,8 +187,8 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// What foreshortening adds where it is left out of the kinematics: rows of the velocity-quadratic force of the
-// foreshortened beam less those of the linear one, which inertia_rows has.
+// What foreshortening adds where it is left out of the kinematics: rows of the velocity-quadratic
+// force of the foreshortened beam less those of the linear one, which inertia_rows has.
 static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
                                 const struct ct_base *m, ct_ex *by_freedom)
 {
@@ -246,7 +248,8 @@ static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_re
     }
 }
 
-// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the sections' rotation.
+// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the sections'
+// rotation.
 static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                    enum ct_level level, ct_ex3 *force, ct_ex3 *torque)
 {

@@ -1,7 +1,8 @@
 // See beam_augmented.h.
 //
-// The equations are taken down once more, from a copy of the build on the same expressions in which what follows and the
-// starts of elements are further elastic coordinates: sections move by these and their own element's dofs.
+// The equations are taken down once more, from a copy of the build on the same expressions in which
+// what follows and the starts of elements are further elastic coordinates: sections move by these
+// and their own element's dofs.
 #include "formulate/closed_form/beam_augmented.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -19,8 +20,8 @@ static long pairs(long n)
     return n * (n + 1) / 2;
 }
 
-// Does M_c have fewer entries than M between the coordinates of f? Where rotations follow, each of M is a sum over all
-// elements.
+// Does M_c have fewer entries than M between the coordinates of f? Where rotations follow, each of
+// M is a sum over all elements.
 static bool is_sparser(const struct ct_flexible *f)
 {
     long n = 0;
@@ -46,7 +47,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
     return to;
 }
 
-// ---- further coordinates ------------------------------------------------------------------------------------
+// ---- further coordinates ------------------------------------------------------------------------
 
 // Freedoms that follow as coordinates of their own, k and up.
 static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
@@ -63,7 +64,8 @@ static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
     }
 }
 
-// Elastic coordinates of f with what follows and its starts behind them, whose speeds are numbered from nu on.
+// Elastic coordinates of f with what follows and its starts behind them, whose speeds are numbered
+// from nu on.
 static void add_coordinates(struct ct_build *w, struct ct_flexible *f)
 {
     const int n = f->nelastic, nfollow = ct_condensation_count(f);
@@ -125,7 +127,7 @@ static struct ct_build *clone_augmented(const struct ct_build *b)
     return w;
 }
 
-// ---- entries ------------------------------------------------------------------------------------------------
+// ---- entries ------------------------------------------------------------------------------------
 
 // J_c: columns of the beams' coordinates by what their sections do now, the others as they are.
 static void take_rows(const struct ct_build *b, struct ct_build *w, struct ct_beam_augmented *c)
@@ -235,7 +237,7 @@ struct ct_beam_augmented *ct_beam_augmented_derive(struct ct_build *b)
     return c;
 }
 
-// ---- P ------------------------------------------------------------------------------------------------------
+// ---- P ------------------------------------------------------------------------------------------
 
 // By freedom from y, or back into it.
 static void exchange(const struct ct_flexible *f, ct_ex *by_freedom, ct_ex *y, bool back)

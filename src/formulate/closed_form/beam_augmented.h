@@ -1,13 +1,15 @@
-// Augmented sparse form of inextensible beams among the equations of closed systems, with as many entries as elements.  (formulation 6.4)
+// Augmented sparse form of inextensible beams among the equations of closed systems, with as many
+// entries as elements.  (formulation 6.4)
 //
-// In a CHAIN all that lies beyond the start of an element moves along with the foreshortening c there, and rotations r that
-// follow are sums over all nodes: M and J have an entry for each two nodes. With r'' and the accelerations c'' of these
-// starts, as far as they come from u', for further unknowns
+// In a CHAIN all that lies beyond the start of an element moves along with the foreshortening c
+// there, and rotations r that follow are sums over all nodes: M and J have an entry for each two
+// nodes. With r'' and the accelerations c'' of these starts, as far as they come from u', for
+// further unknowns
 //
 //     y = (u', r'', c'') = P u',   k r'' + k_t t'' = 0,   c_i'' = c_i-1'' + g_i-1 . a_i-1''       M = P' M_c P,   J = J_c P
 //
-// an element sees its own nodes and c. Right sides, coordinates and rows stay as they are: M u' - J' lam = Q and J u' = -gam
-// are
+// an element sees its own nodes and c. Right sides, coordinates and rows stay as they are: M u' -
+// J' lam = Q and J u' = -gam are
 //
 //     [ M_c  J_c'  L' ] [   y  ]   [ Q, 0 ]
 //     [ J_c   0    0  ] [ -lam ] = [ -gam ],      L y = 0 the sums above; n are forces along the axis, and moments
@@ -29,8 +31,8 @@ struct ct_beam_augmented {
     const struct ct_build *build; // whose beams have all these coordinates
 };
 
-/// After the dynamics of b; NULL where no beam of b has a CHAIN of several elements in nodal coordinates that would fill M,
-/// or b is truncated.
+/// After the dynamics of b; NULL where no beam of b has a CHAIN of several elements in nodal
+/// coordinates that would fill M, or b is truncated.
 struct ct_beam_augmented *ct_beam_augmented_derive(struct ct_build *b);
 /// y (n) = P y, its first nu given.
 void ct_beam_augmented_extend(struct ct_exs *x, struct ct_arena *scratch,

@@ -25,7 +25,7 @@ bool ct_blocks_moves(const struct ct_blocks *s, ct_ex v)
     return (ct_ex_kinds(s->x, v) & ~(1u << CT_SYM_PARAM)) != 0;
 }
 
-// ---- choice of pivots -------------------------------------------------------------------------------
+// ---- choice of pivots ---------------------------------------------------------------------------
 
 struct choice {
     int size, row[2], column[2];
@@ -159,7 +159,7 @@ static struct choice choose(struct ct_blocks *s)
     return best;
 }
 
-// ---- elimination --------------------------------------------------------------------------------------
+// ---- elimination --------------------------------------------------------------------------------
 
 static ct_ex value_at(const struct ct_probed_row *l, int column)
 {
@@ -277,7 +277,7 @@ bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes)
     return true;
 }
 
-// ---- solutions ----------------------------------------------------------------------------------------------
+// ---- solutions ----------------------------------------------------------------------------------
 
 // x = P^-1 t for the columns of block k, the rest of its rows taken off t.
 static void solve_block(struct ct_blocks *s, int k, const ct_ex *t, ct_ex *x)

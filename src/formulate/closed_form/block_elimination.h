@@ -1,10 +1,12 @@
-// A square sparse matrix of expressions, factored in blocks of one or two rows: J_d = L U of elimination.h.
+// A square sparse matrix of expressions, factored in blocks of one or two rows: J_d = L U of
+// elimination.h.
 //
 //     left   what elimination has left of J: in the rows of block k its pivots, and in the columns of later
 //            blocks U; columns that are not eliminated are carried along
 //     step   L: row -= factor * rows of a block
 //
-// Pivots are taken where they cost least among those that are large enough at the state of the probe.
+// Pivots are taken where they cost least among those that are large enough at the state of the
+// probe.
 //
 // What always holds: the columns of a block are in no row that is still to be done.
 #ifndef CT_FORMULATE_CLOSED_FORM_BLOCK_ELIMINATION_H
@@ -12,8 +14,9 @@
 
 #include "formulate/closed_form/numeric_probe.h"
 
-/// Pivots P of one or two rows, by their numbers: P^-1 is the adjoint divided by the determinant. The quotient is taken last, so that a row that
-/// repeats the pivot's gives 1 exactly: mechanisms of equal parts stay symmetric to the last bit.
+/// Pivots P of one or two rows, by their numbers: P^-1 is the adjoint divided by the determinant.
+/// The quotient is taken last, so that a row that repeats the pivot's gives 1 exactly: mechanisms
+/// of equal parts stay symmetric to the last bit.
 struct ct_block {
     int size, row[2], column[2];
     ct_ex adjoint[4], pivot;                  // by rows; the determinant
@@ -44,7 +47,8 @@ struct ct_blocks {
     size_t nstep, step_cap;
 };
 
-/// Nothing is factored; the caller fills left, group and block_of, of whose columns `rank` are open. Lives in a.
+/// Nothing is factored; the caller fills left, group and block_of, of whose columns `rank` are
+/// open. Lives in a.
 struct ct_blocks ct_blocks_create(struct ct_arena *a, struct ct_exs *x, size_t rank, size_t nu);
 /// Factor; false if the matrix is singular at the probe, or x grows beyond most_nodes.
 bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes);

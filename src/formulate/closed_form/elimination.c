@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound whatever their multipliers;
-// what is left of the equations is measured in the run.
+// With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound
+// whatever their multipliers; what is left of the equations is measured in the run.
 static const double loose = 0.001;
 // Sums of large forces along beams are neither: multipliers are held as small as those of J_d.
 static const double tight = 0.1;
@@ -37,7 +37,7 @@ struct elimination {
     size_t *order; // (nfree) of the pivots of S, the first one last
 };
 
-// ---- lines ----------------------------------------------------------------------------------------
+// ---- lines --------------------------------------------------------------------------------------
 
 static int ascending(const void *a, const void *b)
 {
@@ -110,7 +110,7 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
     return k;
 }
 
-// ---- reduced equations ------------------------------------------------------------------------------------------
+// ---- reduced equations --------------------------------------------------------------------------
 
 // In pairs, so that the sum of many terms is not one long chain.
 static ct_ex sum(struct ct_exs *x, ct_ex *term, size_t n)
@@ -160,8 +160,8 @@ static ct_ex *S_at(const struct elimination *s, size_t i, size_t j)
     return &s->S[(i > j ? i : j) + s->p->nfree * (i > j ? j : i)];
 }
 
-// Products of eliminating S by its pattern, from the last column to the first or always the one with the fewest
-// neighbours; order (nfree, out).
+// Products of eliminating S by its pattern, from the last column to the first or always the one
+// with the fewest neighbours; order (nfree, out).
 static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *order)
 {
     const size_t f = s->p->nfree;
@@ -197,7 +197,8 @@ static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *o
     return cost;
 }
 
-// A beam in a loop has a sparse S whose columns next to the cut are joined to all others: they come last.
+// A beam in a loop has a sparse S whose columns next to the cut are joined to all others: they come
+// last.
 static void choose_order(struct elimination *s)
 {
     size_t *last_first = CT_NEWN(s->a, size_t, s->p->nfree + 1);
@@ -335,7 +336,7 @@ static void residual(struct elimination *s, const ct_ex *a, const ct_ex *lam, ct
         r[nu + i] = ct_ex_add(s->x, r[nu + i], s->e->row[s->row[i]].gam);
 }
 
-// ---- entries --------------------------------------------------------------------------------------------------------
+// ---- entries ------------------------------------------------------------------------------------
 
 static struct elimination create(struct ct_arena *a, struct ct_exs *x,
                                  const struct ct_equations *e,
@@ -405,7 +406,8 @@ static void derive_accelerations(struct elimination *s, struct ct_closed *c)
     residual(s, c->better_a, c->better_lam, c->better_residual);
 }
 
-// By pattern, in the best of the orders, if it takes less than `most`; else NULL, or if it is singular.
+// By pattern, in the best of the orders, if it takes less than `most`; else NULL, or if it is
+// singular.
 static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_arena *scratch,
                                     double most, enum ct_kkt_order *best)
 {

@@ -29,9 +29,10 @@ struct work {
     struct ct_kkt *k;
 };
 
-// ---- the matrix -----------------------------------------------------------------------------------------
+// ---- the matrix ---------------------------------------------------------------------------------
 
-// Unknowns without inertia (d[i] = 0): the largest entries of their columns are as those of the rows that these are in.
+// Unknowns without inertia (d[i] = 0): the largest entries of their columns are as those of the
+// rows that these are in.
 static void scale_massless(const struct ct_probed_row *J, size_t m, size_t nu, double *d)
 {
     double *row = d + nu;
@@ -88,7 +89,7 @@ static void read_matrix(struct work *w, const struct ct_probed_row *M, size_t nu
         }
 }
 
-// ---- choice of pivots -----------------------------------------------------------------------------------
+// ---- choice of pivots ---------------------------------------------------------------------------
 
 // The largest number of a row beside columns i and j.
 static double size_beside(const struct ct_probed_row *l, int i, int j)
@@ -203,7 +204,8 @@ static struct choice choose(const struct work *w)
     return best;
 }
 
-// Row r and its level have changed: so have the pivots that it, or a neighbour together with it, would be.
+// Row r and its level have changed: so have the pivots that it, or a neighbour together with it,
+// would be.
 static void mark_stale(const struct work *w, int r)
 {
     w->is_stale[r] = true;
@@ -211,10 +213,10 @@ static void mark_stale(const struct work *w, int r)
         w->is_stale[w->row[r].e[k].column] = true;
 }
 
-// ---- along the system -------------------------------------------------------------------------------------
+// ---- along the system ---------------------------------------------------------------------------
 
-// Rows in the order of a walk in breadth from `first` over those that are not placed, neighbours with few neighbours
-// first: order[n ...]. Returns the new number.
+// Rows in the order of a walk in breadth from `first` over those that are not placed, neighbours
+// with few neighbours first: order[n ...]. Returns the new number.
 static size_t walk(const struct work *w, int first, int *order, size_t n, int *position)
 {
     size_t end = n;
@@ -239,8 +241,8 @@ static size_t walk(const struct work *w, int first, int *order, size_t n, int *p
     return end;
 }
 
-// Positions along the system, so that what is coupled is near: from one of the farthest rows of each part.
-// Source: Cuthill and McKee (1969), key cuthill1969.
+// Positions along the system, so that what is coupled is near: from one of the farthest rows of
+// each part. Source: Cuthill and McKee (1969), key cuthill1969.
 static int *place_along(const struct work *w)
 {
     int *position = CT_NEWN(w->a, int, w->n + 1), *order = CT_NEWN(w->a, int, w->n + 1);
@@ -259,7 +261,7 @@ static int *place_along(const struct work *w)
     return position;
 }
 
-// ---- elimination ----------------------------------------------------------------------------------------
+// ---- elimination --------------------------------------------------------------------------------
 
 // In the mode of counting, any entry is 1.
 static ct_ex product(struct ct_exs *x, ct_ex a, ct_ex b)
@@ -347,8 +349,8 @@ static struct ct_probed_entry updated(struct work *w, const struct ct_kkt_pivot 
     return e;
 }
 
-// Row r without the pivot's columns, its entries among the neighbours updated; those left of the diagonal are there
-// already.
+// Row r without the pivot's columns, its entries among the neighbours updated; those left of the
+// diagonal are there already.
 static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnear, int r,
                        const ct_ex *f, const double *number)
 {

@@ -1,4 +1,5 @@
-// Rows of sparse matrices of expressions, each entry with its value at one state beside it, a numeric probe.
+// Rows of sparse matrices of expressions, each entry with its value at one state beside it, a
+// numeric probe.
 #ifndef CT_FORMULATE_CLOSED_FORM_NUMERIC_PROBE_H
 #define CT_FORMULATE_CLOSED_FORM_NUMERIC_PROBE_H
 

@@ -9,8 +9,9 @@
 #include "formulate/closed_form/block_elimination.h"
 #include "formulate/equations.h"
 
-/// dq, du, shift (nu, out: d, e and f in the dependent places) for the kept rows (J_d->rank, numbers in row), as expressions of a
-/// store that is a copy of e->x. shift may be NULL: not wanted. Lives in a. Cost: a few times the nodes of v.
+/// dq, du, shift (nu, out: d, e and f in the dependent places) for the kept rows (J_d->rank,
+/// numbers in row), as expressions of a store that is a copy of e->x. shift may be NULL: not
+/// wanted. Lives in a. Cost: a few times the nodes of v.
 void ct_projection_step_derive(struct ct_arena *a, struct ct_exs *x,
                                const struct ct_equations *e, const int *row,
                                struct ct_blocks *J_d, ct_ex *dq, ct_ex *du, ct_ex *shift);

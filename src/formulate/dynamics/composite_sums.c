@@ -62,7 +62,8 @@ ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
     return ct_build_in_plane(s->b, ct_link_vector(s->b, anchor));
 }
 
-// A augmented body counts if a turn of it accelerates anything: by its first moment or through a link.
+// A augmented body counts if a turn of it accelerates anything: by its first moment or through a
+// link.
 static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
 {
     for (int k = 0; k < s->nchild; k++)
@@ -120,8 +121,8 @@ enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int
                                           : CT_TURNS_ALL;
 }
 
-// The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
-// inboard of all that does.
+// The innermost anchor outboard of which everything turns with a cluster; if there is none, the
+// outermost one inboard of all that does.
 static void find_starts(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
@@ -207,7 +208,7 @@ ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor,
     return sum;
 }
 
-// ---- composite inertia ------------------------------------------------------------------------------
+// ---- composite inertia --------------------------------------------------------------------------
 
 static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *a)
 {

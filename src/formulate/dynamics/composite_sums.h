@@ -56,7 +56,8 @@ int ct_composite_sums_first_part(const struct ct_composite_sums *s, int anchor, 
 bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster,
                                   int star_cluster);
 
-/// In ground components: the first moment of an augmented body, and the vector from an anchor's parent to it, in its plane.
+/// In ground components: the first moment of an augmented body, and the vector from an anchor's
+/// parent to it, in its plane.
 ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star);
 ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor);
 /// Sum of the vectors on the path to an anchor that turn with a cluster.
@@ -64,7 +65,8 @@ ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int clus
 /// First moments outboard of an anchor: of everything, and of what turns with a cluster.
 ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor);
 ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor, int cluster);
-/// Inertia of everything that turns with a cluster, about the point where its vectors start: added to sum.
+/// Inertia of everything that turns with a cluster, about the point where its vectors start: added
+/// to sum.
 void ct_composite_sums_add_full(struct ct_composite_sums *s, int anchor, int cluster,
                                 ct_ex33 *sum);
 

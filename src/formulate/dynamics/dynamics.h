@@ -1,8 +1,8 @@
 // Dynamics by cutset equations: mass matrix, forces, loads, reactions.  (formulation 5)
 //
-// Masses are lumped on the links that carry them: an augmented body is an anchor together with the cluster in
-// which the vectors to its masses and next anchors are fixed. It has a first moment and adds to the
-// cluster's augmented inertia; both are constant unless something slides.
+// Masses are lumped on the links that carry them: an augmented body is an anchor together with the
+// cluster in which the vectors to its masses and next anchors are fixed. It has a first moment and
+// adds to the cluster's augmented inertia; both are constant unless something slides.
 #ifndef CT_FORMULATE_DYNAMICS_DYNAMICS_H
 #define CT_FORMULATE_DYNAMICS_DYNAMICS_H
 
@@ -20,7 +20,8 @@ struct ct_sweep {
 
 /// Anchor masses, augmented bodies, augmented inertias; once.
 void ct_augmented_bodies_lump(struct ct_build *b);
-/// Augmented inertia of a cluster in ground components; planar: about the normal, in the last entry.
+/// Augmented inertia of a cluster in ground components; planar: about the normal, in the last
+/// entry.
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c);
 /// M, lower triangle.  (5.2)
 void ct_mass_matrix_derive(struct ct_build *b);
@@ -42,12 +43,13 @@ void ct_load_add(struct ct_build *b, const struct ct_load *load);
 ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self);
 /// Is `name` "PROPERTY.x", .y or .z? Then *out is that component of v.
 bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out);
-/// Effort of a driven coordinate's driver: its row of the full sweep less what the joint's spring, damper and applied effort
-/// and gears give along it.
+/// Effort of a driven coordinate's driver: its row of the full sweep less what the joint's spring,
+/// damper and applied effort and gears give along it.
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate);
 /// Efforts, springs and dampers of joints; forces.
 bool ct_loads_derive(struct ct_build *b);
-/// Warns of forces across a beam whose `deformation` leaves out the bending that they ask for. After ct_loads_derive.
+/// Warns of forces across a beam whose `deformation` leaves out the bending that they ask for.
+/// After ct_loads_derive.
 void ct_warn_of_excluded_loads(struct ct_ctx *ctx, struct ct_build *b);
 
 #endif

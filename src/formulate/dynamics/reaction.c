@@ -21,7 +21,7 @@ static void take(struct ct_build *b, ct_ex3 *sum, ct_ex3 v)
     *sum = ct_ex3_sub(b->x, *sum, v);
 }
 
-// ---- what acts at a node -------------------------------------------------------------------------------
+// ---- what acts at a node ------------------------------------------------------------------------
 
 static ct_ex3 pair_moment(struct ct_build *b, int tail, int head, ct_ex3 force)
 {
@@ -110,7 +110,7 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
     return sum;
 }
 
-// ---- cutset sums -----------------------------------------------------------------------------------------
+// ---- cutset sums --------------------------------------------------------------------------------
 
 // Force that the branch above a node must supply.  (5.8)
 static ct_ex3 cut_force(struct ct_build *b, int node)
@@ -154,7 +154,7 @@ static ct_ex3 cut_torque(struct ct_build *b, int node)
     return sum;
 }
 
-// ---- branches ----------------------------------------------------------------------------------------
+// ---- branches -----------------------------------------------------------------------------------
 
 static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int edge)
 {
@@ -179,7 +179,7 @@ static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *
     }
 }
 
-// ---- planar mechanisms -------------------------------------------------------------------------------------
+// ---- planar mechanisms --------------------------------------------------------------------------
 
 // Does component i of a force lie in the plane, or that of a torque along its normal?
 static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
@@ -212,7 +212,8 @@ static bool is_link(const struct ct_build *b, size_t edge)
         && !b->topology->edge[edge].never_branch;
 }
 
-// Nodes that hang on the head of an edge once it is cut; NULL if its tail is among them: it closes a loop.
+// Nodes that hang on the head of an edge once it is cut; NULL if its tail is among them: it closes
+// a loop.
 static const bool *hanging_on(const struct ct_build *b, int edge)
 {
     bool *hangs = CT_NEWN(b->arena, bool, b->topology->nnode), grows = true;
@@ -229,7 +230,8 @@ static const bool *hanging_on(const struct ct_build *b, int edge)
     return hangs[b->topology->wiring[edge].tail] ? NULL : hangs;
 }
 
-// Do the trees cut off, below branch e of both, all that hangs on it? Chords out of the cut may carry part of it.
+// Do the trees cut off, below branch e of both, all that hangs on it? Chords out of the cut may
+// carry part of it.
 static bool is_cut_by_trees(const struct ct_build *b, int edge)
 {
     if (is_chord(b, edge))
@@ -245,7 +247,8 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
         const int tail = b->topology->wiring[e].tail, head = b->topology->wiring[e].head;
         const bool is_open
             = b->topology->edge[e].kind != CT_EDGE_ARM && is_link(b, e) && is_chord(b, (int)e);
-        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its ends
+        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its
+        // ends
         if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
             && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
             return false;
@@ -253,8 +256,9 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
     return true;
 }
 
-// What an edge that closes no loop transmits, by the equilibrium of all that hangs on it, in no tree's order:
-// about the origin of its head P, sum f and sum (r - P) x f + t, f and t what a node needs.
+// What an edge that closes no loop transmits, by the equilibrium of all that hangs on it, in no
+// tree's order: about the origin of its head P, sum f and sum (r - P) x f + t, f and t what a node
+// needs.
 static void sum_over_side(struct ct_build *b, int edge, const bool *hangs, ct_ex3 *force,
                           ct_ex3 *torque)
 {
@@ -306,7 +310,7 @@ void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *to
         complete(b, edge, force, torque);
 }
 
-// ---- the joint ---------------------------------------------------------------------------------------------
+// ---- the joint ----------------------------------------------------------------------------------
 
 void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
 {

@@ -8,7 +8,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- linear parts -------------------------------------------------------------------------------------
+// ---- linear parts -------------------------------------------------------------------------------
 
 static void add_term(struct ct_build *b, struct ct_linear *l, int speed, int driver, ct_ex v)
 {
@@ -28,7 +28,8 @@ static struct ct_linear linear_zero(struct ct_build *b)
     return (struct ct_linear){b->cache.coefficient, CT_EX_ZERO};
 }
 
-// p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.  (4.2)-(4.4)
+// p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.
+// (4.2)-(4.4)
 static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_wrench *w,
                          bool carried, struct ct_linear *l)
 {
@@ -83,7 +84,7 @@ static void coordinate_terms(struct ct_build *b, int coordinate, ct_ex factor,
     }
 }
 
-// ---- rows ---------------------------------------------------------------------------------------------
+// ---- rows ---------------------------------------------------------------------------------------
 
 static int push_row(struct ct_build *b, const char *name, int joint, const struct ct_linear *l,
                     ct_ex phi, ct_ex gam)
@@ -165,7 +166,8 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
     const int row = push_row(b, self->name, joint_index(b, self), &l, phi, gam);
     const int coupled[2] = {coordinate_a, coordinate_b};
     for (int i = 0; i < 2; i++) {
-        // a multiplier on a measured coordinate is a wrench pair; on a branch it is a force on its row
+        // a multiplier on a measured coordinate is a wrench pair; on a branch it is a force on its
+        // row
         struct ct_wrench w;
         const struct ct_coordinate *c = &b->coordinate[coupled[i]];
         const struct ct_ends n = ct_edge_ends(b, c->edge);
@@ -189,7 +191,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
     }
 }
 
-// ---- translational rows of a joint ----------------------------------------------------------------------
+// ---- translational rows of a joint --------------------------------------------------------------
 
 // Origins coincide: one row along each ground direction, in the plane two.  (4.2)
 static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct ct_ends n)
@@ -252,7 +254,7 @@ static void translation_rows(struct ct_build *b, int edge)
     }
 }
 
-// ---- rotational rows of a joint ---------------------------------------------------------------------------
+// ---- rotational rows of a joint -----------------------------------------------------------------
 
 static void planar_angle_row(struct ct_build *b, int edge)
 {
@@ -322,7 +324,7 @@ static void rotation_rows(struct ct_build *b, int edge)
     planar_angle_row(b, edge);
 }
 
-// ---- drivers of chords ------------------------------------------------------------------------------------
+// ---- drivers of chords --------------------------------------------------------------------------
 
 static void driven_row(struct ct_build *b, int coordinate)
 {

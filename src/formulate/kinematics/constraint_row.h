@@ -12,13 +12,15 @@ struct ct_multiplier_wrench {
     bool carried;
 };
 
-/// A coordinate of a branch that a gear's row couples: it feels factor * lam along itself, beside what the joint transmits.
+/// A coordinate of a branch that a gear's row couples: it feels factor * lam along itself, beside
+/// what the joint transmits.
 struct ct_coupling {
     int row, coordinate;
     ct_ex factor;
 };
 
-/// Coefficients of the unknown speeds in a row, and the part driven by time: v = sum coef u + driven.
+/// Coefficients of the unknown speeds in a row, and the part driven by time: v = sum coef u +
+/// driven.
 struct ct_linear {
     ct_ex *coef; // nu
     ct_ex driven;
@@ -27,13 +29,15 @@ struct ct_linear {
 /// Rows of all joints that are chords, of rods, gears and driven chords.
 bool ct_rows_derive(struct ct_build *b);
 
-/// Coefficients of the speeds (nu) in what the row's multiplier does as wrench pairs; until the next row.
+/// Coefficients of the speeds (nu) in what the row's multiplier does as wrench pairs; until the
+/// next row.
 const ct_ex *ct_row_coefficients(struct ct_build *b, int row);
 
 /// One scalar row along a wrench; used by classes (distance).
 void ct_row_add(struct ct_build *b, const struct ct_instance *self, const char *what, int tail,
                 int head, const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam);
-/// A row that couples two coordinates: q_a - ratio q_b = const, the constant from the assembled start.
+/// A row that couples two coordinates: q_a - ratio q_b = const, the constant from the assembled
+/// start.
 void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coordinate_a,
                    int coordinate_b, ct_ex ratio);
 /// A constant that takes the value of `at_start` in the assembled start and keeps it.

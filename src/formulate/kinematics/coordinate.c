@@ -34,8 +34,8 @@ ct_ex ct_memory_keep(struct ct_build *b, const char *name, int joint, ct_ex at_s
     return s;
 }
 
-// Angle about a from V to W, followed from its last value r: r + the angle that is left, which stays
-// small, so that no branch cut is met within a step.
+// Angle about a from V to W, followed from its last value r: r + the angle that is left, which
+// stays small, so that no branch cut is met within a step.
 static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int place, ct_ex sine,
                         ct_ex cosine)
 {
@@ -50,7 +50,8 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
     return angle;
 }
 
-// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from the axes of its frame.
+// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from the
+// axes of its frame.
 static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
@@ -80,8 +81,8 @@ ct_ex ct_angle_in_plane(struct ct_build *b, int node, ct_ex3 v)
     return is_upward(b, &c->axis) ? ct_ex_add(x, own, c->angle) : ct_ex_sub(x, own, c->angle);
 }
 
-// In a plane angles add: the angle about a from V to W is the difference of two sums, and whole turns that stay. False where
-// V or W turns in its frame.
+// In a plane angles add: the angle about a from V to W is the difference of two sums, and whole
+// turns that stay. False where V or W turns in its frame.
 static bool add_angles(struct ct_build *b, const struct ct_measure *m, struct ct_ends p,
                        ct_ex3 a, ct_ex *sum)
 {

@@ -1,4 +1,5 @@
-// Coordinates of joints and bodies: unknown, driven, or measured between two frames.  (formulation 1.3)
+// Coordinates of joints and bodies: unknown, driven, or measured between two frames.  (formulation
+// 1.3)
 #ifndef CT_FORMULATE_KINEMATICS_COORDINATE_H
 #define CT_FORMULATE_KINEMATICS_COORDINATE_H
 
@@ -13,19 +14,21 @@ static inline struct ct_ends ct_edge_ends(const struct ct_build *b, int edge)
     return (struct ct_ends){b->topology->wiring[edge].tail, b->topology->wiring[edge].head};
 }
 
-/// Unit wrench on the head, the opposite on the tail, both along the line through the head (carried) or each at
-/// its own origin (not carried: full translational rows, where both origins coincide).
+/// Unit wrench on the head, the opposite on the tail, both along the line through the head
+/// (carried) or each at its own origin (not carried: full translational rows, where both origins
+/// coincide).
 struct ct_wrench {
     ct_ex3 force, torque; // ground components
 };
 
-/// Coordinate of a joint or body edge by index in b->coordinate: unknown, driven or measured; its rate and its
-/// acceleration at a level. For a number of a quaternion the speed is the component of angular velocity of the same place.
+/// Coordinate of a joint or body edge by index in b->coordinate: unknown, driven or measured; its
+/// rate and its acceleration at a level. For a number of a quaternion the speed is the component of
+/// angular velocity of the same place.
 ct_ex ct_coordinate_value(struct ct_build *b, int coordinate);
 ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate);
 ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_level level);
-/// Wrench conjugate to the speed of a measured coordinate; false if there is none (a particle, the last number of a
-/// quaternion).
+/// Wrench conjugate to the speed of a measured coordinate; false if there is none (a particle, the
+/// last number of a quaternion).
 bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *w);
 
 /// Quaternion of R, followed continuously from its last value.
@@ -35,7 +38,8 @@ int ct_coordinate_find(const struct ct_build *b, const char *name);
 
 /// Is it an unknown, or driven? Else it is measured.
 bool ct_coordinate_is_known(const struct ct_coordinate *c);
-/// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from ground.
+/// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from
+/// ground.
 ct_ex ct_angle_in_plane(struct ct_build *b, int node, ct_ex3 v);
 /// d/dt of p . (d' - w_a x d) with p fixed in the tail's axes.  (4.3)
 ct_ex ct_along_acceleration(struct ct_build *b, struct ct_ends n, ct_ex3 p,

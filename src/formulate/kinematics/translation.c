@@ -23,7 +23,7 @@ static bool is_moving(const struct ct_build *b, ct_ex3 v)
          & moving;
 }
 
-// ---- anchors --------------------------------------------------------------------------------------
+// ---- anchors ------------------------------------------------------------------------------------
 
 static int add_anchor(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
                       int cluster, ct_ex3 local)
@@ -202,7 +202,7 @@ void ct_translation_derive(struct ct_build *b, struct ct_kinematics *kinematics)
     b->cache.anchor = CT_NEWN(b->arena, struct ct_anchor_cache, kinematics->nanchor);
 }
 
-// ---- links ----------------------------------------------------------------------------------------
+// ---- links --------------------------------------------------------------------------------------
 
 ct_ex3 ct_link_vector(struct ct_build *b, int i)
 {
@@ -254,7 +254,7 @@ ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
     return ct_ex3_add(b->x, carried, ct_link_sliding_acceleration(b, i, level));
 }
 
-// ---- anchors and nodes ------------------------------------------------------------------------------
+// ---- anchors and nodes --------------------------------------------------------------------------
 
 static ct_ex3 anchor_position(struct ct_build *b, int i)
 {
@@ -315,7 +315,7 @@ ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level)
                       carried_acceleration(b, p->cluster, offset(b, p), level));
 }
 
-// ---- paths ----------------------------------------------------------------------------------------
+// ---- paths --------------------------------------------------------------------------------------
 
 struct path {
     struct ct_piece *piece;
@@ -328,8 +328,8 @@ static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 
         p->piece[p->n++] = (struct ct_piece){anchor, cluster, sign, local};
 }
 
-// From tail to head: offsets and links up to where both chains of anchors meet. It holds until the next one is
-// sought: there are as many as pairs of a row and a speed.
+// From tail to head: offsets and links up to where both chains of anchors meet. It holds until the
+// next one is sought: there are as many as pairs of a row and a speed.
 static struct path find_path(struct ct_build *b, int tail, int head)
 {
     const struct ct_node_placement *t = &b->kinematics->placement[tail],
@@ -381,8 +381,8 @@ static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
     return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
 }
 
-// From ground over many pieces: places and velocities that nodes on the way share cost less than a sum
-// of one's own.
+// From ground over many pieces: places and velocities that nodes on the way share cost less than a
+// sum of one's own.
 static bool is_long(const struct ct_build *b, int tail, int head)
 {
     const struct ct_kinematics *k = b->kinematics;
@@ -424,8 +424,8 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
     return sum;
 }
 
-// Does the piece turn with node t? What it slides by is added to *slid then, what is fixed of it to *fixed: arms on both sides cancel
-// there before anything is rounded.
+// Does the piece turn with node t? What it slides by is added to *slid then, what is fixed of it to
+// *fixed: arms on both sides cancel there before anything is rounded.
 static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
                     const struct ct_piece *p, ct_ex3 *fixed, ct_ex3 *slid)
 {
@@ -472,7 +472,8 @@ ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
     return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
 }
 
-// local x v for a vector v of the spin's own cluster, in its axes; worth it where a component vanishes.
+// local x v for a vector v of the spin's own cluster, in its axes; worth it where a component
+// vanishes.
 static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct_ex3 v,
                         ct_ex3 *sweep)
 {

@@ -10,10 +10,10 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- the part beyond a section --------------------------------------------------------------------------
+// ---- the part beyond a section ------------------------------------------------------------------
 
-// A section and the sums of what the part beyond it needs: force, and torque about the section's origin; axes of the
-// beam.
+// A section and the sums of what the part beyond it needs: force, and torque about the section's
+// origin; axes of the beam.
 struct cut {
     const struct ct_flexible *f;
     struct ct_station s;
@@ -60,7 +60,8 @@ static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                      ct_element_field(b, e, f->shape.rotation, of, 2, 4, xi)}};
 }
 
-// Mass m with the rotary inertia j at xi of an element. chain: acceleration of the foreshortening at its start.  (5.4)
+// Mass m with the rotary inertia j at xi of an element. chain: acceleration of the foreshortening
+// at its start.  (5.4)
 static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element *e, ct_ex xi,
                      ct_ex m, const ct_ex j[3], ct_ex chain)
 {
@@ -106,7 +107,8 @@ static int points_of(const struct ct_build *b, const struct ct_flexible *f)
     return f->kinematics == CT_AXIAL_LINEAR ? 4 : 6; // r and c are of degree 3 or 5
 }
 
-// The element beyond xi = from. Lumped masses sit at its ends; that at the section's own place counts.
+// The element beyond xi = from. Lumped masses sit at its ends; that at the section's own place
+// counts.
 static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex from, ct_ex chain)
 {
     struct ct_exs *x = b->x;

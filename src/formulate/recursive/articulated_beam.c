@@ -5,7 +5,7 @@
 
 enum { FREEDOMS = CT_NODE_FREEDOM };
 
-// ---- arithmetic -----------------------------------------------------------------------------------------
+// ---- arithmetic ---------------------------------------------------------------------------------
 
 static ct_ex force_of(const struct ct_articulated_body *k, int i)
 {
@@ -43,7 +43,8 @@ static void add_to(struct ct_exs *x, ct_ex *sum, ct_ex v)
     *sum = ct_ex_add(x, *sum, v);
 }
 
-// Does a freedom that follows stand for itself? In a CHAIN elements see it; else where it turns a section that members hang on.
+// Does a freedom that follows stand for itself? In a CHAIN elements see it; else where it turns a
+// section that members hang on.
 static bool has_followers(const struct ct_articulated *w, size_t i)
 {
     const struct ct_flexible *f = &w->b->flexible[i];
@@ -150,7 +151,8 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
     }
 }
 
-// The beam's own inertia, stiffness and damping at its base, and what its velocity needs; in the member's axes.
+// The beam's own inertia, stiffness and damping at its base, and what its velocity needs; in the
+// member's axes.
 static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e,
                      const ct_ex33 *A)
 {
@@ -271,7 +273,8 @@ static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body
     reduce_body(x, k, &e->G[j], &k->C[j], e->row[j]);
 }
 
-// One that follows and its multiplier, [h p; p q]: h q <= 0 < p^2, as h is an inertia and q of multipliers the reverse.
+// One that follows and its multiplier, [h p; p q]: h q <= 0 < p^2, as h is an inertia and q of
+// multipliers the reverse.
 static void free_follower(struct ct_articulated *w, struct ct_articulated_body *k,
                           struct ct_articulated_beam *e, int number)
 {
@@ -389,7 +392,8 @@ static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
     }
 }
 
-// Does anything act on freedoms that follow? Nothing does where sections are turned only for what hangs on hinges or balls.
+// Does anything act on freedoms that follow? Nothing does where sections are turned only for what
+// hangs on hinges or balls.
 static bool feels_followers(struct ct_articulated_beam *e, const struct ct_spatial_vector *C)
 {
     for (int k = 0; k < e->nfollow; k++) {

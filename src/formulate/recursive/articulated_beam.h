@@ -1,14 +1,17 @@
-// Between the files of articulated bodies: what hangs on a member, and the elastic coordinates of beams.
+// Between the files of articulated bodies: what hangs on a member, and the elastic coordinates of
+// beams.
 //
-// Elastic coordinates e of a beam move several members. Those that lie outboard of the base, and the base, are summed first:
-// on the way inwards what hangs on a member also feels their accelerations, n, f += C e'', and its forces act on their rows,
+// Elastic coordinates e of a beam move several members. Those that lie outboard of the base, and
+// the base, are summed first: on the way inwards what hangs on a member also feels their
+// accelerations, n, f += C e'', and its forces act on their rows,
 //
 //     M e'' + C' (al, a) + row = effort,    at a member they move by s:  M += s' I s + s' C + C' s,  row += s . f0,  C += I s
 //
-// and at the innermost of these members they are eliminated one by one, from the tip of the beam inwards. In a CHAIN an
-// element moves with its own dofs and c, the foreshortening at its start (flexible_body.h), which is one more coordinate until
-// all beyond it are eliminated; then c of the element before and g . dofs of that element are put in for it. So every
-// element sees its neighbours only.
+// and at the innermost of these members they are eliminated one by one, from the tip of the beam
+// inwards. In a CHAIN an element moves with its own dofs and c, the foreshortening at its start
+// (flexible_body.h), which is one more coordinate until all beyond it are eliminated; then c of the
+// element before and g . dofs of that element are put in for it. So every element sees its
+// neighbours only.
 #ifndef CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 #define CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 
@@ -33,8 +36,8 @@ struct ct_articulated_body {
     struct ct_spatial_vector *C;            // of a beam's member, by elastic coordinate
 };
 
-/// Elastic coordinates of a beam (n), in a CHAIN also c of its elements, n + element, then its freedoms that follow, and as many
-/// multipliers of the sums that they satisfy (beam_dynamics.h).
+/// Elastic coordinates of a beam (n), in a CHAIN also c of its elements, n + element, then its
+/// freedoms that follow, and as many multipliers of the sums that they satisfy (beam_dynamics.h).
 struct ct_articulated_beam {
     const struct ct_flexible *f;
     int n, nall, nfollow;
@@ -72,11 +75,13 @@ ct_ex ct_articulated_project(struct ct_articulated *w, const struct ct_articulat
 
 /// Beam number i of w, empty.
 void ct_articulated_beam_start(struct ct_articulated *w, size_t i);
-/// Add what member i of a beam is and how its elastic coordinates move it; at the root eliminate them.
+/// Add what member i of a beam is and how its elastic coordinates move it; at the root eliminate
+/// them.
 void ct_articulated_beam_sum(struct ct_articulated *w, int i);
 /// C on its way to the parent of member i, with the rows of what is known of the accelerations.
 void ct_articulated_beam_hand(struct ct_articulated *w, int i);
-/// The part of member i's acceleration that elastic coordinates give it, theirs into out by speed; at the root theirs are found.
+/// The part of member i's acceleration that elastic coordinates give it, theirs into out by speed;
+/// at the root theirs are found.
 void ct_articulated_beam_accelerate(struct ct_articulated *w, int i, ct_ex *out);
 
 #endif

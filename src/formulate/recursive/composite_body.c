@@ -1,4 +1,4 @@
-// See composite_body.h.
+// Composite bodies; see composite_body.h.
 //
 //     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  n = J al + w x J w + h x a,  A = U + al~
 //         leaves -> ground   f, n less loads, turned and shifted;   Q_k = effort - s_k . (n, f)

@@ -1,11 +1,12 @@
-// Mass matrix and forces of open systems in axes of the members: composite bodies and inverse dynamics.
+// Mass matrix and forces of open systems in axes of the members: composite bodies and inverse
+// dynamics.
 #ifndef CT_FORMULATE_RECURSIVE_COMPOSITE_BODY_H
 #define CT_FORMULATE_RECURSIVE_COMPOSITE_BODY_H
 
 #include "formulate/recursive/member.h"
 
-/// M (lower triangle of nu x nu, out, column-major; zero where two speeds do not act on each other) and Q (nu, out) for
-/// the members of an open system and the efforts along its speeds.
+/// M (lower triangle of nu x nu, out, column-major; zero where two speeds do not act on each other)
+/// and Q (nu, out) for the members of an open system and the efforts along its speeds.
 ///
 /// Cost    O(members times depth)
 /// Source  Featherstone (2008), key featherstone2008, sections 5.3 and 6.2

@@ -2,17 +2,18 @@
 //
 //     ground (0) --shift r, slides--turn--> member --> member ...
 //
-// In space every member has axes of its own (those of its cluster), so that shifts, inertias and most axes
-// of joints are constant: what recursions along a chain use. In a plane all members share the axes
-// (e1, e2, n) of the plane, in which nothing need be turned.
+// In space every member has axes of its own (those of its cluster), so that shifts, inertias and
+// most axes of joints are constant: what recursions along a chain use. In a plane all members share
+// the axes (e1, e2, n) of the plane, in which nothing need be turned.
 //
-// A beam hangs on a member of its own, its base; a section is one or more members that elastic coordinates move against it. All
-// members that elastic coordinates of a beam move, and its base, are connected; the innermost of them is the root. In a plane
-// the base and what slides against it have axes (x of the beam, n x x, n).
+// A beam hangs on a member of its own, its base; a section is one or more members that elastic
+// coordinates move against it. All members that elastic coordinates of a beam move, and its base,
+// are connected; the innermost of them is the root. In a plane the base and what slides against it
+// have axes (x of the beam, n x x, n).
 //
-// What always holds: a member's parent has a smaller number; number 0 is ground. Each unknown speed of a joint moves
-// one member. Masses are lumped towards ground: what a joint cannot move - a mass on its axis, a rod along it,
-// for a slide the moments of inertia - is counted with the parent.
+// What always holds: a member's parent has a smaller number; number 0 is ground. Each unknown speed
+// of a joint moves one member. Masses are lumped towards ground: what a joint cannot move - a mass
+// on its axis, a rod along it, for a slide the moments of inertia - is counted with the parent.
 #ifndef CT_FORMULATE_RECURSIVE_MEMBER_H
 #define CT_FORMULATE_RECURSIVE_MEMBER_H
 
@@ -20,7 +21,9 @@
 
 /// Motion per unit of a speed, at the member's origin, in its axes.
 struct ct_screw {
-    int speed; // < 0: of the foreshortening at the start of element -speed (flexible_body.h: CHAIN), or, from -nelement on, of a freedom that follows
+    // < 0: of the foreshortening at the start of element -speed (flexible_body.h: CHAIN), or, from
+    // -nelement on, of a freedom that follows
+    int speed;
     ct_ex3 rotation, translation;
     int axis; // 0..2: a turn about this coordinate axis alone, 3..5: a slide along one; else -1
 };
@@ -64,9 +67,9 @@ struct ct_members {
     size_t nbeam;
 };
 
-/// Members of an open system; NULL where this form does not apply: translational and rotational trees that
-/// differ (but for angles in a plane), equations that are cut to first order, beams whose forces alone foreshorten. After
-/// ct_loads_derive.
+/// Members of an open system; NULL where this form does not apply: translational and rotational
+/// trees that differ (but for angles in a plane), equations that are cut to first order, beams
+/// whose forces alone foreshorten. After ct_loads_derive.
 const struct ct_members *ct_members_derive(struct ct_build *b);
 
 /// R v and R' v: a vector out of a member's axes into its parent's, and back.
@@ -75,7 +78,8 @@ ct_ex3 ct_member_in(struct ct_build *b, const struct ct_member *m, ct_ex3 v);
 /// R A R' for any matrix A; about a coordinate axis with 12 products, 9 if A is symmetric.
 void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex33 *A);
 
-/// Accelerations of the origin that do not depend on u': centripetal, Coriolis, prescribed; in the parent's axes.
+/// Accelerations of the origin that do not depend on u': centripetal, Coriolis, prescribed; in the
+/// parent's axes.
 ct_ex3 ct_member_shift_bias(struct ct_build *b, const struct ct_members *s, int m);
 /// The same without the centripetal part.
 ct_ex3 ct_member_slide_bias(struct ct_build *b, const struct ct_members *s, int m);

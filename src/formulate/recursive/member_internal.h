@@ -1,5 +1,5 @@
-// What the files that make members share: member.c places them, member_section.c those of beams, member_load.c gives them inertia and loads,
-// member_velocity.c their velocities.
+// What the files that make members share: member.c places them, member_section.c those of beams,
+// member_load.c gives them inertia and loads, member_velocity.c their velocities.
 //
 // Order: place, flatten, add bodies, lump, find axes, add beams, velocities, loads.
 #ifndef CT_FORMULATE_RECURSIVE_MEMBER_INTERNAL_H
@@ -27,7 +27,8 @@ struct ct_passage {
     const ct_ex33 *S; ///< axes of the node that it starts from
 };
 
-/// A new member at r from its parent, with the axes of a cluster (-1: still open). Returns its number.
+/// A new member at r from its parent, with the axes of a cluster (-1: still open). Returns its
+/// number.
 int ct_member_add(struct ct_member_build *w, int parent, int cluster, ct_ex3 r);
 /// The member's screw for a speed, made when first asked for.
 struct ct_screw *ct_member_screw(struct ct_build *b, struct ct_member *m, int speed);
@@ -36,7 +37,8 @@ void ct_member_screw_turn(struct ct_build *b, struct ct_member *m, int speed, ct
                           ct_ex3 axis);
 /// The member turns as a cluster does; its spins are still to be added.
 struct ct_member *ct_member_take_cluster(struct ct_member_build *w, int member, int cluster);
-/// Number i of the spins of the member's cluster, but for its screws. S: axes of the node the joint starts from. Returns its axis.
+/// Number i of the spins of the member's cluster, but for its screws. S: axes of the node the joint
+/// starts from. Returns its axis.
 ct_ex3 ct_member_rotation_axis(struct ct_member_build *w, struct ct_member *m, const ct_ex33 *S,
                                int i);
 

@@ -5,7 +5,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- inertia --------------------------------------------------------------------------------------------
+// ---- inertia ------------------------------------------------------------------------------------
 
 static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *A)
 {
@@ -13,7 +13,8 @@ static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *A)
         sum->e[i] = ct_ex_add(b->x, sum->e[i], A->e[i]);
 }
 
-// c (d.h 1) - (d h' + h d')/2 twice over: the inertia of first moments h at d, and with h = m d/2 that of a mass.
+// c (d.h 1) - (d h' + h d')/2 twice over: the inertia of first moments h at d, and with h = m d/2
+// that of a mass.
 static void add_arm(struct ct_build *b, ct_ex33 *J, ct_ex3 d, ct_ex3 h)
 {
     struct ct_exs *x = b->x;
@@ -64,7 +65,8 @@ void ct_members_add_bodies(struct ct_member_build *w)
     }
 }
 
-// A first moment along the axis of a turn and the inertia of a rod along it are the parent's as well.
+// A first moment along the axis of a turn and the inertia of a rod along it are the parent's as
+// well.
 static void take_off_axis(struct ct_build *b, struct ct_member *m, ct_ex3 *h, ct_ex33 *J)
 {
     struct ct_exs *x = b->x;
@@ -126,7 +128,7 @@ void ct_members_add_beams(struct ct_member_build *w)
     }
 }
 
-// ---- loads ------------------------------------------------------------------------------------------------
+// ---- loads --------------------------------------------------------------------------------------
 
 static void apply_at(struct ct_member_build *w, int node, ct_ex3 force, ct_ex3 torque)
 {

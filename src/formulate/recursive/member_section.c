@@ -1,4 +1,5 @@
-// Beams among members: their base, and what slides and turns between it and a section; see member.h.
+// Beams among members: their base, and what slides and turns between it and a section; see
+// member.h.
 #include "formulate/recursive/member_internal.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -42,7 +43,8 @@ static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
                       CT_EX_ZERO, CT_EX_ZERO, CT_EX_ONE}};
 }
 
-// In a plane: member m has the axes of the beam, its parent those of the plane, or the other way round.
+// In a plane: member m has the axes of the beam, its parent those of the plane, or the other way
+// round.
 static void change_axes(struct ct_member_build *w, int m, const struct ct_flexible *f,
                         bool into_beam)
 {
@@ -73,8 +75,8 @@ void ct_member_attach_base(struct ct_member_build *w, const struct ct_flexible *
         change_axes(w, beam->base, f, true);
 }
 
-// Per unit of what moves a section: slides and turns, in axes of the beam. By coordinate, and where these are of nodes, by what
-// follows apart.
+// Per unit of what moves a section: slides and turns, in axes of the beam. By coordinate, and where
+// these are of nodes, by what follows apart.
 struct section_partials {
     int n;
     const ct_ex3 *slide, *turn;
@@ -99,7 +101,8 @@ static int section_speed(const struct ct_flexible *f, int k)
     return k < f->nelastic ? f->elastic[k].u : f->nelastic - k - f->beam->nelement;
 }
 
-// What slides between the base and a section, from the member at whose origin r begins; in axes of the base.
+// What slides between the base and a section, from the member at whose origin r begins; in axes of
+// the base.
 static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
                          const struct ct_edge_info *e, int sign)
 {

@@ -3,7 +3,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- axes ---------------------------------------------------------------------------------------------
+// ---- axes ---------------------------------------------------------------------------------------
 
 ct_ex3 ct_member_out(struct ct_build *b, const struct ct_member *m, ct_ex3 v)
 {
@@ -21,8 +21,9 @@ static bool is_symmetric(const ct_ex33 *A)
         && ct_ex_same(A->e[5], A->e[7]);
 }
 
-// The part of A in the plane across the axis turns by twice the angle, all but its trace and its skew part:
-// with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by c y, -c y and s y.
+// The part of A in the plane across the axis turns by twice the angle, all but its trace and its
+// skew part: with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by c y, -c y and s
+// y.
 static void turn_about(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
 {
     struct ct_exs *x = b->x;
@@ -68,7 +69,7 @@ void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex3
             A->e[i + 3 * j] = A->e[j + 3 * i];
 }
 
-// ---- velocities -------------------------------------------------------------------------------------------
+// ---- velocities ---------------------------------------------------------------------------------
 
 // w w' - (w . w) 1
 static ct_ex33 swing_matrix(struct ct_exs *x, ct_ex3 w)

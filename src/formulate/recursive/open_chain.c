@@ -1,5 +1,5 @@
-// See open_chain.h. A formulation is tried by generating it and counting; what cannot win by the pattern of the mass matrix
-// alone is not generated.
+// See open_chain.h. A formulation is tried by generating it and counting; what cannot win by the
+// pattern of the mass matrix alone is not generated.
 #include "formulate/recursive/open_chain.h"
 #include "formulate/formulate.h"
 #include "formulate/operation_count.h"
@@ -12,7 +12,8 @@
 
 // A call of a solver for dense matrices, in operations of straight-line code.
 static const double call_cost = 300;
-// What is made of more operations takes too much memory; below, repeats are rolled up (codegen/reroll.h).
+// What is made of more operations takes too much memory; below, repeats are rolled up
+// (codegen/reroll.h).
 static const double longest_program = 1e7;
 
 static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
@@ -21,9 +22,10 @@ static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
     return ct_counted_cost(&c);
 }
 
-// ---- M u' = Q -------------------------------------------------------------------------------------------
+// ---- M u' = Q -----------------------------------------------------------------------------------
 
-// A pivot, and its reciprocal where it divides more than two numbers: that is cheaper, but rounds twice.
+// A pivot, and its reciprocal where it divides more than two numbers: that is cheaper, but rounds
+// twice.
 struct pivot {
     ct_ex value, reciprocal;
 };
@@ -45,9 +47,10 @@ static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
                                         : ct_ex_mul(x, a, p->reciprocal);
 }
 
-// M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards, so this order makes
-// no fill in a branched chain, and entries that are zero by structure cost nothing. M is positive definite, so no
-// pivots are sought. H: lower triangle of M. Source: Featherstone (2008), key featherstone2008, 8.5.
+// M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards,
+// so this order makes no fill in a branched chain, and entries that are zero by structure cost
+// nothing. M is positive definite, so no pivots are sought. H: lower triangle of M. Source:
+// Featherstone (2008), key featherstone2008, 8.5.
 static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex *pivots)
 {
     struct ct_exs *x = b->x;
@@ -80,7 +83,8 @@ static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex
     return u;
 }
 
-// Operations of the unrolled solution by the pattern of the lower triangle: pivot k touches its d nonzeros.
+// Operations of the unrolled solution by the pattern of the lower triangle: pivot k touches its d
+// nonzeros.
 static double symbolic_cost(const bool *pattern, size_t n)
 {
     double cost = 0;
@@ -98,7 +102,7 @@ static double dense_cost(double n)
     return n * n * n / 3 + 2 * n * n + call_cost;
 }
 
-// ---- candidates -----------------------------------------------------------------------------------------
+// ---- candidates ---------------------------------------------------------------------------------
 
 struct trial {
     ct_ex *solution, *pivot;
@@ -181,7 +185,8 @@ static struct trial try_articulated(struct ct_build *b, const struct ct_members 
     return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 
-// The mass matrix is what people look at, and its pivots lose least: another form must be cheaper by this.
+// The mass matrix is what people look at, and its pivots lose least: another form must be cheaper
+// by this.
 static const double worth = 0.9;
 
 double ct_open_cost(struct ct_build *b, double by_matrix)

@@ -1,7 +1,8 @@
 // See auxiliary_unknowns.h.
 //
-// The graph of single operations of r is thinned out step by step (scarcity.h), and what factors of the matrix with the nodes that
-// are left would take is looked up on its pattern: too many nodes are as bad as too few.
+// The graph of single operations of r is thinned out step by step (scarcity.h), and what factors of
+// the matrix with the nodes that are left would take is looked up on its pattern: too many nodes
+// are as bad as too few.
 #include "formulate/residual/auxiliary_unknowns.h"
 
 #include "expr/scarcity.h"
@@ -35,7 +36,8 @@ static void add_entry(struct places *p, int row, int column)
     }
 }
 
-// What assembly, one factorisation and the solutions of a step take; entries are sums of a few terms in three parts.
+// What assembly, one factorisation and the solutions of a step take; entries are sums of a few
+// terms in three parts.
 static double work_of(double nz, double factorization, double fill)
 {
     const double solutions = 8, assembly = 8;
@@ -127,8 +129,8 @@ static size_t thin_out(const struct search *s, double work, ct_ex **inner)
     return nbest;
 }
 
-// A search takes as long as a thousand steps with full matrices of so few: what takes less for each unknown is not worth one, and none
-// has been seen to find anything there.
+// A search takes as long as a thousand steps with full matrices of so few: what takes less for each
+// unknown is not worth one, and none has been seen to find anything there.
 static bool is_worth_a_search(const struct search *s, double work)
 {
     const double few = 40;

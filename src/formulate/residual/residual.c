@@ -1,7 +1,7 @@
 // See residual.h.
 //
-// Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' = Z(q) u.
-// For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
+// Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' =
+// Z(q) u. For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
 #include "formulate/residual/residual.h"
 #include "formulate/recursive/composite_body.h"
 #include "formulate/residual/auxiliary_unknowns.h"
@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'; behind them inner values.
+// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'; behind
+// them inner values.
 enum { PLACE, SPEED, ACCELERATION, INNER, NLEVEL = INNER };
 
 struct seeds {
@@ -84,7 +85,8 @@ static void assemble_rows(struct ct_build *b, ct_ex *r)
     }
 }
 
-// The sweep in ground axes or, in space, inverse dynamics in axes of the bodies, whichever takes fewer operations.
+// The sweep in ground axes or, in space, inverse dynamics in axes of the bodies, whichever takes
+// fewer operations.
 static void derive_rows(struct ct_build *b, ct_ex *r)
 {
     const size_t n = b->eqs->nu;
@@ -102,10 +104,11 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
         r[k] = by_members[k];
 }
 
-// ---- derivatives ----------------------------------------------------------------------------------------
+// ---- derivatives --------------------------------------------------------------------------------
 
-// Predicted use: so many evaluations in a run. Making an operation (nodes, listing, machine code) costs as much as
-// executing it so often; side by side in lanes it costs a quarter and something for the loads.
+// Predicted use: so many evaluations in a run. Making an operation (nodes, listing, machine code)
+// costs as much as executing it so often; side by side in lanes it costs a quarter and something
+// for the loads.
 static const double expected_evaluations = 300, making = 1500, per_lane = 0.3;
 
 // What both ways start from: r with inner values behind it, v, and the motions they vary along.
@@ -192,7 +195,7 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
     return along;
 }
 
-// ---- colours ----------------------------------------------------------------------------------------------
+// ---- colours ------------------------------------------------------------------------------------
 
 // Slopes by direction: entry[start[d] ... start[d + 1]) are rows.
 struct columns {
@@ -213,8 +216,9 @@ static struct columns list_columns(struct ct_arena *a, const struct ct_slope *s,
     return c;
 }
 
-// Directions of one colour share no row, so that one derivative along their sum gives all their entries. Greedy, in
-// the order of the directions. Source: Curtis, Powell and Reid (1974), key curtis1974.
+// Directions of one colour share no row, so that one derivative along their sum gives all their
+// entries. Greedy, in the order of the directions. Source: Curtis, Powell and Reid (1974), key
+// curtis1974.
 static void colour(struct ct_build *b, struct ct_directional *along, const struct ct_slope *s,
                    size_t n, size_t nrow)
 {

@@ -1,4 +1,5 @@
-// Signals of beams at their points and at their own frame (x = 0) that follow from the deformation.  (format, section 6)
+// Signals of beams at their points and at their own frame (x = 0) that follow from the deformation.
+// (format, section 6)
 //
 //   deflection         of the point from its undeformed place, axes of the beam              [m]
 //   slope              rotation of its section: the axes of the section are those of the beam turned by
@@ -14,7 +15,8 @@
 
 #include "formulate/beam/flexible_body.h"
 
-/// Is this a signal that frames of beams have besides those of all frames? All but strain are vectors.
+/// Is this a signal that frames of beams have besides those of all frames? All but strain are
+/// vectors.
 bool ct_beam_signal_exists(const char *property);
 /// The beam of a frame, and the undeformed place of the frame on it, axes of the beam.
 const struct ct_flexible *ct_beam_signal_beam(const struct ct_build *b, int frame);

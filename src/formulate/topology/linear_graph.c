@@ -84,7 +84,8 @@ static void add_beam_point(struct ct_build *b, struct ct_topology *t, struct ct_
     e->has_rotation = e->must_be_branch = true;
 }
 
-// The base of a beam is its own frame; with a frame on the chord the section at x = 0 turns against that.
+// The base of a beam is its own frame; with a frame on the chord the section at x = 0 turns against
+// that.
 static void add_base(struct ct_build *b, struct ct_topology *t, struct ct_flexible *f)
 {
     const struct ct_body *body = &b->model->body[f->body];
@@ -234,7 +235,8 @@ static void add_forces(struct ct_build *b, struct ct_topology *t)
 // ---- motions and coordinates --------------------------------------------------------------------
 
 // Body edge: place of the centre of mass in ground axes and orientation. In a planar mechanism two
-// lengths and an angle, beyond the rotation that lays the body into the plane; of a particle the place alone.
+// lengths and an angle, beyond the rotation that lays the body into the plane; of a particle the
+// place alone.
 static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
 {
     struct ct_exs *x = b->x;
@@ -371,7 +373,7 @@ static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
     e->trial = m;
 }
 
-// ---- the stage ------------------------------------------------------------------------------------
+// ---- the stage ----------------------------------------------------------------------------------
 
 // Rooms for what most models have, so that nothing is copied as the list grows: edges are large.
 static void reserve_edges(struct ct_build *b, struct ct_topology *t)

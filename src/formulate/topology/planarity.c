@@ -68,7 +68,8 @@ static bool holds_axes(const struct ct_edge_info *e)
     return e->kind != CT_EDGE_BODY && e->kind != CT_EDGE_FORCE && !e->never_branch;
 }
 
-// Edges that hold axes, in the order in which they take them from known nodes to others; turning: only those with rotation.
+// Edges that hold axes, in the order in which they take them from known nodes to others; turning:
+// only those with rotation.
 static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
 {
     const struct ct_graph g
@@ -82,8 +83,8 @@ static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
     return order;
 }
 
-// Where joints stand still, the axes of every node are a constant rotation away from ground's; turns about the
-// normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
+// Where joints stand still, the axes of every node are a constant rotation away from ground's;
+// turns about the normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
 static ct_ex33 **upright_axes(struct ct_build *b)
 {
     ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->topology->nnode);
@@ -157,7 +158,8 @@ static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *cons
     }
 }
 
-// Does every joint keep to the plane, and do its loops close out of it? Every body must hang on joints.
+// Does every joint keep to the plane, and do its loops close out of it? Every body must hang on
+// joints.
 static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
     double(*n)[3] = ct_arena_calloc(b->arena, t->nnode, sizeof *n);
@@ -197,8 +199,8 @@ static void keep_uprights(struct ct_build *b, struct ct_topology *t, ct_ex33 **U
     }
 }
 
-// Does everything keep to the plane across an axis (ground components)? The sense does not matter; prefer the one along
-// +z, +y, +x, so that coordinates read as usual.
+// Does everything keep to the plane across an axis (ground components)? The sense does not matter;
+// prefer the one along +z, +y, +x, so that coordinates read as usual.
 static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U, ct_ex3 axis)
 {
     double n[3];
@@ -211,8 +213,8 @@ static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U,
     return true;
 }
 
-// The normal can only be the axis of the first joint that turns, as ground sees it; where none does, an axis that a beam
-// bends about.
+// The normal can only be the axis of the first joint that turns, as ground sees it; where none
+// does, an axis that a beam bends about.
 static bool find_normal(struct ct_build *b, struct ct_topology *t)
 {
     ct_ex33 **U = upright_axes(b);

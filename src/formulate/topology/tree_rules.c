@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-// Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
+// Distance of each node from ground over edges that can be branches: in edges, or in rotational
+// freedoms.
 static int *node_depths(struct ct_build *b, bool by_rotation)
 {
     int *depth = CT_NEWN(b->arena, int, b->topology->nnode),
@@ -23,8 +24,9 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
     return depth;
 }
 
-// Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia? What is counted through
-// such a section moves with all of them, and fills the mass matrix. The start of a clamped beam does not follow.
+// Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia?
+// What is counted through such a section moves with all of them, and fills the mass matrix. The
+// start of a clamped beam does not follow.
 static bool turns_follower(const struct ct_build *b, size_t i)
 {
     const int end[2] = {b->topology->wiring[i].tail, b->topology->wiring[i].head};
@@ -60,7 +62,8 @@ static bool is_without_loops(const struct ct_build *b)
     return nusable + (size_t)npiece == b->topology->nnode;
 }
 
-// Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be articulated bodies (6.9b)?
+// Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be
+// articulated bodies (6.9b)?
 static bool fills_matrix(const struct ct_build *b)
 {
     bool any = false;
@@ -69,8 +72,9 @@ static bool fills_matrix(const struct ct_build *b)
     return any && ct_flexible_may_be_articulated(b) && is_without_loops(b);
 }
 
-// Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is entered there has the form
-// of articulated bodies only if what it hangs on turns it: an angle from ground is that of its frame.
+// Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is
+// entered there has the form of articulated bodies only if what it hangs on turns it: an angle from
+// ground is that of its frame.
 static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 {
     const int tail = b->topology->wiring[i].tail, head = b->topology->wiring[i].head,
@@ -79,9 +83,10 @@ static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
     return f && end != f->base;
 }
 
-// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and gives
-// shorter expressions; a passive joint on a body that turns yields to it, but for beams entered at a section: where sections
-// follow, if only articulated bodies do without a full mass matrix.  (2.3)
+// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and
+// gives shorter expressions; a passive joint on a body that turns yields to it, but for beams
+// entered at a section: where sections follow, if only articulated bodies do without a full mass
+// matrix.  (section 2.3)
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
                     enum ct_tree_choice choice, bool fills)
 {
@@ -107,8 +112,8 @@ static int order_names(const void *build, const void *left, const void *right)
     return strcmp(b->topology->edge[*i].name, b->topology->edge[*k].name);
 }
 
-// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
-// are several, do not depend on the order of the file.
+// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where
+// there are several, do not depend on the order of the file.
 static void rank_by_name(const struct ct_build *b, int *rank)
 {
     const int n = (int)b->topology->nedge;

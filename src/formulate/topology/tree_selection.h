@@ -1,5 +1,5 @@
-// The choice of a pair of spanning trees: topology proposes pairs, the stage derives their equations and counts the operations,
-// topology compares.
+// The choice of a pair of spanning trees: topology proposes pairs, the stage derives their
+// equations and counts the operations, topology compares.
 //
 //     tree_selection.c        which pair of trees
 //     tree_rules.c   what edges may and must be in them
@@ -14,10 +14,11 @@
 /// Trial equations of pairs of trees, made by the stage.
 struct ct_pair_trials {
     void *stage;
-    /// Before the first: stays_open if there is a pair without constraint rows, so that none with rows is wanted.
+    /// Before the first: stays_open if there is a pair without constraint rows, so that none with
+    /// rows is wanted.
     void (*begin)(void *stage, bool stays_open);
-    /// Operations of the equations of a pair, in multiplications; INFINITY where they fail or are not wanted. The first pair is that of
-    /// least weight.
+    /// Operations of the equations of a pair, in multiplications; INFINITY where they fail or are
+    /// not wanted. The first pair is that of least weight.
     ct_tree_cost cost;
 };
 
@@ -31,8 +32,8 @@ struct ct_pair_rules {
     bool *forced_t, *forced_r, *banned_t, *banned_r, *tied;
 };
 
-/// Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go to
-/// joints nearer to ground.
+/// Arms are branches, force drivers chords (R1, R2); shared coordinates tie a joint (R3). Ties go
+/// to joints nearer to ground.
 struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
                                         const struct ct_formulate_options *o);
 

@@ -4,8 +4,8 @@
 //     q1 = q0 (+) h [ u0 + h (1/2 - beta) a0 + h beta a1 ] + J' eta
 //     u1 = u0 + h (1 - gamma) a0 + h gamma a1
 //
-// with Phi(q1) = 0 and, stabilised, v1 = 0; without stabilisation eta = 0. a is not the acceleration but close to that at
-// t + (alpha_m - alpha_f) h.
+// with Phi(q1) = 0 and, stabilised, v1 = 0; without stabilisation eta = 0. a is not the
+// acceleration but close to that at t + (alpha_m - alpha_f) h.
 #ifndef CT_INTEGRATE_IMPLICIT_ALPHA_H
 #define CT_INTEGRATE_IMPLICIT_ALPHA_H
 

@@ -1,7 +1,9 @@
-// The generalised-alpha method with both constraint levels imposed: the default implicit method.  (8.4)
+// The generalised-alpha method with both constraint levels imposed: the default implicit method.
+// (8.4)
 //
-// Damping at infinity rho = 4/5; Chung and Hulbert (1993), key chung1993, give the others for it. Order 2 in q, u and lam.
-// Source: Arnold, Cardona and Bruls as in Bruls, Cardona and Arnold (2012), key bruls2012.
+// Damping at infinity rho = 4/5; Chung and Hulbert (1993), key chung1993, give the others for it.
+// Order 2 in q, u and lam. Source: Arnold, Cardona and Bruls as in Bruls, Cardona and Arnold
+// (2012), key bruls2012.
 #include "integrate/implicit/alpha.h"
 
 static const struct ct_alpha coefficients = {

@@ -1,8 +1,9 @@
-// The method of Hilber, Hughes and Taylor as the member alpha_m = 0 of the generalised-alpha family.
+// The method of Hilber, Hughes and Taylor as the member alpha_m = 0 of the generalised-alpha
+// family.
 //
-// alpha_f = 1/9 damps at infinity as much as rho = 4/5. The weights stand on accelerations, not on forces as in the original, so
-// that the order is 2 with a mass matrix that changes, too.
-// Source: Hilber, Hughes and Taylor (1977), key hilber1977; Chung and Hulbert (1993), key chung1993.
+// alpha_f = 1/9 damps at infinity as much as rho = 4/5. The weights stand on accelerations, not on
+// forces as in the original, so that the order is 2 with a mass matrix that changes, too. Source:
+// Hilber, Hughes and Taylor (1977), key hilber1977; Chung and Hulbert (1993), key chung1993.
 #include "integrate/implicit/alpha.h"
 
 static const struct ct_alpha coefficients = {

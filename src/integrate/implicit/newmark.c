@@ -1,7 +1,7 @@
 // Newmark's method of average acceleration: the trapezoidal rule, without numerical damping.
 //
-// Nothing would damp errors of the multipliers, so each step starts from the acceleration of the equations of motion.
-// Source: Newmark (1959), key newmark1959.
+// Nothing would damp errors of the multipliers, so each step starts from the acceleration of the
+// equations of motion. Source: Newmark (1959), key newmark1959.
 #include "integrate/implicit/alpha.h"
 
 static const struct ct_alpha coefficients = {

@@ -45,7 +45,8 @@ struct ct_newton_pattern {
     size_t ncopy, nproduct, nrotation, copy_cap, product_cap, rotation_cap;
 };
 
-/// Is a row that of a force or of an inner value, in which K counts by y? Else it is of a constraint.
+/// Is a row that of a force or of an inner value, in which K counts by y? Else it is of a
+/// constraint.
 static inline bool ct_newton_pattern_is_force(const struct ct_newton_pattern *p, int row)
 {
     return row < p->nu || row >= p->first_auxiliary;

@@ -172,7 +172,7 @@ void ct_newton_solve_complex(struct ct_newton *s, double *b, int n)
     collect(s, b + n, s->b + 1, 2);
 }
 
-// ---- products -------------------------------------------------------------------------------------------
+// ---- products -----------------------------------------------------------------------------------
 
 // Row `row` of A times x.
 static inline double row_times(const struct ct_newton_list *A, const double *value, int row,
@@ -185,7 +185,8 @@ static inline double row_times(const struct ct_newton_list *A, const double *val
     return sum;
 }
 
-// y += c (A + R_r (1 - R_k)^-1 A_k) x: inner values, of which each depends on those before it, on the way.
+// y += c (A + R_r (1 - R_k)^-1 A_k) x: inner values, of which each depends on those before it, on
+// the way.
 static void add_product(const struct ct_newton *s, const struct ct_newton_list *A, double *y,
                         double c, const double *x)
 {

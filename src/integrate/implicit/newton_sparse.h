@@ -1,13 +1,14 @@
-// The matrix of the iteration, (8.2), as a list of its entries: what beams of many elements and long chains have, of whose parts each
-// meets its neighbours or sums over them.
+// The matrix of the iteration, (8.2), as a list of its entries: what beams of many elements and
+// long chains have, of whose parts each meets its neighbours or sums over them.
 //
 //     plan     which entries there are, which products they are sums of, the order they are factored in. One for a problem.
 //     newton   their numbers and factors, and the lists M, C, K, J, D they are made of. One for a run.
 //
-// Where parts meet in sums along a chain, inner values are further unknowns (8.19): they do not show, M, C and K are what they lead to.
+// Where parts meet in sums along a chain, inner values are further unknowns (8.19): they do not
+// show, M, C and K are what they lead to.
 //
-// What always holds: rows that do not count have a place, too, with a one on the diagonal, so that the pattern stays when they
-// change. There is no plan where full matrices take less time.
+// What always holds: rows that do not count have a place, too, with a one on the diagonal, so that
+// the pattern stays when they change. There is no plan where full matrices take less time.
 #ifndef CT_INTEGRATE_IMPLICIT_NEWTON_SPARSE_H
 #define CT_INTEGRATE_IMPLICIT_NEWTON_SPARSE_H
 
@@ -18,7 +19,8 @@
 struct ct_newton_pattern;
 struct ct_newton;
 
-/// What is to be expected of the matrices of a problem, in multiplications and additions of full matrices.
+/// What is to be expected of the matrices of a problem, in multiplications and additions of full
+/// matrices.
 struct ct_newton_work {
     double assembly, factorization, solution; // of one real matrix
 };
@@ -42,15 +44,18 @@ void ct_newton_retain_rows(struct ct_newton *s, const int *kept, int m);
 enum ct_eval ct_newton_evaluate(struct ct_newton *s, double t, const double *q, const double *u,
                                 const double *a, const double *lam, const double *w);
 
-/// Factors for c and e, for c and e = c^2 that are complex, and others for c and e = c^2 that are kept beside them. False if singular.
+/// Factors for c and e, for c and e = c^2 that are complex, and others for c and e = c^2 that are
+/// kept beside them. False if singular.
 bool ct_newton_factor(struct ct_newton *s, double c, double e);
 bool ct_newton_factor_complex(struct ct_newton *s, double _Complex one_over_c);
 bool ct_newton_factor_slow(struct ct_newton *s, double c);
-/// b (n, of rows those that count; complex: imaginary parts n behind) in: right-hand side, out: solution.
+/// b (n, of rows those that count; complex: imaginary parts n behind) in: right-hand side, out:
+/// solution.
 void ct_newton_solve(struct ct_newton *s, double *b);
 void ct_newton_solve_complex(struct ct_newton *s, double *b, int n);
 void ct_newton_solve_slow(struct ct_newton *s, double *b);
-/// part (nu, out): how much of each speed is left where ct_newton_solve_slow has answered M times that speed alone.
+/// part (nu, out): how much of each speed is left where ct_newton_solve_slow has answered M times
+/// that speed alone.
 void ct_newton_slow_parts(struct ct_newton *s, double *part);
 
 /// y (nu) += c A x (nu)

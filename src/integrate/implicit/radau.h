@@ -1,4 +1,5 @@
-// A step of Radau IIA from inside, for radau5.c and radau_error.c: its stages, and the real one of its linear systems.
+// A step of Radau IIA from inside, for radau5.c and radau_error.c: its stages, and the real one of
+// its linear systems.
 #ifndef CT_INTEGRATE_IMPLICIT_RADAU_H
 #define CT_INTEGRATE_IMPLICIT_RADAU_H
 
@@ -74,7 +75,9 @@ struct ct_radau {
     } lost;               // by outputs at looks so far
     struct {
         double h,
-            error; // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked at
+            // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked
+            // at
+            error;
         int left; // steps until the next look
     } vibration_check;
     double *vibration_scale; // what vibrations are measured against  (nu)
@@ -87,8 +90,8 @@ static inline void ct_radau_weigh(double *out, const double *w, const double *z,
         out[k] = w[0] * z[k] + w[1] * z[k + n] + w[2] * z[k + 2 * n];
 }
 
-/// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F; then u changes by
-/// (c - N) d - J' c eta + F.
+/// The first column in the basis of eigenvectors. With u eliminated, r += (c M + C) F and v += J F;
+/// then u changes by (c - N) d - J' c eta + F.
 static inline void ct_radau_solve(struct ct_radau *s, const int nu, const int m)
 {
     struct ct_newton_iteration *it = s->it;
@@ -127,8 +130,9 @@ double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p,
 /// The tolerance of the estimate for one of the step, found once as long as it is the same.
 const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
                                                        const struct ct_tolerance *tolerance);
-/// Has the iteration come so far that outputs that amplify, at the end of the step y1, dy1, have what the tolerance asks?
-/// Corrections that are small as motions leave large errors of stiff forces.
+/// Has the iteration come so far that outputs that amplify, at the end of the step y1, dy1, have
+/// what the tolerance asks? Corrections that are small as motions leave large errors of stiff
+/// forces.
 double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
                           const struct ct_tolerance *eased, double t1, const double *y1,
                           const double *dy1, double states);

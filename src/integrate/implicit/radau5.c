@@ -2,15 +2,16 @@
 //
 //     d' = T^-1(d) u + J' eta,   r(t, q, u, u', lam) = 0,   Phi(q) = 0,   v(q, u) = 0,   q = q0 (+) d
 //
-// collocated at three points of the step; d and u are of order 5, lam of order 3. The stages are found by
-// simplified Newton: the inverse of the Runge-Kutta matrix has one real and two complex eigenvalues, which leaves one
-// real and one complex system to solve for a correction. Places are charts d at the start of the step, so that
-// quaternions stay of norm one and the order is kept. Of T^-1 the iteration matrix knows 1 + d~/2: chains of many balls
-// are sensitive to what it does not know.
+// collocated at three points of the step; d and u are of order 5, lam of order 3. The stages are
+// found by simplified Newton: the inverse of the Runge-Kutta matrix has one real and two complex
+// eigenvalues, which leaves one real and one complex system to solve for a correction. Places are
+// charts d at the start of the step, so that quaternions stay of norm one and the order is kept. Of
+// T^-1 the iteration matrix knows 1 + d~/2: chains of many balls are sensitive to what it does not
+// know.
 //
-// The error of a step is that of an embedded formula of order 3 with the start as a further stage, filtered by the real
-// system; eta and lam take no part. Interpolated is the collocation polynomial.
-// Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
+// The error of a step is that of an embedded formula of order 3 with the start as a further stage,
+// filtered by the real system; eta and lam take no part. Interpolated is the collocation
+// polynomial. Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
 #include "integrate/implicit/radau.h"
 
 #include <complex.h>
@@ -96,7 +97,7 @@ static void accept(void *work)
     s->is_fresh = s->was_tried = false;
 }
 
-// ---- the polynomial ---------------------------------------------------------------------------------
+// ---- the polynomial -----------------------------------------------------------------------------
 
 // w (out): weights of the stages at x of the step; at its start the value is zero.
 static void lagrange(double *w, double x)
@@ -160,7 +161,7 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
     }
 }
 
-// ---- the iteration ----------------------------------------------------------------------------------
+// ---- the iteration ------------------------------------------------------------------------------
 
 // Place and speed of stage i.
 static inline void place_stage(struct ct_radau *s, const double *y, int i)
@@ -295,8 +296,8 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     const enum ct_eval e = find_residuals(s, t, y, stats);
     if (e != CT_EVAL_OK)
         return e;
-    // one and two freedoms without loops have code of their own: matrices are numbers there; and so has a planar loop of three
-    // coordinates
+    // one and two freedoms without loops have code of their own: matrices are numbers there; and so
+    // has a planar loop of three coordinates
     const double size = nu == 3 && m == 2 ? change_stages(s, 3, 2)
                       : m || nu > 2       ? change_stages(s, nu, m)
                       : nu == 1           ? change_stages(s, 1, 0)
@@ -306,8 +307,8 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     return CT_EVAL_OK;
 }
 
-// Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than the start is; on a first
-// step, whose prediction is a straight line, at the start.
+// Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than
+// the start is; on a first step, whose prediction is a straight line, at the start.
 static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double *y,
                             const double *dy, struct ct_integrate_stats *stats)
 {
@@ -364,7 +365,7 @@ static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
     return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
 }
 
-// ---- a step -----------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
 // Rates of quadratures at stage i, whose derivatives dy1 are.
 static void add_power(struct ct_radau *s, int ny, int i, const double *dy1)
@@ -375,7 +376,8 @@ static void add_power(struct ct_radau *s, int ny, int i, const double *dy1)
     }
 }
 
-// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages, where there are any.
+// y1 and dy1 from the last stage; quadratures and their errors from their rates at the stages,
+// where there are any.
 static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, double t, double h,
                            const double *y, const double *dy, double *y1, double *dy1,
                            struct ct_integrate_stats *stats)

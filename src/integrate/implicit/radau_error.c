@@ -1,51 +1,58 @@
-// Error estimate of a step of Radau IIA: of the states, of the outputs.  (8.4)
+// Error estimate of a step of Radau IIA: of the states, of the outputs.  (section 8.4)
 //
-// That of the states is the one of an embedded formula of order 3, filtered by the real system of the iteration. An error of
-// speeds is one of the motion, which goes on in them, or one of vibrations, which leaves places by that error over their
-// frequency, and so is in the error of places, too. Where no output is made of speeds, those of vibrations much faster than
-// the motion need not count again: undamped, they would have to be followed for their rates alone.
+// That of the states is the one of an embedded formula of order 3, filtered by the real system of
+// the iteration. An error of speeds is one of the motion, which goes on in them, or one of
+// vibrations, which leaves places by that error over their frequency, and so is in the error of
+// places, too. Where no output is made of speeds, those of vibrations much faster than the motion
+// need not count again: undamped, they would have to be followed for their rates alone.
 //
 //     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
 //
-// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the energy of the rest, so that is
-// held to the root of the tolerance. Where outputs would not feel it if all of the vibration were lost, the same is done with places.
+// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the
+// energy of the rest, so that is held to the root of the tolerance. Where outputs would not feel it
+// if all of the vibration were lost, the same is done with places.
 //
-// What outputs do feel of vibrations adds up over all steps, which no error of a single one tells: what steps like this one take of
-// them up to the end is an error as well.  (8.21), (8.22)
+// What outputs do feel of vibrations adds up over all steps, which no error of a single one tells:
+// what steps like this one take of them up to the end is an error as well.  (8.21), (8.22)
 //
-// Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of their own: at the end of the step, of
-// what the iteration has left, and between steps.
+// Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of
+// their own: at the end of the step, of what the iteration has left, and between steps.
 // Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
 #include "integrate/implicit/radau.h"
 
 #include <math.h>
 #include <string.h>
 
-// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped because the estimate does
-// not see it, over 1e5 radians, less than ten times that tolerance is lost.  (8.7)
+// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped
+// because the estimate does not see it, over 1e5 radians, less than ten times that tolerance is
+// lost.  (8.7)
 static const double near_zero = 0.05;
 
-// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its error counts for at least so much,
-// (0.9/1.5)^4, so that steps grow by no more than half.
+// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its
+// error counts for at least so much, (0.9/1.5)^4, so that steps grow by no more than half.
 static const double growing = 0.13;
 
-// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost altogether.
+// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost
+// altogether.
 static const double promised = 10;
-// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for all other errors.
+// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for
+// all other errors.
 static const double unfelt = 0.5;
 // What is lost of them, (8.22), is known better: the largest of many looks.
 static const double unmissed = 0.75;
 
-// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).  (8.21)
+// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).
+// (8.21)
 static const double of_vibration = 7200, of_error = 60 * GAMMA;
-// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over that: nearer to it less than a third of what is
-// lost is seen there.
+// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over
+// that: nearer to it less than a third of what is lost is seen there.
 static const double apart = 2;
-// Phases of several vibrations come together only now and then: so much of what was missed at a look counts still at the next one.
+// Phases of several vibrations come together only now and then: so much of what was missed at a
+// look counts still at the next one.
 static const double fading = 0.9;
 
-// Speeds are eased where less than this part of the error is left then; looked at every so many steps where they were not, and
-// where they are too large.
+// Speeds are eased where less than this part of the error is left then; looked at every so many
+// steps where they were not, and where they are too large.
 static const double worth_it = 0.5;
 enum { STEPS_BETWEEN = 15 };
 
@@ -83,7 +90,8 @@ static double filter(struct ct_radau *s, const double *u, const double *u_dot)
                        : filter_few(s, u, u_dot, 2, 0);
 }
 
-// The motion feels the energy of vibrations, the square of their speeds: against that of the largest speeds so far.
+// The motion feels the energy of vibrations, the square of their speeds: against that of the
+// largest speeds so far.
 static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
                                  const double *u)
 {
@@ -95,8 +103,8 @@ static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
     }
 }
 
-// What the step takes from vibrations, as an error of order 3: 1 where as much in every step would be felt at the end of the run. A rate
-// of h^5.
+// What the step takes from vibrations, as an error of order 3: 1 where as much in every step would
+// be felt at the end of the run. A rate of h^5.
 static double find_loss(struct ct_radau *s, const struct ct_problem *p,
                         const struct ct_vibration *v, const double *u, const double *u_dot)
 {
@@ -112,7 +120,8 @@ static double find_loss(struct ct_radau *s, const struct ct_problem *p,
     return counts ? pow(pace / (p->accuracy * it->energy), order) : 0;
 }
 
-// Less of the error where it is one of vibrations: of speeds, and of places where outputs would not feel it if there were none.
+// Less of the error where it is one of vibrations: of speeds, and of places where outputs would not
+// feel it if there were none.
 static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
                                 const struct ct_tolerance *tol, double t, const double *y,
                                 const double *dy, double *err, double *loss)
@@ -153,7 +162,8 @@ static void note_sizes(struct ct_radau *s, const double *y)
     }
 }
 
-// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts of what they may miss.
+// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts
+// of what they may miss.
 static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                       double rate, double times)
 {
@@ -177,8 +187,8 @@ static double of_amplitude(double z)
     return of_error / (z * z * z * z);
 }
 
-// What steps like this one take from vibrations up to the end of the run, and all there is, each no less than what is remembered.
-// (8.21)
+// What steps like this one take from vibrations up to the end of the run, and all there is, each no
+// less than what is remembered. (8.21)
 static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_problem *p,
                                           double t, const double *y)
 {
@@ -194,14 +204,16 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
     return m;
 }
 
-// As an error of order 3: a rate of h^5. All there is does not grow with the step, so that holds steps up less before it counts.  (8.22)
+// As an error of order 3: a rate of h^5. All there is does not grow with the step, so that holds
+// steps up less before it counts.  (8.22)
 static double lost_error(const struct ct_lost_vibration *m, double h)
 {
     const double order = 4. / 5, h5 = h * h * h * h * h;
     return ct_smaller(pow(m->rate * h5, order), pow(m->all, 1 / order));
 }
 
-// It is looked at where steps have become longer, and every so many steps, and follows their length in between.
+// It is looked at where steps have become longer, and every so many steps, and follows their length
+// in between.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
@@ -227,8 +239,9 @@ static double miss(struct ct_radau *s, const struct ct_problem *p, double t, con
     return s->vibration_check.error;
 }
 
-// Error of the step. Where it is too large at first, on a first step or after a refusal, it is filtered once more, which
-// takes off what stiff components that start off their slow motion add to it.
+// Error of the step. Where it is too large at first, on a first step or after a refusal, it is
+// filtered once more, which takes off what stiff components that start off their slow motion add to
+// it.
 enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
                                const struct ct_tolerance *tol, double t, const double *y,
                                const double *dy, double *y1, double *dy1, double *err,
@@ -255,8 +268,8 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     return CT_EVAL_OK;
 }
 
-// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one of 0.1 tol^(2/3)
-// of the estimate, as in the program of the source.
+// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one
+// of 0.1 tol^(2/3) of the estimate, as in the program of the source.
 static struct ct_tolerance loosen(const struct ct_tolerance *tolerance)
 {
     const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
@@ -273,8 +286,8 @@ const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
     return &s->estimate_tolerance;
 }
 
-// What a defect of accelerations, off (nu), is as an error of positions and speeds, which goes behind those of the step: what the
-// stiff forces that balance it are changed by.
+// What a defect of accelerations, off (nu), is as an error of positions and speeds, which goes
+// behind those of the step: what the stiff forces that balance it are changed by.
 static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
 {
     const struct ct_newton_iteration *it = s->it;
@@ -341,7 +354,8 @@ double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p,
         = ct_newton_iteration_sensitive_error(s->it, p, &outputs, t1, y1, e->d, e->u, err);
     if (!(amplified > 0))
         return err;
-    // what is left of speeds is a force that is the larger the shorter the step is, gone in the next one
+    // what is left of speeds is a force that is the larger the shorter the step is, gone in the
+    // next one
     const double part = s->is_fresh ? 1 : ct_smaller(1, s->now.h / s->before.h);
     return ct_larger(err, ct_larger(part * amplified, growing));
 }

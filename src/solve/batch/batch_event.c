@@ -1,5 +1,6 @@
-// Events of one lane, by the functions of a run alone: see batch_internal.h. A step in which a root function changes sign is taken
-// again up to the place where its cubic vanishes, and then corrected, as in integrate/driver.c, while the other lanes go on.
+// Events of one lane, by the functions of a run alone: see batch_internal.h. A step in which a root
+// function changes sign is taken again up to the place where its cubic vanishes, and then
+// corrected, as in integrate/driver.c, while the other lanes go on.
 #include "solve/batch/batch_internal.h"
 #include "solve/run/run_internal.h"
 
@@ -10,7 +11,7 @@
 // The cubic through both ends of the step finds a root less well than the method's own interpolant.
 enum { MOST_TRIES = CT_EVENT_CORRECTIONS + 1 };
 
-// ---- root functions ---------------------------------------------------------------------------------
+// ---- root functions -----------------------------------------------------------------------------
 
 // In lanes, of which one is looked at.
 static enum ct_eval root(void *user, double t, const double *y, double *g)
@@ -52,7 +53,7 @@ static void share(struct ct_batch *s, int l)
     }
 }
 
-// ---- the start --------------------------------------------------------------------------------------
+// ---- the start ----------------------------------------------------------------------------------
 
 void ct_lane_make_events(struct ct_batch *s)
 {
@@ -150,7 +151,7 @@ double ct_lane_stop(const struct ct_lane *lane)
     return fmin(lane->t1, lane->events.pending);
 }
 
-// ---- the search -------------------------------------------------------------------------------------
+// ---- the search ---------------------------------------------------------------------------------
 
 // The step that has just been tried is accepted.
 static enum ct_lane_found settle(struct ct_batch *s, int l, double h, bool is_event)
@@ -224,7 +225,7 @@ void ct_lane_plan_again(struct ct_batch *s, int l)
     lane->end = is_whole ? v->whole_end : s->t[l] + v->h;
 }
 
-// ---- the event --------------------------------------------------------------------------------------
+// ---- the event ----------------------------------------------------------------------------------
 
 // As the run alone does it. False: that has to say what is wrong.
 static bool handle(struct ct_batch *s, int l, bool is_time)

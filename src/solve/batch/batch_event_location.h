@@ -1,4 +1,5 @@
-// Root functions in lanes: is there anything for the search of batch_event.c? Included by batch_step.c.
+// Root functions in lanes: is there anything for the search of batch_event.c? Included by
+// batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_EVENT_LOCATION_H
 #define CT_SOLVE_BATCH_BATCH_EVENT_LOCATION_H
 
@@ -25,8 +26,8 @@ static inline mask may_dip(vec a, vec b, vec c)
          & (2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend);
 }
 
-// Lanes of `wanted` in which root functions may have changed sign, looked at where event_location.c looks; those with values that
-// are not finite are taken out of it.
+// Lanes of `wanted` in which root functions may have changed sign, looked at where event_location.c
+// looks; those with values that are not finite are taken out of it.
 static inline set suspects(struct ct_batch *s, vec end, set *wanted)
 {
     enum { PROBES = 4 };
@@ -58,7 +59,8 @@ static inline set suspects(struct ct_batch *s, vec end, set *wanted)
     return *wanted & (set_of(hit) | s->unsettled);
 }
 
-// The tries of these lanes that may be accepted; those that are taken again, to an event, come into `again`.
+// The tries of these lanes that may be accepted; those that are taken again, to an event, come into
+// `again`.
 static inline set locate_events(struct ct_batch *s, vec end, set wanted, set *again)
 {
     *again = 0;

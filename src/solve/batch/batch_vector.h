@@ -1,4 +1,5 @@
-// Arithmetic on one number of each lane. Included where it is compiled for the processor's vectors: batch_step.c.
+// Arithmetic on one number of each lane. Included where it is compiled for the processor's vectors:
+// batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_VECTOR_H
 #define CT_SOLVE_BATCH_BATCH_VECTOR_H
 

@@ -1,4 +1,4 @@
-// See partition.h.
+// Accelerations, minimum-norm multipliers and impulses on the constraints; see partition.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/dense.h"

@@ -98,7 +98,7 @@ enum ct_eval ct_partition_accelerate(struct ct_partition *s);
 /// free to follow, at the last ct_evaluator_dynamics: pivots of B' M B where the latter are eliminated first, as far as they are
 /// positive, and the first that is not. NaN for other speeds. False if J_d is singular.
 bool ct_partition_inertias(struct ct_partition *s, const bool *follows, double *left);
-/// Minimum-norm multipliers into s->lam at the evaluator's input; s->a holds its u'.  (6.5)
+/// Minimum-norm multipliers into s->lam at the evaluator's input; s->a holds its u'.  (section 6.5)
 void ct_partition_multipliers(struct ct_partition *s);
 /// Multipliers lam (rank, out) of the kept rows alone, after ct_partition_accelerate: J_d' lam = (M u' - Q)_d.
 void ct_partition_retained_multipliers(struct ct_partition *s, double *lam);
@@ -107,7 +107,7 @@ void ct_partition_renew(struct ct_partition *s);
 /// The same at the end of a step to y at t, where accelerations have just been found. Where a projection ended it there is nothing
 /// to do.
 void ct_partition_renew_after_step(struct ct_partition *s, double t, const double *y);
-/// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.6)
+/// Move q, u in y onto the constraints, independent coordinates held where J_d allows.  (6.3)
 enum ct_eval ct_partition_project(struct ct_partition *s, double t, double *y);
 /// The same for a look at another state, which leaves nothing behind but the evaluator's input and last values: choices stay. False if it
 /// comes to no place where loops are closed, or where dense factors cost more than steps do.
@@ -146,7 +146,7 @@ bool ct_singularity_test_sign_changed(struct ct_partition *s,
 /// At the last ct_evaluator_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|, or with redundant rows of the product of the singular values. False where that costs too much.
 bool ct_partition_dependence(struct ct_partition *s, double *x, double *log_det);
-/// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (6.5)
+/// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (section 6.5)
 void ct_partition_uniqueness(struct ct_partition *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that
 /// lam + z holds as well as lam. Zero (to round-off) where the multiplier is unique.

@@ -1,4 +1,5 @@
-// Conditioning of a coordinate partitioning, when it is good enough: what runs alone (partition_internal.h) and runs side by side (batch.c) judge alike.
+// Conditioning of a coordinate partitioning, when it is good enough: what runs alone
+// (partition_internal.h) and runs side by side (batch.c) judge alike.
 //
 //     kappa   largest |J_d^-1 J_i|       sigma   smallest pivot of J_d against its largest: falls when kept rows depend
 #ifndef CT_SOLVE_CONSTRAINT_PARTITION_CONDITIONING_H
@@ -9,34 +10,38 @@
 #include <float.h>
 #include <math.h>
 
-// Choose anew when the dependent part has become this much worse than when it was chosen, (6.3)
+// Choose anew when the dependent part has become this much worse than when it was chosen (section
+// 6.3, item 5).
 static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;
-// Where rows are redundant others can do for those that are kept, so they are exchanged before they become nearly dependent:
-// beside that stages, which lie off the rows that are left out, see another field.
+// Where rows are redundant others can do for those that are kept, so they are exchanged before they
+// become nearly dependent: beside that stages, which lie off the rows that are left out, see
+// another field.
 static const double ct_redundant_degradation = 2.5;
-// Beside a singular configuration all choices are poor, this one may stay so behind it: there another one is due with each such change
-// of sigma.
+// Beside a singular configuration all choices are poor, this one may stay so behind it: there
+// another one is due with each such change of sigma.
 static const double ct_poor_change = 1.25;
 // Projections stop here: a few round-off errors of coordinates of order one.
 static const double ct_position_tolerance = 1e-13;
-// v is linear in u: one correction is enough but for its own round-off, which counts from here on [rad/s, m/s].
+// v is linear in u: one correction is enough but for its own round-off, which counts from here on
+// [rad/s, m/s].
 static const double ct_small_change = 1e-4;
 // Pivots smaller than this against the largest enlarge what is left over noticeably.
 static const double ct_small_pivot = 0.5;
 enum { CT_MOST_NEWTON = 25 };
-// A form is used while its strength has changed by less than such a factor since sigma, which tells how near a
-// singular configuration is, was found by dense matrices.
+// A form is used while its strength has changed by less than such a factor since sigma, which tells
+// how near a singular configuration is, was found by dense matrices.
 static const double ct_most_change = 1.5;
 // Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
 static const double ct_alike = 1.02, ct_most_change_alike = 4;
 // Pivots count as those of before while their strength is within this factor of what it was.
 static const double ct_same_strength = 1.25;
-// And while projections move coordinates by no more, for what they close, than so many times as much as at the last check: kappa can rise
-// from 1 to 50 within the eight steps between two checks, as J_d comes to where it is singular, while no pivot of the form does.
+// And while projections move coordinates by no more, for what they close, than so many times as
+// much as at the last check: kappa can rise from 1 to 50 within the eight steps between two checks,
+// as J_d comes to where it is singular, while no pivot of the form does.
 static const double ct_correction_growth = 3;
-// What may be left of the equations against their terms: beyond the first a refinement is made, beyond
-// the second the form is not used.
+// What may be left of the equations against their terms: beyond the first a refinement is made,
+// beyond the second the form is not used.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
 
 static inline bool ct_is_within(double ratio, double factor)
@@ -56,8 +61,9 @@ static inline bool ct_partition_is_degraded(double kappa, double kappa_chosen, d
         || (is_poor && !ct_is_within(sigma / sigma_chosen, ct_poor_change));
 }
 
-/// What is near enough in a projection: a few round-off errors, divided twice by the smallest pivot near a singular
-/// configuration. Round-off keeps larger mechanisms from it: stop when nothing is gained any more.
+/// What is near enough in a projection: a few round-off errors, divided twice by the smallest pivot
+/// near a singular configuration. Round-off keeps larger mechanisms from it: stop when nothing is
+/// gained any more.
 static inline bool ct_is_projected(double sigma, double size, double before)
 {
     const double wanted = sigma < ct_small_pivot ? ct_position_tolerance * sigma * sigma
@@ -65,10 +71,11 @@ static inline bool ct_is_projected(double sigma, double size, double before)
     return size <= wanted || (size < 1e-10 && size > before / 4);
 }
 
-/// After corrections (6.3b) of positions and speeds, dq and du the sums of their sizes, u the largest speed: is what they leave, terms
-/// of second order, below a round-off of what rows are sums of? Derivatives of rows of joints along motions of bodies are bounded
-/// by the same lengths in all orders; what other rows bend along the motion is a part of du. Beside a singular configuration what is
-/// left is divided by sigma twice.
+/// After corrections (6.3b) of positions and speeds, dq and du the sums of their sizes, u the
+/// largest speed: is what they leave, terms of second order, below a round-off of what rows are
+/// sums of? Derivatives of rows of joints along motions of bodies are bounded by the same lengths
+/// in all orders; what other rows bend along the motion is a part of du. Beside a singular
+/// configuration what is left is divided by sigma twice.
 static inline bool ct_is_remainder_below_roundoff(double sigma, double dq, double du, double u)
 {
     const double least = DBL_EPSILON * (sigma < ct_small_pivot ? sigma * sigma : 1);

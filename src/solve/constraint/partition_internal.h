@@ -28,14 +28,16 @@ bool ct_partition_factor(struct ct_partition *s);
 bool ct_partition_factor_only(struct ct_partition *s);
 /// S (free x free) = B' M B with the unit columns of the independent speeds, its lower triangle.
 void ct_partition_reduce_mass(struct ct_partition *s, const double *M);
-/// After ct_partition_accelerate with one freedom: B' M B against what its terms add up to before motions that constraints forbid cancel.  (8.39)
+/// After ct_partition_accelerate with one freedom: B' M B against what its terms add up to before
+/// motions that constraints forbid cancel.  (8.39)
 double ct_partition_cancellation(const struct ct_partition *s);
 /// Dense factors of larger systems cost more than a step does.
 bool ct_partition_is_large(const struct ct_partition *s);
 
 /// The form for the rows and columns of now: one from before, or a new one.
 void ct_partition_select_solver(struct ct_partition *s);
-/// Can the form of now be tried? Beside singular configurations only where it tells how near they are.
+/// Can the form of now be tried? Beside singular configurations only where it tells how near they
+/// are.
 bool ct_partition_is_solver_due(const struct ct_partition *s);
 /// Were its pivots sound where it was used last?
 bool ct_partition_is_sound(const struct ct_partition *s);

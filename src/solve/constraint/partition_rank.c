@@ -32,7 +32,8 @@ static double lever_of(const struct ct_partition *s, size_t row)
     return lever;
 }
 
-// The same of all rows, of those of one joint the largest: in line at the start one of them has none.
+// The same of all rows, of those of one joint the largest: in line at the start one of them has
+// none.
 static double find_levers(const struct ct_partition *s, double *lever)
 {
     const struct ct_row *row = s->m->e->row;
@@ -79,8 +80,8 @@ static void square(const struct ct_partition *s, double *A)
             A[i + m * j] /= s->unit[i] * s->unit[j];
 }
 
-// The squares of the first `rank` singular values of J, ascending; NULL if they are not found. Eigenvalues of J J' cost a
-// third of a decomposition; half the digits are enough.
+// The squares of the first `rank` singular values of J, ascending; NULL if they are not found.
+// Eigenvalues of J J' cost a third of a decomposition; half the digits are enough.
 static const double *squared_singular_values(struct ct_partition *s)
 {
     const int m = (int)s->m->nrow;

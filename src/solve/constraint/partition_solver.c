@@ -1,4 +1,5 @@
-// See partition_internal.h: closed forms, which to use, and whether their pivots are still in a good order.
+// See partition_internal.h: closed forms, which to use, and whether their pivots are still in a
+// good order.
 #include "solve/constraint/partition_internal.h"
 
 #include <math.h>
@@ -6,8 +7,8 @@
 
 // So many weak checks in a row ask for another order.
 enum { MOST_WEAK = 3 };
-// As long as the strength of the pivots is that of when they left such a part of what is allowed, or less, they are checked
-// after every eighth projection.
+// As long as the strength of the pivots is that of when they left such a part of what is allowed,
+// or less, they are checked after every eighth projection.
 static const double well_below = 0.1;
 enum { UNCHECKED = 7 };
 
@@ -17,8 +18,8 @@ static struct ct_partition_sets partition(const struct ct_partition *s)
                                       s->m->nu - (size_t)s->rank};
 }
 
-// Operations of embedding by matrices, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of J_d, its
-// solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+// Operations of embedding by matrices, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of
+// J_d, its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
 double ct_partition_operations(const struct ct_partition *s)
 {
     const double n = (double)s->m->nu, r = s->rank, f = n - r;
@@ -36,8 +37,8 @@ static void put_first(struct ct_partition *s, size_t i)
     s->solver[0] = f;
 }
 
-// In the place of form[0], if that is for the rows and columns of now; the order of pivots is sought at the
-// evaluator's input.
+// In the place of form[0], if that is for the rows and columns of now; the order of pivots is
+// sought at the evaluator's input.
 static void make_solver(struct ct_partition *s)
 {
     const struct ct_partition_sets p = partition(s);
@@ -63,8 +64,8 @@ static void make_solver(struct ct_partition *s)
     }
 }
 
-// Projections to wait for with weak pivots, or without a form, until one is made: more and more, so that a motion
-// that changes its rows and columns all the time does not spend its time on forms.
+// Projections to wait for with weak pivots, or without a form, until one is made: more and more, so
+// that a motion that changes its rows and columns all the time does not spend its time on forms.
 static long checks_before_retry(const struct ct_partition *s)
 {
     const long doublings = s->nmade / CT_MOST_SOLVERS;
@@ -129,8 +130,8 @@ void ct_partition_update_sigma(struct ct_partition *s)
         s->sigma = ct_strength_sigma(&s->strength);
 }
 
-// Inertias of a form tell what they are of those elsewhere, not what has cancelled in them: before less is left of any than may be, matrices
-// tell.
+// Inertias of a form tell what they are of those elsewhere, not what has cancelled in them: before
+// less is left of any than may be, matrices tell.
 static const double wary = 10;
 
 static bool has_one_freedom(const struct ct_partition *s)
@@ -176,8 +177,8 @@ enum ct_eval ct_partition_solve(struct ct_partition *s)
     return e;
 }
 
-// After a projection, at the evaluator's input: are the pivots still in a good order? Beside a singular configuration, where answers grow
-// whatever is chosen, choices had better stay.
+// After a projection, at the evaluator's input: are the pivots still in a good order? Beside a
+// singular configuration, where answers grow whatever is chosen, choices had better stay.
 static void check_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// d (nu) = -J+ r: least norm, all rows.
+// d (nu) = -J+ r: minimum-norm step, all rows.
 static void least_norm_step(struct ct_partition *s, const double *r, double *d)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
@@ -54,8 +54,9 @@ static bool is_degraded(const struct ct_partition *s)
                                     s->sigma_best, s->rank < (int)s->m->nrow);
 }
 
-// With a single row sigma is 1 everywhere. On a crossing what is left is divided twice by a pivot that is smaller than where it
-// began, and lengths may be small: nothing is near enough but round-off.
+// With a single row sigma is 1 everywhere. On a crossing what is left is divided twice by a pivot
+// that is smaller than where it began, and lengths may be small: nothing is near enough but
+// round-off.
 static double nearness(const struct ct_partition *s)
 {
     return s->is_crossing ? 0 : ct_smaller(s->sigma, s->nearness);
@@ -121,8 +122,9 @@ static double sum_of_sizes(const double *d, size_t n)
     return sum;
 }
 
-// Are both corrections at once as good as one after the other, with an evaluation between them? Not of redundant rows, whose
-// rest is to be seen, nor near a singular configuration, where round-off errors of places are felt by speeds.
+// Are both corrections at once as good as one after the other, with an evaluation between them? Not
+// of redundant rows, whose rest is to be seen, nor near a singular configuration, where round-off
+// errors of places are felt by speeds.
 static bool is_one_enough(const struct ct_partition *s, const double *y)
 {
     const struct ct_evaluator *m = s->m;
@@ -153,7 +155,8 @@ static void correct_both(const struct ct_partition *s, double *y)
     add_speeds(s, y, f->shift);
 }
 
-// Places are closed: speeds, once more where the round-off of a correction counts. False if pivots are not sound there.
+// Places are closed: speeds, once more where the round-off of a correction counts. False if pivots
+// are not sound there.
 static bool correct_speeds(struct ct_partition *s, double t, double *y)
 {
     const double *du = s->solver[0]->du;
@@ -224,7 +227,8 @@ enum ct_eval ct_partition_project(struct ct_partition *s, double t, double *y)
     s->is_renewed = true;
     if (!is_degraded(s))
         return CT_EVAL_OK;
-    // what columns that have worn since the last projection were moved by is what was to be closed times kappa, or more
+    // what columns that have worn since the last projection were moved by is what was to be closed
+    // times kappa, or more
     ct_evaluator_constraint(s->m); // forms leave J as it was
     ct_partition_choose(s);
     ct_evaluator_copy(y, s->before, ny);

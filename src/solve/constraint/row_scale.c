@@ -1,8 +1,9 @@
 // Natural sizes of constraint rows: what their coefficients are made of before they cancel.  (6.5a)
 //
-// A coefficient of a row of lengths is  p . (axis x sum d),  the sum over vectors d on the way between two frames; of a
-// row of angles it is a product of unit vectors. Where a constraint is redundant the sum cancels, down to the round-off or
-// to the tolerance of the numbers that are given. What is left is judged against
+// A coefficient of a row of lengths is  p . (axis x sum d),  the sum over vectors d on the way
+// between two frames; of a row of angles it is a product of unit vectors. Where a constraint is
+// redundant the sum cancels, down to the round-off or to the tolerance of the numbers that are
+// given. What is left is judged against
 //
 //     L_i = sum |d|   of rows of lengths [m],   1 of rows of angles and of rows without levers
 //     S_k = max L_i   over the rows that speed k slides in [m],   1 of turns

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A call of a solver for dense matrices costs about as much as so many operations of straight-line code.
+// A call of a solver for dense matrices costs about as much as so many operations of straight-line
+// code.
 static const double call = 500;
 // Making programs takes a microsecond and half a kilobyte a node.
 static const double most_nodes = 2e6;
@@ -50,9 +51,10 @@ double ct_solver_code_size(double operations)
     return bytes * operations;
 }
 
-// Code is read once in an evaluation. The second of the caches, which it shares with data, keeps all of a program up to
-// `near` and next to nothing of one beyond `far`; a byte from behind it takes as long as a third of an operation. Measured
-// on lattices and nets of 110 to 2000 unknowns, processors with 2 MiB of that cache: docs/performance.md.
+// Code is read once in an evaluation. The second of the caches, which it shares with data, keeps
+// all of a program up to `near` and next to nothing of one beyond `far`; a byte from behind it
+// takes as long as a third of an operation. Measured on lattices and nets of 110 to 2000 unknowns,
+// processors with 2 MiB of that cache: docs/performance.md.
 double ct_solver_straight_cost(double operations, double bytes)
 {
     const double near = 1 << 20, far = 3 << 20, per_byte = 0.33;

@@ -1,11 +1,12 @@
-// Solvers: ways to solve the linear equations of a closed system for one choice of rows and columns without seeking pivots again.
+// Solvers: ways to solve the linear equations of a closed system for one choice of rows and columns
+// without seeking pivots again.
 //
 //     unrolled   programs made by elimination on the expressions               (formulate/closed_form/elimination.h)
 //     unrolled as one system   the same of [M J'; J 0]                         (formulate/closed_form/kkt.h)
 //     sparse     [M J'; J 0] and J_d as sparse matrices, factored with the pivots of before
 //
-// The order of pivots is fixed, so it is watched: the strength of a form is that of its weakest pivot against
-// the others or the entries around it, and what is left of the equations is measured.
+// The order of pivots is fixed, so it is watched: the strength of a form is that of its weakest
+// pivot against the others or the entries around it, and what is left of the equations is measured.
 #ifndef CT_SOLVE_CONSTRAINT_SOLVER_H
 #define CT_SOLVE_CONSTRAINT_SOLVER_H
 
@@ -28,8 +29,9 @@ struct ct_solver {
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
     double remainder,
-        refined_remainder; // residual against the terms of the equations, before and after refinement
-    double kappa;          // largest entry of B; NAN: not found
+        // residual against the terms of the equations, before and after refinement
+        refined_remainder;
+    double kappa; // largest entry of B; NAN: not found
     // results of close
     const double *phi, *v, *dq,
         *du; // (nrow), (nrow); corrections of the dependent places (nu), else 0
@@ -52,20 +54,23 @@ struct ct_solver_kind {
 enum { CT_LEAST_SPARSE = 100 };
 extern const struct ct_solver_kind ct_solver_symbolic, ct_solver_symbolic_kkt, ct_solver_sparse;
 
-/// What solving is predicted to cost in each way, M, Q, J and gam included [operations of straight-line code]; NAN: it was
-/// not looked at, INFINITY: it is not possible, or `symbolic` was given up as longer than the others.
+/// What solving is predicted to cost in each way, M, Q, J and gam included [operations of
+/// straight-line code]; NAN: it was not looked at, INFINITY: it is not possible, or `symbolic` was
+/// given up as longer than the others.
 struct ct_solver_costs {
     double symbolic, symbolic_kkt, sparse, dense;
 };
 
-/// The cheapest form of a partition by counts of operations, its order of pivots sought at the evaluator's input, after
-/// ct_evaluator_dynamics. NULL if the solve by dense matrices is cheaper: operations [multiplications or
-/// additions]. kind: of the form to make, whatever it costs; NULL: the cheapest. costs (out) may be NULL. Owned by a until destroyed.
+/// The cheapest form of a partition by counts of operations, its order of pivots sought at the
+/// evaluator's input, after ct_evaluator_dynamics. NULL if the solve by dense matrices is cheaper:
+/// operations [multiplications or additions]. kind: of the form to make, whatever it costs; NULL:
+/// the cheapest. costs (out) may be NULL. Owned by a until destroyed.
 struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
                                    const struct ct_partition_sets *p, double operations,
                                    const struct ct_solver_kind *kind,
                                    struct ct_solver_costs *costs);
-/// One of this kind if it costs no more than so much, or little more: it is given up while it is made.
+/// One of this kind if it costs no more than so much, or little more: it is given up while it is
+/// made.
 struct ct_solver *ct_solver_create_within(struct ct_arena *a, struct ct_evaluator *m,
                                           const struct ct_partition_sets *p,
                                           const struct ct_solver_kind *kind, double cost);
@@ -76,7 +81,8 @@ struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_eval
 void ct_solver_destroy(struct ct_evaluator *m, struct ct_solver *f);
 bool ct_solver_matches(const struct ct_solver *f, const struct ct_partition_sets *p);
 
-/// u' (nu, out) and q' at the evaluator's input. Returns the strength, 0 if there is no finite result.
+/// u' (nu, out) and q' at the evaluator's input. Returns the strength, 0 if there is no finite
+/// result.
 double ct_solver_solve(struct ct_solver *f, struct ct_evaluator *m, double *a);
 /// Fill the results of check at the evaluator's input.
 void ct_solver_check(struct ct_solver *f, struct ct_evaluator *m);
@@ -103,7 +109,7 @@ struct ct_solver_code {
 };
 struct ct_solver_code ct_solver_code(const struct ct_solver *f);
 
-// ---- for the kinds --------------------------------------------------------------------------------
+// ---- for the kinds ------------------------------------------------------------------------------
 
 /// Fill row, dependent, rank.
 void ct_solver_set_partition(struct ct_solver *f, const struct ct_partition_sets *p);
@@ -113,7 +119,8 @@ const double *ct_solver_values(struct ct_arena *a, const struct ct_evaluator *m)
 double ct_solver_operations(const struct ct_program *p);
 /// Machine code of so many operations without loops [bytes].
 double ct_solver_code_size(double operations);
-/// What so many operations of straight-line code take, in operations whose code is in the nearest caches.
+/// What so many operations of straight-line code take, in operations whose code is in the nearest
+/// caches.
 double ct_solver_straight_cost(double operations, double bytes);
 
 #endif

@@ -23,14 +23,16 @@ static struct sparse_solver *sparse_solver_of(struct ct_solver *f)
     return (struct sparse_solver *)f; // its first member
 }
 
-// What takes as long as so many operations of straight-line code: a multiplication or addition of the factors, one of
-// their entries in factoring and solving, an entry of the matrices in gathering them and checking what is left. Fitted to
-// planar and spatial loops, one and many, in coordinates of joints and of bodies, with and without beams: all within a tenth.
+// What takes as long as so many operations of straight-line code: a multiplication or addition of
+// the factors, one of their entries in factoring and solving, an entry of the matrices in gathering
+// them and checking what is left. Fitted to planar and spatial loops, one and many, in coordinates
+// of joints and of bodies, with and without beams: all within a tenth.
 static const double per_operation = 0.7, per_factor = 18, per_value = 36;
 
-// ---- values -----------------------------------------------------------------------------------------
+// ---- values -------------------------------------------------------------------------------------
 
-// Entries of M twice where they are off the diagonal, entries of kept rows of J twice, in the order of the equations.
+// Entries of M twice where they are off the diagonal, entries of kept rows of J twice, in the order
+// of the equations.
 static size_t fill_whole(const struct sparse_solver *f, const struct ct_evaluator *m, int *row,
                          int *column, double *value)
 {
@@ -74,7 +76,7 @@ static double strength(struct sparse_solver *f)
     return f->form.weakest = ct_sparse_pivot(f->Jd) / f->pivot;
 }
 
-// ---- evaluation ---------------------------------------------------------------------------------------
+// ---- evaluation ---------------------------------------------------------------------------------
 
 // Factors by the pivots of before, and if they have become bad by others.
 static double solve_whole(struct sparse_solver *f, bool *is_refined)
@@ -147,7 +149,7 @@ static double close(struct ct_solver *form, struct ct_evaluator *m)
     return strength(f);
 }
 
-// ---- creation -----------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
 // What a factor takes, and solving with it.
 static double cost_of(const struct ct_sparse *s)

@@ -60,7 +60,7 @@ bool ct_evaluator_use(struct ct_arena *a, struct ct_evaluator *m, enum ct_backen
     return available || backend != CT_BACKEND_NATIVE;
 }
 
-// ---- creation ---------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
 static void start_input(struct ct_evaluator *m)
 {
@@ -177,7 +177,7 @@ void ct_evaluator_reset(struct ct_evaluator *m)
     ct_evaluator_prepare(m);
 }
 
-// ---- evaluation -------------------------------------------------------------------------------------
+// ---- evaluation ---------------------------------------------------------------------------------
 
 void ct_evaluator_set(struct ct_evaluator *m, double t, const double *y)
 {
@@ -243,7 +243,8 @@ static void add_row(double *y, double c, const double *x, size_t n)
         y[k] += c * x[k];
 }
 
-// A (nu x nu, out) from slopes of r, and by r_k (1 - k_k)^-1 those of inner values; R: the values of dk.
+// A (nu x nu, out) from slopes of r, and by r_k (1 - k_k)^-1 those of inner values; R: the values
+// of dk.
 static void scatter_slopes(const struct ct_evaluator *m, double *A, const struct ct_slope *s,
                            size_t n, const double *value, const double *R)
 {

@@ -5,10 +5,11 @@
 
 #include <math.h>
 
-// Times in a step near which methods have stages, those of order 2 the first one only: dop853, dopri5 and radau5 leave no
-// wider gaps.
+// Times in a step near which methods have stages, those of order 2 the first one only: dop853,
+// dopri5 and radau5 leave no wider gaps.
 static const double seen_at[] = {1, 0.25, 0.65, 0.85};
-// Between these a smooth change that they follow is hardly larger than at one of them; a pulse that they miss is.
+// Between these a smooth change that they follow is hardly larger than at one of them; a pulse that
+// they miss is.
 static const double missed = 2;
 // Steps of fewer pieces are as fine as what is known.
 static const double fine = 4;
@@ -77,7 +78,8 @@ double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
 {
     t = fmax(
         t,
-        0); // a start in a singular configuration is led in to from before: nothing is known of that
+        // a start in a singular configuration is led in to from before: nothing is known of that
+        0);
     const size_t nseen = method->order > 2 ? COUNT(seen_at) : 1;
     for (size_t i = 0; i < c->n; i++) {
         const double *value = c->value + i * (CT_INPUT_SAMPLES + 1);

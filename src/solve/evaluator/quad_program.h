@@ -1,5 +1,5 @@
-// Programs of an evaluator evaluated in quadruple precision: the same instructions on __float128. Only where the library
-// (libquadmath) is there; without it this header declares nothing.
+// Programs of an evaluator evaluated in quadruple precision: the same instructions on __float128.
+// Only where the library (libquadmath) is there; without it this header declares nothing.
 #ifndef CT_SOLVE_EVALUATOR_QUAD_PROGRAM_H
 #define CT_SOLVE_EVALUATOR_QUAD_PROGRAM_H
 

@@ -65,7 +65,7 @@ int ct_switches_find_sticking(struct ct_evaluator *m, double t, const double *y,
     return -1;
 }
 
-// ---- time events ----------------------------------------------------------------------------------------
+// ---- time events --------------------------------------------------------------------------------
 
 struct times {
     struct ct_arena *a;
@@ -92,7 +92,8 @@ static bool outcome(struct ct_evaluator *m, size_t i, double t, double *g)
     return side_of(m->e->switches[i].op, *g) != 0;
 }
 
-// The first double in (a, b] whose outcome differs from that at a; one step earlier if g vanishes there.
+// The first double in (a, b] whose outcome differs from that at a; one step earlier if g vanishes
+// there.
 static double bisect(struct ct_evaluator *m, size_t i, double a, double b)
 {
     double g;

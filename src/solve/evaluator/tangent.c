@@ -28,7 +28,7 @@ struct ct_tangent_lanes {
     struct reading *reading;            // by colour
 };
 
-// ---- creation -----------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
 // start[c] ... start[c + 1]: from numbers of members in count[c + 1].
 static void accumulate(size_t *start, uint32_t n)
@@ -113,7 +113,7 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
     ct_tangent_lanes_prepare(t, input);
 }
 
-// ---- evaluation -----------------------------------------------------------------------------------------
+// ---- evaluation ---------------------------------------------------------------------------------
 
 static void spread(struct ct_tangent_lanes *t, const double *input)
 {

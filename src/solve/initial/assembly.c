@@ -1,9 +1,10 @@
 // See assembly.h.
 //
-// First the loops are closed and the given values met: Newton steps, damped as Levenberg and Marquardt do, so that
-// rows which depend on each other in the solution do not throw it off. Then Gauss-Newton steps along these
-// constraints take all other coordinates to their guesses, each followed by closing again. This ends in a local minimum of the
-// distance to the guesses. Further starts look for a nearer one.
+// First the loops are closed and the given values met: Newton steps, damped as Levenberg and
+// Marquardt do, so that rows which depend on each other in the solution do not throw it off. Then
+// Gauss-Newton steps along these constraints take all other coordinates to their guesses, each
+// followed by closing again. This ends in a local minimum of the distance to the guesses. Further
+// starts look for a nearer one.
 #include "solve/initial/assembly_internal.h"
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"
@@ -29,15 +30,15 @@ enum { MOST_APPROACHES = 30 };
 static const double most_search_work = 1e9; // multiplications: about a second
 static const double pi = 3.14159265358979323846;
 
-// ---- residuals --------------------------------------------------------------------------------------------
+// ---- residuals ----------------------------------------------------------------------------------
 
 static double measured(const struct ct_assembler *s, size_t i)
 {
     return s->m->result.out[2 * i];
 }
 
-// Rotation vector from the target quaternion to the present one, component k: along it the rate of half its square
-// is its product with the angular velocity, exactly.
+// Rotation vector from the target quaternion to the present one, component k: along it the rate of
+// half its square is its product with the angular velocity, exactly.
 static double quaternion_error(const struct ct_assembler *s, size_t first, int k)
 {
     double t[4], p[4], v[3], norm = 0;
@@ -102,8 +103,8 @@ static void add_row(struct ct_assembler *s, const double *coef, size_t stride, d
     s->r[s->n++] = weight * r;
 }
 
-// Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural size (theory 6.5) are none: a row
-// that repeats what the tree imposes leaves the speeds alone.
+// Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural
+// size (theory 6.5) are none: a row that repeats what the tree imposes leaves the speeds alone.
 static void add_constraint(struct ct_assembler *s, size_t i, double r)
 {
     const struct ct_evaluator *m = s->m;
@@ -202,7 +203,7 @@ static double distance(const struct ct_assembler *s)
     return sum;
 }
 
-// ---- iterations ---------------------------------------------------------------------------------------------
+// ---- iterations ---------------------------------------------------------------------------------
 
 static double limit_step(double *d, size_t n)
 {
@@ -241,8 +242,9 @@ static void closing_step(struct ct_assembler *s, double damping)
     solve_rows(s, n, solved);
 }
 
-// Step into s->b that leaves the constraints alone and takes what is wanted nearest to its residuals' zero. The
-// weight of the constraints is finite; their multipliers, learnt from step to step, make up for that.
+// Step into s->b that leaves the constraints alone and takes what is wanted nearest to its
+// residuals' zero. The weight of the constraints is finite; their multipliers, learnt from step to
+// step, make up for that.
 static void wishing_step(struct ct_assembler *s)
 {
     const size_t nu = s->m->nu;
@@ -262,8 +264,9 @@ static void wishing_step(struct ct_assembler *s)
     }
 }
 
-// How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly singular configuration a step off them seems to
-// gain distance, at no more than round-off of what is closed. To be called after wishing_step.
+// How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly
+// singular configuration a step off them seems to gain distance, at no more than round-off of what
+// is closed. To be called after wishing_step.
 static double size_along_constraints(struct ct_assembler *s)
 {
     // loops that close to 1e-13 meet a singular configuration to about the root of that
@@ -335,8 +338,8 @@ static bool take_step(struct ct_assembler *s, double *nearest)
     return false;
 }
 
-// Towards the guesses and closed loops at once, from positions that may be open: Gauss-Newton steps of the constrained least-squares
-// problem, so that what has no guess moves first.
+// Towards the guesses and closed loops at once, from positions that may be open: Gauss-Newton steps
+// of the constrained least-squares problem, so that what has no guess moves first.
 static void approach(struct ct_assembler *s)
 {
     const double arrived = 1e-3; // [m or rad]; the rest is left to what follows
@@ -394,7 +397,7 @@ static double find_velocities(struct ct_assembler *s)
     return fmax(violation(s), ct_loop_filter_missed(s, true));
 }
 
-// ---- the stage ---------------------------------------------------------------------------------------------------
+// ---- the stage ----------------------------------------------------------------------------------
 
 // Rows whose constant comes from the start (gears, rods of the initial length) hold at any place.
 static void find_fixed_rows(struct ct_assembler *s, struct ct_arena *a)
@@ -420,8 +423,8 @@ static double chance(uint64_t *state)
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
 
-// A small motion into s->b, larger from try to try: of joints, then of bodies, so that their numbers do not depend on how many
-// freedoms beams keep, which stay as they start.
+// A small motion into s->b, larger from try to try: of joints, then of bodies, so that their
+// numbers do not depend on how many freedoms beams keep, which stay as they start.
 static void draw_motion(struct ct_assembler *s, int try)
 {
     uint64_t state = (uint64_t)try;
@@ -483,7 +486,7 @@ static bool report_half_turn(struct ct_assembler *s, int joint)
         self->name);
 }
 
-// ---- the nearest position -----------------------------------------------------------------------------------
+// ---- the nearest position -----------------------------------------------------------------------
 
 static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
 {
@@ -492,8 +495,9 @@ static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
         && s->e->build->topology->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
 }
 
-// A small motion into s->b from the targets to a position to look from: what has no guess goes anywhere within half a turn or the
-// natural length, guesses at most `reach` [rad and natural lengths], what is given stays.
+// A small motion into s->b from the targets to a position to look from: what has no guess goes
+// anywhere within half a turn or the natural length, guesses at most `reach` [rad and natural
+// lengths], what is given stays.
 static void draw_search(struct ct_assembler *s, int search, double reach)
 {
     uint64_t state = (uint64_t)search;
@@ -511,9 +515,10 @@ static void draw_search(struct ct_assembler *s, int search, double reach)
     }
 }
 
-// How many searches for a nearer position are worth their time. None where all joints are guessed or given and met within 0.1 rad or
-// natural lengths: of 1800 random loops those with a nearer position were at least 0.5 away. Many where joints without guesses may
-// have led far from the guesses of others.
+// How many searches for a nearer position are worth their time. None where all joints are guessed
+// or given and met within 0.1 rad or natural lengths: of 1800 random loops those with a nearer
+// position were at least 0.5 away. Many where joints without guesses may have led far from the
+// guesses of others.
 static int most_searches(const struct ct_assembler *s, double nearest)
 {
     const double near = 0.1;
@@ -542,8 +547,8 @@ static void keep_best(struct ct_assembler *s, bool back)
     memcpy(back ? memory : s->best_memory, back ? s->best_memory : memory, nm * sizeof *memory);
 }
 
-// From a closed position at s->y, the nearest found so far, to the nearest of all that further starts come to. Of equally near ones
-// the first stays.
+// From a closed position at s->y, the nearest found so far, to the nearest of all that further
+// starts come to. Of equally near ones the first stays.
 static void search_nearer(struct ct_assembler *s)
 {
     // of a distance, beside round-off: the end of different iterations
@@ -601,8 +606,9 @@ static bool try_positions(struct ct_assembler *s, double *residual)
     return false;
 }
 
-// Find positions, or speeds, with what is given as the only guesses; true if the rest is met. What given values then miss is
-// what contradicts: a compromise that leaves loops open as well misses them by less.
+// Find positions, or speeds, with what is given as the only guesses; true if the rest is met. What
+// given values then miss is what contradicts: a compromise that leaves loops open as well misses
+// them by less.
 static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
 {
     const size_t n = s->e->ncoordinate;
@@ -709,7 +715,8 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     return s;
 }
 
-// Angles may have come to their places by the long way: they start within half a turn of what is asked.
+// Angles may have come to their places by the long way: they start within half a turn of what is
+// asked.
 static void drop_whole_turns(const struct ct_assembler *s, double *q)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {

@@ -1,7 +1,8 @@
-// Consistent initial conditions: the mechanism assembled nearest to the given values.  (formulation 9.1)
+// Consistent initial conditions: the mechanism assembled nearest to the given values.  (formulation
+// 9.1)
 //
-// Assembly runs on trees through joints, whatever trees the equations use, and measures all joints: the start does
-// not depend on the choice of trees.
+// Assembly runs on trees through joints, whatever trees the equations use, and measures all joints:
+// the start does not depend on the choice of trees.
 #ifndef CT_SOLVE_INITIAL_ASSEMBLY_H
 #define CT_SOLVE_INITIAL_ASSEMBLY_H
 
@@ -18,7 +19,8 @@ struct ct_target {
     bool in_quaternion;
 };
 
-/// Start values of every coordinate of joints and bodies, by number of coordinate (eqs->coordinate).
+/// Start values of every coordinate of joints and bodies, by number of coordinate
+/// (eqs->coordinate).
 struct ct_initial_state {
     double *q, *u;
     const bool *is_given; // of each: its place is given, not guessed or left open
@@ -40,33 +42,35 @@ struct ct_initial_state {
 bool ct_assembly_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                        const struct ct_equations *e, struct ct_initial_state *out);
 
-/// The same, but a start whose loops do not close is handed out, open and at rest but for the speeds given: beams can be
-/// bent until they do.
+/// The same, but a start whose loops do not close is handed out, open and at rest but for the
+/// speeds given: beams can be bent until they do.
 bool ct_assembly_solve_open(struct ct_ctx *ctx, struct ct_arena *a,
                             const struct ct_model *model, const struct ct_equations *e,
                             struct ct_initial_state *out);
 
-/// The same in two parts, for one start after another while the values of the model's parameters change. The
-/// arrays of `out` are the assembly's and good until the next start.
+/// The same in two parts, for one start after another while the values of the model's parameters
+/// change. The arrays of `out` are the assembly's and good until the next start.
 struct ct_assembly;
 struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                        const struct ct_model *model,
                                        const struct ct_equations *e);
 bool ct_assembly_find(struct ct_assembly *s, struct ct_initial_state *out);
 
-/// Elastic coordinates q and speeds u (NULL: not wanted) of the beams whose `initial` gives a shape, with the values of the
-/// model's parameters.
+/// Elastic coordinates q and speeds u (NULL: not wanted) of the beams whose `initial` gives a
+/// shape, with the values of the model's parameters.
 void ct_initial_state_of_beams(const struct ct_equations *e, const double *value, double *q,
                                double *u);
 
-/// Are the demanded values and speeds those of the start? Beams that settle may have moved joints. Errors: CT_E_START.
+/// Are the demanded values and speeds those of the start? Beams that settle may have moved joints.
+/// Errors: CT_E_START.
 bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *start);
 
 /// Has the start's state (nq + nu) of equations of motion e changed by more than a demand may?
 bool ct_start_has_moved(const struct ct_equations *e, const struct ct_initial_state *start,
                         const double *before, const double *after);
-/// Does the state `after` keep what is demanded? before (nq + nu): the start in the state of equations of motion e; after: the same on
-/// their constraints. Speeds count where with_speeds. Costs nothing where the two are the same but for round-off. Errors: CT_E_START.
+/// Does the state `after` keep what is demanded? before (nq + nu): the start in the state of
+/// equations of motion e; after: the same on their constraints. Speeds count where with_speeds.
+/// Costs nothing where the two are the same but for round-off. Errors: CT_E_START.
 bool ct_start_is_kept(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                       const struct ct_equations *e, const struct ct_initial_state *start,
                       const double *before, const double *after, bool with_speeds);
@@ -76,12 +80,13 @@ bool ct_start_is_length(const struct ct_initial_state *start, size_t i);
 /// A value as messages show it: round-off is 0.
 double ct_start_shown(double value);
 
-/// Put a start into the state y (q, u, work) of an evaluator; memories of angles start at the values.
+/// Put a start into the state y (q, u, work) of an evaluator; memories of angles start at the
+/// values.
 void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluator *m,
                             double *y);
 
-/// After the mechanism did not assemble: a note that names the one joint whose axis keeps it from moving in a plane, if there is
-/// one.  (misaligned_joint.c)
+/// After the mechanism did not assemble: a note that names the one joint whose axis keeps it from
+/// moving in a plane, if there is one.  (misaligned_joint.c)
 void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a,
                               const struct ct_model *model);
 

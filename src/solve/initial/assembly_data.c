@@ -1,14 +1,15 @@
 // Assembly of data that are redundant but for their last digits; see assembly_internal.h.
 //
-// Two coaxial hinges whose places are given to some digits have rows that should repeat others and instead leave singular
-// values of the tolerance of the data, delta, and gaps of that size: closed exactly, the door would turn by gap/delta, anything,
-// or lock. Such a row says what its neighbours say; its small part is left out. With Q an orthonormal basis of the columns of
+// Two coaxial hinges whose places are given to some digits have rows that should repeat others and
+// instead leave singular values of the tolerance of the data, delta, and gaps of that size: closed
+// exactly, the door would turn by gap/delta, anything, or lock. Such a row says what its neighbours
+// say; its small part is left out. With Q an orthonormal basis of the columns of
 //
 //     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
 //         [ w G S    ]  given values, w large: they are kept
 //
-// of which columns with less than the tolerance left are left out, Newton's iteration on A', r' ends where the gaps are least
-// in the sum of squares.
+// of which columns with less than the tolerance left are left out, Newton's iteration on A', r'
+// ends where the gaps are least in the sum of squares.
 #include "solve/initial/assembly_internal.h"
 
 #include "numeric/dense.h"
@@ -36,7 +37,7 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
     return f;
 }
 
-// ---- the projection --------------------------------------------------------------------------------------
+// ---- the projection -----------------------------------------------------------------------------
 
 // v (n) -= its part in the first `rank` columns of Q, twice against round-off.
 static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
@@ -46,8 +47,8 @@ static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
             ct_vector_add(v, -ct_vector_dot(Q + n * k, v, n), Q + n * k, n);
 }
 
-// Q (n x nu, out): basis of the columns of B (n x nu, destroyed) of which more than the tolerance is left, the largest first. Returns
-// their number.
+// Q (n x nu, out): basis of the columns of B (n x nu, destroyed) of which more than the tolerance
+// is left, the largest first. Returns their number.
 static size_t find_basis(double *Q, double *B, size_t n, size_t nu)
 {
     size_t rank = 0;
@@ -109,7 +110,7 @@ void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop)
     }
 }
 
-// ---- when it is due --------------------------------------------------------------------------------------
+// ---- when it is due -----------------------------------------------------------------------------
 
 static void evaluate(struct ct_assembler *s)
 {
@@ -135,7 +136,8 @@ static double largest_gap(struct ct_assembler *s)
     return open;
 }
 
-// Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is 1e-6 of a step.
+// Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is
+// 1e-6 of a step.
 static const double unmoved = 1e-11;
 
 bool ct_loop_filter_is_due(struct ct_assembler *s)
@@ -168,7 +170,8 @@ static void shortest_step(struct ct_assembler *s)
              s->iwork, s->work);
 }
 
-// From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto them again. False if that does not succeed.
+// From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto
+// them again. False if that does not succeed.
 static bool move(struct ct_assembler *s, double way)
 {
     enum { MOST = 20 };
@@ -199,7 +202,8 @@ static bool move(struct ct_assembler *s, double way)
     return false;
 }
 
-// Beside a singular configuration rows depend on each other there alone: is the rank, to the tolerance of the data, no more elsewhere?
+// Beside a singular configuration rows depend on each other there alone: is the rank, to the
+// tolerance of the data, no more elsewhere?
 static bool is_rank_everywhere(struct ct_assembler *s)
 {
     const double ways[] = {0.1, 0.3};
@@ -230,7 +234,8 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
     return most;
 }
 
-// Are gaps that are left such that no motion closes them? Beside a singular configuration given values may hold it up.
+// Are gaps that are left such that no motion closes them? Beside a singular configuration given
+// values may hold it up.
 static bool is_least(struct ct_assembler *s, double gap)
 {
     const double little = 1e-2; // of the gap: what iterations leave

@@ -42,8 +42,9 @@ struct ct_assembler {
     size_t nhard, n;               // rows now: what must be met comes first
 };
 
-/// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial hinges whose places are given to
-/// some digits: what they say beyond the others is left out, and the loops close in the least-squares sense.
+/// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial
+/// hinges whose places are given to some digits: what they say beyond the others is left out, and
+/// the loops close in the least-squares sense.
 struct ct_loop_filter {
     bool is_on;        // rows are filtered
     double *B, *Q, *A; // workspace
@@ -51,30 +52,35 @@ struct ct_loop_filter {
     int *row;
 };
 struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s);
-/// The first rows of s->A, s->r, up to s->nhard, are those of the loops that is_loop (nrow; NULL: all) names, then given values.
+/// The first rows of s->A, s->r, up to s->nhard, are those of the loops that is_loop (nrow; NULL:
+/// all) names, then given values.
 void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop);
 /// Have rows at s->y parts that are neither round-off nor more than the tolerance of the data?
 bool ct_loop_filter_is_due(struct ct_assembler *s);
-/// With the filter, at the last rows: by how much given values are missed, which it may have left out.
+/// With the filter, at the last rows: by how much given values are missed, which it may have left
+/// out.
 double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds);
-/// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same elsewhere on the motion?
+/// At s->y, closed with the filter: are the gaps within the tolerance, and is the rank the same
+/// elsewhere on the motion?
 bool ct_loop_filter_holds(struct ct_assembler *s);
 /// Freedoms that the loops leave at s->y, to the tolerance of the data.
 size_t ct_loop_filter_freedoms(struct ct_assembler *s);
 /// By how much loops stay open.
 void ct_loop_filter_warn(struct ct_assembler *s);
-/// Values q and speeds u (of start->e->ncoordinate, out) of all coordinates at the state y (nq + nu) of equations of motion e, which lies
-/// near the start.
+/// Values q and speeds u (of start->e->ncoordinate, out) of all coordinates at the state y (nq +
+/// nu) of equations of motion e, which lies near the start.
 void ct_start_read_back(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                         const struct ct_equations *e, const struct ct_initial_state *start,
                         const double *y, double *q, double *u);
 
 /// What a joint's `initial` says of its values or rates.
 const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_speed);
-/// Where a joint's value for a coordinate stands there: with `rotate` the list may leave the quaternion out. False: nowhere.
+/// Where a joint's value for a coordinate stands there: with `rotate` the list may leave the
+/// quaternion out. False: nowhere.
 bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int place,
                        double *out);
-/// Is coordinate i an angle that does nothing but turn, so that a whole turn more is the same position?
+/// Is coordinate i an angle that does nothing but turn, so that a whole turn more is the same
+/// position?
 bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i);
 /// Fills s->frame and makes s->point.
 void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
@@ -82,11 +88,12 @@ void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
 /// Fills s->q, s->u, which are zeros, and s->length.
 void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *model);
 
-/// Deviation of coordinate i from its target; for three of a quaternion's four numbers a rotation, for the fourth false.
+/// Deviation of coordinate i from its target; for three of a quaternion's four numbers a rotation,
+/// for the fourth false.
 bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r);
 
-/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with the given values as
-/// guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
+/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with
+/// the given values as guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
 bool ct_assembler_report_positions(struct ct_assembler *s, bool closes);
 bool ct_assembler_report_speeds(struct ct_assembler *s);
 /// Does each driven joint start on its motion? Errors: CT_E_START.

@@ -34,7 +34,7 @@ bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, i
     return true;
 }
 
-// ---- natural scales -----------------------------------------------------------------------------------------
+// ---- natural scales -----------------------------------------------------------------------------
 
 static double square_distance(const double a[3], const double b[3])
 {
@@ -44,8 +44,8 @@ static double square_distance(const double a[3], const double b[3])
     return square;
 }
 
-// The largest distance between two points of one body, the ground included, at which joints act; 1 m
-// if there is none. It does not change when the mechanism is moved or turned.
+// The largest distance between two points of one body, the ground included, at which joints act; 1
+// m if there is none. It does not change when the mechanism is moved or turned.
 static double natural_length(const struct ct_assembler *s, const struct ct_model *model)
 {
     double largest = 0;
@@ -111,7 +111,7 @@ static double weight_of(const struct ct_target *t, double unit)
     return (t->is_given || t->is_guessed ? 1 : ct_assembly_open_weight) / unit;
 }
 
-// ---- values -------------------------------------------------------------------------------------------------
+// ---- values -------------------------------------------------------------------------------------
 
 static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model *model)
 {

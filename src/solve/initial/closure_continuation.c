@@ -63,7 +63,8 @@ struct local {
     double *J;         // m x n: the rows
     double *force, *v; // along the rows (n); of a motion (n)
     double *k,
-        *shape; // derivatives of the energy and their directions (n, n x n): those along the rows first
+        // derivatives of the energy and their directions (n, n x n): those along the rows first
+        *shape;
 };
 
 // out = x without its part across the rows
@@ -211,8 +212,9 @@ static void keep(struct ct_static_residual *s, struct saved_state *k, bool back)
     memcpy(back ? s->lam : k->lam, back ? k->lam : s->lam, s->e->nrow * sizeof *s->lam);
 }
 
-// A motion along the rows that the forces push: Newton's where the stiffness is positive, away from a saddle where it is
-// not (9.2). It is halved while at its end the forces push back by more than half. Returns its size.
+// A motion along the rows that the forces push: Newton's where the stiffness is positive, away from
+// a saddle where it is not (9.2). It is halved while at its end the forces push back by more than
+// half. Returns its size.
 static double descend(struct ct_static_residual *s, struct ct_arena *a, const struct local *l)
 {
     const double longest = 0.2, flat = 1e-12; // [m or rad]; against the stiffest direction

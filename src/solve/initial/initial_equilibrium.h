@@ -7,13 +7,13 @@
 /// Does a beam of the model ask for it?
 bool ct_initial_equilibrium_is_wanted(const struct ct_model *model);
 
-/// By joint: are places given for its start, so that its coordinates are to stay? They then are unknowns where the trees
-/// allow it (formulate.h: `first`).
+/// By joint: are places given for its start, so that its coordinates are to stay? They then are
+/// unknowns where the trees allow it (formulate.h: `first`).
 bool *ct_initial_equilibrium_fixed_joints(struct ct_arena *a, const struct ct_model *model);
 
-/// The elastic coordinates of the beams that start in equilibrium: Q + J' lam = 0 in their rows at t = 0, everything at
-/// rest. Other coordinates stay as in the start; in closed loops those that are given, then others, as far as the loops
-/// leave them free, while the rest follows.
+/// The elastic coordinates of the beams that start in equilibrium: Q + J' lam = 0 in their rows at
+/// t = 0, everything at rest. Other coordinates stay as in the start; in closed loops those that
+/// are given, then others, as far as the loops leave them free, while the rest follows.
 ///
 /// e       in      for held drivers (formulate.h: `held`), all joints measured, on trees through joints with those given first
 /// moving  in      the same on the same trees, drivers not held: for speeds; used in closed loops alone

@@ -1,8 +1,10 @@
-// The one axis that keeps a plane mechanism from closing: a joint whose `axis` was forgotten or mistaken.
+// The one axis that keeps a plane mechanism from closing: a joint whose `axis` was forgotten or
+// mistaken.
 //
-// If all joints but one move in planes of one normal, which each of them hands on from body to body (a hinge about it, a guide across
-// it, a weld), the odd one is most often meant to do so, too. Only hinges, guides and welds are looked at: with other joints a
-// mechanism is meant to be spatial.
+// If all joints but one move in planes of one normal, which each of them hands on from body to body
+// (a hinge about it, a guide across it, a weld), the odd one is most often meant to do so, too.
+// Only hinges, guides and welds are looked at: with other joints a mechanism is meant to be
+// spatial.
 #include "solve/initial/assembly.h"
 
 #include <math.h>
@@ -91,7 +93,8 @@ static bool is_odd(const struct plane *p, size_t joint)
     return !keeps(p, joint, n);
 }
 
-// The only joint that leaves the plane of the hinge `joint`; -1: there is none, or several, or too few hinges tell.
+// The only joint that leaves the plane of the hinge `joint`; -1: there is none, or several, or too
+// few hinges tell.
 static int find_odd(struct plane *p, size_t joint)
 {
     const struct ct_model *m = p->m;

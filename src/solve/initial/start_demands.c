@@ -1,13 +1,16 @@
-// Is a demanded `initial` kept, in the assembled start and on the constraints of the equations of motion? See assembly.h.
+// Is a demanded `initial` kept, in the assembled start and on the constraints of the equations of
+// motion? See assembly.h.
 //
-// The assembly meets demands or fails. Afterwards beams that settle may move joints, and the equations of motion, on other trees, may
-// judge the rank of the constraints differently: a freedom that is lost there takes its speed along.
+// The assembly meets demands or fails. Afterwards beams that settle may move joints, and the
+// equations of motion, on other trees, may judge the rank of the constraints differently: a freedom
+// that is lost there takes its speed along.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>
 
-// Of a demanded value, against itself and 1 rad or the natural length. Beside a singular configuration, by 1e-5 rad, round-off of
-// constraints moves speeds by 3e-6; a freedom that is lost takes all of the value.
+// Of a demanded value, against itself and 1 rad or the natural length. Beside a singular
+// configuration, by 1e-5 rad, round-off of constraints moves speeds by 3e-6; a freedom that is lost
+// takes all of the value.
 static const double kept = 1e-4;
 
 double ct_start_shown(double value)
@@ -70,7 +73,8 @@ bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *s
     return compare(ctx, start, start->q, start->u);
 }
 
-// Have unknowns changed by more than a demand may? Each against itself and 1, as its unit is not known here.
+// Have unknowns changed by more than a demand may? Each against itself and 1, as its unit is not
+// known here.
 static bool differs(const double *x, const double *y, size_t n, double scale)
 {
     for (size_t i = 0; i < n; i++)
@@ -97,7 +101,8 @@ bool ct_start_is_kept(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_mo
         return true;
     struct ct_arena *own = ct_arena_create_under(a);
     double *q = CT_NEWN(own, double, start->n + 1), *u = CT_NEWN(own, double, start->n + 1);
-    // with beams that have settled the equations for assembling know nothing of their shape: unknowns alone tell
+    // with beams that have settled the equations for assembling know nothing of their shape:
+    // unknowns alone tell
     if (!start->elastic)
         ct_start_read_back(ctx, own, model, e, start, after, q, u);
     for (size_t i = 0; i < start->n && start->elastic; i++) {

@@ -13,7 +13,7 @@ static const double nothing
     = 1e-6; // [m or rad] coordinates smaller than this count as of this size
 enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
 
-// ---- rows -----------------------------------------------------------------------------------------------
+// ---- rows ---------------------------------------------------------------------------------------
 
 bool ct_basis_extend(struct ct_basis *s, double *v)
 {
@@ -71,7 +71,7 @@ void ct_static_residual_choose_rows(struct ct_static_residual *s, struct ct_aren
             s->lam[i] = 0;
 }
 
-// ---- equations ------------------------------------------------------------------------------------------
+// ---- equations ----------------------------------------------------------------------------------
 
 void ct_static_residual_derive(struct ct_static_residual *s, struct ct_arena *a)
 {
@@ -146,7 +146,8 @@ static bool factor(struct ct_static_residual *s)
     return ct_lu(s->A, s->pivot, size, size);
 }
 
-// Newton correction of positions and multipliers now, with the factors of an earlier derivative; the size of the places'.
+// Newton correction of positions and multipliers now, with the factors of an earlier derivative;
+// the size of the places'.
 static double correction(struct ct_static_residual *s, double *d)
 {
     const size_t all = s->n + s->nlam;
@@ -192,8 +193,8 @@ static void take_back(struct ct_static_residual *s, const double *kept)
     memcpy(s->lam, kept + s->m->nq, s->e->nrow * sizeof *kept);
 }
 
-// Newton steps, halved until the next correction with the same derivative is smaller: that test does not care how rows
-// are scaled. Source: Deuflhard (2011), key deuflhard2011.
+// Newton steps, halved until the next correction with the same derivative is smaller: that test
+// does not care how rows are scaled. Source: Deuflhard (2011), key deuflhard2011.
 static bool iterate_damped(struct ct_static_residual *s, double *kept, double *d, double *next)
 {
     for (int step = 0; step < MOST_STEPS; step++) {
@@ -235,8 +236,9 @@ static bool iterate_full(struct ct_static_residual *s, double *d)
     return false;
 }
 
-// A slender beam that bends is stretched so hard by it that the old derivative finds each step too far, whereas the new one
-// draws its axis in with the next step: full steps are tried where damped ones find nothing.
+// A slender beam that bends is stretched so hard by it that the old derivative finds each step too
+// far, whereas the new one draws its axis in with the next step: full steps are tried where damped
+// ones find nothing.
 bool ct_static_residual_iterate(struct ct_static_residual *s, struct ct_arena *a)
 {
     const size_t all = s->n + s->nlam, state = s->m->nq + s->e->nrow;

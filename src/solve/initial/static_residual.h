@@ -31,16 +31,19 @@ struct ct_static_residual {
 struct ct_static_residual ct_static_residual_create(struct ct_arena *a, struct ct_evaluator *m);
 /// Forces Q + J' lam of what moves, all speeds zero, and their derivatives; phi: as programs.
 void ct_static_residual_derive(struct ct_static_residual *s, struct ct_arena *a);
-/// Choose the rows that count, independent in the directions that move, where s->y is now; multipliers of the others
-/// become zero.
+/// Choose the rows that count, independent in the directions that move, where s->y is now;
+/// multipliers of the others become zero.
 void ct_static_residual_choose_rows(struct ct_static_residual *s, struct ct_arena *a);
 /// Forces, phi and derivatives at s->y and s->lam.
 void ct_static_residual_evaluate(struct ct_static_residual *s);
-/// A = [K  c J'; c J  0] with K = d(force)/d(place), c = s->stiffness its size: multipliers are counted in units of c.
+/// A = [K  c J'; c J  0] with K = d(force)/d(place), c = s->stiffness its size: multipliers are
+/// counted in units of c.
 void ct_static_residual_fill(struct ct_static_residual *s);
-/// Newton steps from s->y, halved until the next correction with the same derivative is smaller. False if they find nothing.
+/// Newton steps from s->y, halved until the next correction with the same derivative is smaller.
+/// False if they find nothing.
 bool ct_static_residual_iterate(struct ct_static_residual *s, struct ct_arena *a);
-/// At an equilibrium: the rates at which it moves with time, K u + J' lam' = -df/dt - K_s u_s and J u = -v.
+/// At an equilibrium: the rates at which it moves with time, K u + J' lam' = -df/dt - K_s u_s and J
+/// u = -v.
 ///
 /// v       in      (nrow) rates of the rows while only what stays moves
 /// u       in/out  (nu) in: speeds u_s of what stays; out: of what moves, too

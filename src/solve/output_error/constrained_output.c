@@ -9,8 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-// States are moved by so much: so far that outputs which are flat where a loop stands change as well, a dead centre's or the straight line
-// of Watt's linkage. Where loops do not close so far away by less, 2^-28 in the end, which is felt above round-off.  [m, rad, m/s, rad/s]
+// States are moved by so much: so far that outputs which are flat where a loop stands change as
+// well, a dead centre's or the straight line of Watt's linkage. Where loops do not close so far
+// away by less, 2^-28 in the end, which is felt above round-off.  [m, rad, m/s, rad/s]
 static const double first_way = 0x1p-4, shorter = 0.25;
 enum { TRIES = 13 };
 // The part of its tolerance that errors of states may be of an output which is left to them.
@@ -101,7 +102,8 @@ static void move_states(struct ct_constrained_output *p, const int *which, size_
     ct_evaluator_retract(m, p->y, p->d);
 }
 
-// p->y where loops are closed, as far from p->closed as they can be; the part it was moved by, 0 if none.
+// p->y where loops are closed, as far from p->closed as they can be; the part it was moved by, 0 if
+// none.
 static double find_along(struct ct_constrained_output *p, double t)
 {
     struct ct_partition *s = p->outputs->s;
@@ -115,7 +117,8 @@ static double find_along(struct ct_constrained_output *p, double t)
     return 0;
 }
 
-// Where loops are closed so near to y and along the constraints that all can be compared; the part between them, 0 if none.
+// Where loops are closed so near to y and along the constraints that all can be compared; the part
+// between them, 0 if none.
 static double find_positions(struct ct_constrained_output *p, double t, const double *y)
 {
     ct_evaluator_copy(p->closed, y, p->ny);

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// What is promised of outputs, in tolerances. Accelerations and reactions may err by as much in a step where states err by one: these
-// go on in the next steps, those do not.
+// What is promised of outputs, in tolerances. Accelerations and reactions may err by as much in a
+// step where states err by one: these go on in the next steps, those do not.
 static const double promised = 10;
 
 bool ct_controlled_outputs_is_check(const struct ct_equations *e, ct_ex v)

@@ -1,5 +1,5 @@
-// Controlled outputs g, by what they are made of: time and states, or accelerations and multipliers as well, which are those
-// of the states.
+// Controlled outputs g, by what they are made of: time and states, or accelerations and multipliers
+// as well, which are those of the states.
 //
 //     g(t, q, u)   or   g(t, q, u, u', lam) with u', lam of (6.1) at (t, q, u)                         (8.36)
 #ifndef CT_SOLVE_OUTPUT_ERROR_CONTROLLED_OUTPUT_H
@@ -20,18 +20,19 @@ struct ct_controlled_outputs {
     long *evaluations; // those of the equations are counted here
 };
 
-/// Is an output a check of the run: the total energy, how far loops are open? As small differences of large terms they would ask for
-/// digits that nothing else needs.
+/// Is an output a check of the run: the total energy, how far loops are open? As small differences
+/// of large terms they would ask for digits that nothing else needs.
 bool ct_controlled_outputs_is_check(const struct ct_equations *e, ct_ex v);
-/// The kind of an output, CT_OUTPUT_KINDS if it is not controlled: a single state, which is controlled as it is, what depends on
-/// none, work, and checks.
+/// The kind of an output, CT_OUTPUT_KINDS if it is not controlled: a single state, which is
+/// controlled as it is, what depends on none, work, and checks.
 enum ct_output_kind ct_controlled_outputs_kind(const struct ct_equations *e, ct_ex v);
-/// Of the values g (n) of the equations, all of this kind. Everything lives in a, the evaluator's arena; evaluations must live as
-/// long.
+/// Of the values g (n) of the equations, all of this kind. Everything lives in a, the evaluator's
+/// arena; evaluations must live as long.
 void ct_controlled_outputs_create(struct ct_arena *a, struct ct_partition *s,
                                   enum ct_output_kind kind, const ct_ex *g, size_t n,
                                   long *evaluations, struct ct_controlled_outputs *o);
-/// g (n), good until the next call; the evaluator's input is t, y (ny) then. NaN where accelerations cannot be found.
+/// g (n), good until the next call; the evaluator's input is t, y (ny) then. NaN where
+/// accelerations cannot be found.
 const double *ct_controlled_outputs_at(struct ct_controlled_outputs *o, double t,
                                        const double *y);
 /// What they may err by in a step, which states may err by so much in.

@@ -7,22 +7,26 @@
 #include <math.h>
 #include <string.h>
 
-// Where outputs have at most this part of the error of states, that of so many further steps is not looked at.
+// Where outputs have at most this part of the error of states, that of so many further steps is not
+// looked at.
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
-// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that of more and more steps. Each look at
-// accelerations takes two of them, and they may err by more.
+// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that
+// of more and more steps. Each look at accelerations takes two of them, and they may err by more.
 static const double steady[CT_OUTPUT_KINDS] = {0.02, 0.5};
 enum { MOST_BETWEEN = 15 };
 // Nor are so many where they err by less than a quarter of what they may.
 static const int few_between[CT_OUTPUT_KINDS] = {0, 3};
-// Round-off is measured again after so many looks where it counts for nothing, and at once where an error would refuse a step.
+// Round-off is measured again after so many looks where it counts for nothing, and at once where an
+// error would refuse a step.
 enum { LOOKS_BETWEEN = 15 };
 // State errors below this say nothing about the ratio of the two: steps are still growing.
 static const double least_error = 0.02;
-// Round-off is felt by a change of the states by such a part of themselves, far above it so that it can be measured.
+// Round-off is felt by a change of the states by such a part of themselves, far above it so that it
+// can be measured.
 static const double change = 0x1p-40;
-// An output counts from so many round-off errors on, with six digits and more, and need not be better than so many.
+// An output counts from so many round-off errors on, with six digits and more, and need not be
+// better than so many.
 const double ct_output_error_least_size = 1e6;
 static const double most_precise = 16;
 
@@ -137,7 +141,7 @@ struct ct_constrained_output *ct_output_error_constrained(const struct ct_output
     return NULL;
 }
 
-// ---- what is known --------------------------------------------------------------------------------
+// ---- what is known ------------------------------------------------------------------------------
 
 struct ct_output_error_record ct_output_error_record(struct ct_arena *a,
                                                      enum ct_output_kind kind, size_t n)
@@ -247,7 +251,7 @@ void ct_output_error_accept_sizes(struct ct_output_error_record *r)
     r->has_last = false;
 }
 
-// ---- a run alone ------------------------------------------------------------------------------------
+// ---- a run alone --------------------------------------------------------------------------------
 
 void ct_output_error_start(struct ct_output_error *p, const struct ct_method *method)
 {
@@ -283,7 +287,8 @@ static void probe(struct ct_output_error *p, struct group *g, double t, const do
            g->record.n * sizeof *g->probed);
 }
 
-// g at y + e as well, after a look for those that constraints determine where such a one might count.
+// g at y + e as well, after a look for those that constraints determine where such a one might
+// count.
 static const double *find_error(struct ct_output_error *p, struct group *g, double t,
                                 const double *y, const double *e,
                                 const struct ct_tolerance *tolerance, double states)
@@ -383,10 +388,11 @@ void ct_output_error_accept(struct ct_output_error *p)
         ct_output_error_accept_sizes(&p->group[i].record);
 }
 
-// ---- outputs that amplify ---------------------------------------------------------------------------
+// ---- outputs that amplify -----------------------------------------------------------------------
 
-// A step that errs by less than this in states is a third as long as they ask for, and accelerations shorten it no further: shorter ones do
-// not damp the vibrations that those before have left, and would follow them.
+// A step that errs by less than this in states is a third as long as they ask for, and
+// accelerations shorten it no further: shorter ones do not damp the vibrations that those before
+// have left, and would follow them.
 static const double least_states = 1e-2;
 
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,

@@ -9,12 +9,14 @@
 
 // What is promised of outputs, in tolerances.
 static const double promised = 10;
-// States are changed by such parts of themselves: far above round-off, and so little that outputs are linear in it.
+// States are changed by such parts of themselves: far above round-off, and so little that outputs
+// are linear in it.
 static const double change = 0x1p-40;
 // An output need not be better than so many round-off errors of states.
 static const double most_precise = 2;
 enum { CALLS_BETWEEN = 7 };
-// What outputs change by with their states changes slowly. Where that takes accelerations it holds for so many further places.
+// What outputs change by with their states changes slowly. Where that takes accelerations it holds
+// for so many further places.
 static const int places_between[CT_OUTPUT_KINDS] = {0, 7};
 
 struct ct_output_sensitivity {
@@ -24,7 +26,8 @@ struct ct_output_sensitivity {
     size_t n, ny;
     double *at, *largest,
         *way, // (n) g; |g| over the looks so far; change of g for states changed by themselves
-        *reach; // (n) and, of solutions, by what their tolerance takes for small; else the same place
+        // (n) and, of solutions, by what their tolerance takes for small; else the same place
+        *reach;
     bool *has;            // (n)
     double *y;            // (ny) to spare
     double t_seen, *seen; // the place of `at`, (ny)
@@ -76,8 +79,8 @@ static double part(size_t i)
     return 1 + (x - (double)(size_t)x);
 }
 
-// What outputs change by, over `change`, where states are changed by it in different parts of themselves, so that nothing cancels; of
-// themselves and of `small`.
+// What outputs change by, over `change`, where states are changed by it in different parts of
+// themselves, so that nothing cancels; of themselves and of `small`.
 static void find_way(struct ct_output_sensitivity *p, double t, const double *y, double small,
                      double *way)
 {

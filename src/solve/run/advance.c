@@ -6,7 +6,8 @@
 #include <float.h>
 #include <string.h>
 
-// Time events are sought for so many steps of the owner ahead: the search looks at thousands of times.
+// Time events are sought for so many steps of the owner ahead: the search looks at thousands of
+// times.
 static const double steps_ahead = 1024;
 
 struct ct_advance {

@@ -1,10 +1,12 @@
-// A run that is kept from one call to the next: from a state to a later time, as often as its owner likes.
+// A run that is kept from one call to the next: from a state to a later time, as often as its owner
+// likes.
 //
 //     start -> to t1 -> to t2 -> [the owner changes the state, parameters or the time] -> start -> ...
 //
-// What always holds: programs, choices of rows and columns, sides of switches and the size of steps stay from call to call; each call
-// integrates from where the state is with first derivatives found anew, since inputs may have changed. Memory of a call is used again
-// by the next one. Errors are controlled in the states; there are no samples.
+// What always holds: programs, choices of rows and columns, sides of switches and the size of steps
+// stay from call to call; each call integrates from where the state is with first derivatives found
+// anew, since inputs may have changed. Memory of a call is used again by the next one. Errors are
+// controlled in the states; there are no samples.
 #ifndef CT_SOLVE_ADVANCE_H
 #define CT_SOLVE_ADVANCE_H
 
@@ -12,18 +14,20 @@
 
 struct ct_advance;
 
-/// For a run that has begun (ct_run_begin), with the method and the tolerances of o. Everything lives in a, but for
-/// the memory of calls, which lives in arenas under it.
+/// For a run that has begun (ct_run_begin), with the method and the tolerances of o. Everything
+/// lives in a, but for the memory of calls, which lives in arenas under it.
 struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
                                      const struct ct_run_options *o);
-/// The state at t is not where steps have come to: nothing of those before counts. y (ny): the state, q, u, work.
-/// is_assembled: it is that of ct_run_begin or ct_run_restart, where t = 0.
+/// The state at t is not where steps have come to: nothing of those before counts. y (ny): the
+/// state, q, u, work. is_assembled: it is that of ct_run_begin or ct_run_restart, where t = 0.
 /// Errors: CT_E_STUCK, CT_E_SINGULAR, CT_E_STEP_OPEN, into the run's context.
 bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_assembled);
-/// Values of parameters have changed at t: switches may be on other sides, and change at other times.
+/// Values of parameters have changed at t: switches may be on other sides, and change at other
+/// times.
 void ct_advance_refresh(struct ct_advance *s, double t);
-/// From t0, where the state is, to t1 > t0, exactly. *t (out): the time that was reached. False with a diagnostic in the context of
-/// the run or in `said`, whose texts are gone with the next call.
+/// From t0, where the state is, to t1 > t0, exactly. *t (out): the time that was reached. False
+/// with a diagnostic in the context of the run or in `said`, whose texts are gone with the next
+/// call.
 bool ct_advance_to(struct ct_advance *s, double t0, double t1, double *t, struct ct_ctx **said);
 /// The state, (ny).
 double *ct_advance_state(struct ct_advance *s);

@@ -1,6 +1,8 @@
-// Beams monitored during a run: slopes, indicators of linear ones, and the error that these will have. See run_internal.h.
+// Beams monitored during a run: slopes, indicators of linear ones, and the error that these will
+// have. See run_internal.h.
 //
-// Indicators and slopes are looked at with each sample; what estimates the error follows the base from step to step.
+// Indicators and slopes are looked at with each sample; what estimates the error follows the base
+// from step to step.
 #include "beam_error/beam_error_coupled.h"
 #include "beam_error/validity.h"
 #include "solve/run/run_internal.h"
@@ -18,8 +20,9 @@ void ct_slope_monitor(struct ct_slope_report *report, const struct ct_evaluator 
     }
 }
 
-// Averaged over a period of the beam: what rings faster than it can follow does not count. The mean comes late by that
-// period; the beam has left from where on the indicator itself is beyond the limit.
+// Averaged over a period of the beam: what rings faster than it can follow does not count. The mean
+// comes late by that period; the beam has left from where on the indicator itself is beyond the
+// limit.
 static void monitor_indicator(const struct ct_run *r, size_t i, double t)
 {
     struct ct_validity_report *v = &r->report->validity[i];
@@ -46,7 +49,7 @@ void ct_run_monitor_sample(struct ct_run *r, double t)
     r->t_sample = t;
 }
 
-// ---- the error estimated -------------------------------------------------------------------------------------
+// ---- the error estimated ------------------------------------------------------------------------
 
 void ct_run_monitor_start(struct ct_run *r, double t, const double *y)
 {

@@ -1,14 +1,16 @@
 // Impulses: speeds after the rates of drivers have jumped. See run_internal.h.
 //
-// Both kinds of jump are the same problem with another form, half u' W u + ...: the speeds that J allows then and whose
-// change is smallest in it. For an impulse it is the kinetic energy, and W is M. For `continuous` it is `kept` of the
-// equations: speeds of joints and beams, which no tree has a part in.  (8.5)
+// Both kinds of jump are the same problem with another form, half u' W u + ...: the speeds that J
+// allows then and whose change is smallest in it. For an impulse it is the kinetic energy, and W is
+// M. For `continuous` it is `kept` of the equations: speeds of joints and beams, which no tree has
+// a part in.  (8.5)
 #include "solve/run/run_internal.h"
 
 #include <string.h>
 
-// Where joints do not tell how something moves, as with what floats, momentum does. So much of the kinetic energy is added:
-// joints then keep their speeds but for that part, and but for a higher power of it each time they are asked again.
+// Where joints do not tell how something moves, as with what floats, momentum does. So much of the
+// kinetic energy is added: joints then keep their speeds but for that part, and but for a higher
+// power of it each time they are asked again.
 static const double share_of_momentum = 1e-6;
 enum { TIMES = 3 };
 

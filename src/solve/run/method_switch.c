@@ -1,5 +1,5 @@
 // Method switching on stiffness, the choice of the method while a run goes on: steps end where the motion turns stiff, an implicit method is tried, and
-// the one that gets farther for its work goes on.  (8.1)
+// the one that gets farther for its work goes on.  (section 8.1)
 #include "solve/run/run_internal.h"
 
 #include "integrate/implicit/newton_sparse.h"

@@ -1,5 +1,5 @@
-// See quad_run.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... parts of a step, as many as the tolerance
-// wants: Hairer, Norsett and Wanner (1993), II.9, key hairer1993.
+// See quad_run.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... parts of a step, as
+// many as the tolerance wants: Hairer, Norsett and Wanner (1993), II.9, key hairer1993.
 #include "solve/run/quad_run.h"
 #include "solve/evaluator/quad_program.h"
 
@@ -22,7 +22,7 @@ static quad magnitude(quad a)
     return a < 0 ? -a : a;
 }
 
-// ---- the system -------------------------------------------------------------------------------------------
+// ---- the system ---------------------------------------------------------------------------------
 
 struct run {
     const struct ct_evaluator *m;
@@ -82,7 +82,7 @@ static struct run create(struct ct_arena *a, const struct ct_evaluator *m, const
     return r;
 }
 
-// ---- a step --------------------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
 // end = the state at t + h by the midpoint rule in n parts.
 static void midpoint(struct run *r, quad t, quad h, int n)
@@ -103,7 +103,8 @@ static void midpoint(struct run *r, quad t, quad h, int n)
     memcpy(r->end, r->at, bytes);
 }
 
-// The row of n = 2 (k + 1) parts from the row before; the error: the largest difference of its last two entries.
+// The row of n = 2 (k + 1) parts from the row before; the error: the largest difference of its last
+// two entries.
 static double extrapolate(struct run *r, int k)
 {
     double error = 0;
@@ -157,7 +158,7 @@ static bool step(struct run *r, quad t, quad h, double tolerance, double *factor
     return false;
 }
 
-// ---- the run ---------------------------------------------------------------------------------------------------
+// ---- the run ------------------------------------------------------------------------------------
 
 bool ct_quad_can_run(const struct ct_evaluator *m)
 {

@@ -1,10 +1,12 @@
-// A run in quadruple precision, for references: what round-off and step control leave in double precision is not in it.
+// A run in quadruple precision, for references: what round-off and step control leave in double
+// precision is not in it.
 //
-// The listings of an evaluator are evaluated in __float128, the states by extrapolation of the midpoint rule; parameters,
-// numbers of the model and the start are those of the evaluator, rounded to double. Some hundred times slower.
+// The listings of an evaluator are evaluated in __float128, the states by extrapolation of the
+// midpoint rule; parameters, numbers of the model and the start are those of the evaluator, rounded
+// to double. Some hundred times slower.
 //
-// What always holds: only open systems whose accelerations have a closed form, without switches and tables, can be run,
-// and no measured quaternions; without the library (libquadmath) none can.
+// What always holds: only open systems whose accelerations have a closed form, without switches and
+// tables, can be run, and no measured quaternions; without the library (libquadmath) none can.
 #ifndef CT_SOLVE_RUN_QUAD_RUN_H
 #define CT_SOLVE_RUN_QUAD_RUN_H
 
@@ -12,9 +14,10 @@
 
 bool ct_quad_can_run(const struct ct_evaluator *m);
 
-/// out (nsample x nresult) = results at equally spaced times from 0 to the duration, both included, from y (q, u, work) at
-/// 0. Steps err by `tolerance`, relative to the larger of 1 and the state. False if `go_on` says so (it is asked
-/// before every step) or if steps become too small. Workspace is taken from a.
+/// out (nsample x nresult) = results at equally spaced times from 0 to the duration, both included,
+/// from y (q, u, work) at
+/// 0. Steps err by `tolerance`, relative to the larger of 1 and the state. False if `go_on` says so
+/// (it is asked before every step) or if steps become too small. Workspace is taken from a.
 bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double *y,
                  double duration, size_t nsample, double tolerance, bool (*go_on)(void *user),
                  void *user, double *out);

@@ -1,23 +1,27 @@
-// Round-off limit: outputs with fewer digits than are asked for, whatever the steps: looked for at the end of a run.
+// Round-off limit: outputs with fewer digits than are asked for, whatever the steps: looked for at
+// the end of a run.
 //
-// Some are functions of states that amplify their round-off (output_sensitivity.h). Others feel it through the motion: stiff forces answer a
-// round-off of places, eps q, by accelerations eps |f'(q) q|, and a speed keeps of that what its damping and its vibration leave,
+// Some are functions of states that amplify their round-off (output_sensitivity.h). Others feel it
+// through the motion: stiff forces answer a round-off of places, eps q, by accelerations eps |f'(q)
+// q|, and a speed keeps of that what its damping and its vibration leave,
 //
 //     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|                                  (8.15)
 //
-// A body on a stiff damped spring that creeps along has as few digits in its speed as the spring in its force. Those of the steps of an
-// explicit method add up where nothing damps them,
+// A body on a stiff damped spring that creeps along has as few digits in its speed as the spring in
+// its force. Those of the steps of an explicit method add up where nothing damps them,
 //
 //     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off                           (8.18)
 //
-// An inertia that is left of others which cancel, as that of a light section in free flight, has lost as many digits as they are larger, the
-// same ones all along. What it moves gets out of step: its speed errs by half of that part of its accelerations times the time.
+// An inertia that is left of others which cancel, as that of a light section in free flight, has
+// lost as many digits as they are larger, the same ones all along. What it moves gets out of step:
+// its speed errs by half of that part of its accelerations times the time.
 #include "solve/run/run_internal.h"
 
 #include <float.h>
 #include <string.h>
 
-// Changes are so many round-off errors, far above them, and so little that the equations are linear in them.
+// Changes are so many round-off errors, far above them, and so little that the equations are linear
+// in them.
 static const double roundoffs = 0x1p12;
 // An output need not be better than so many round-off errors.
 static const double most_precise = 2;
@@ -37,8 +41,8 @@ struct roundoff {
     double place; // largest, in so many round-off errors
 };
 
-// Of speeds, at r->y. omega is the root of the answer to a change of places; noise is omega times places, and less where damping is
-// more than omega.
+// Of speeds, at r->y. omega is the root of the answer to a change of places; noise is omega times
+// places, and less where damping is more than omega.
 static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
 {
     const size_t nq = r->m->nq, nu = r->m->nu;
@@ -73,8 +77,8 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
     return true;
 }
 
-// What is damped forgets the round-off errors of steps before 1/damping; each speed is changed alone, as what turns answers with the others,
-// undamped. f (nu) at r->y is in r->scratch.
+// What is damped forgets the round-off errors of steps before 1/damping; each speed is changed
+// alone, as what turns answers with the others, undamped. f (nu) at r->y is in r->scratch.
 static bool remember(struct ct_run *r, double t, struct roundoff *e)
 {
     const size_t nq = r->m->nq, nu = r->m->nu;
@@ -95,7 +99,8 @@ static bool remember(struct ct_run *r, double t, struct roundoff *e)
     return true;
 }
 
-// What outputs change by for a change of places, d (nu), and for one of speeds, u (nu): in round-off errors, of their largest values.
+// What outputs change by for a change of places, d (nu), and for one of speeds, u (nu): in
+// round-off errors, of their largest values.
 static bool evaluate_change(struct ct_run *r, double t, const double *d, const double *u,
                             const double *at, double *part)
 {
@@ -111,7 +116,8 @@ static bool evaluate_change(struct ct_run *r, double t, const double *d, const d
     return true;
 }
 
-// Sums of round-off errors, (8.18), that results feel as parts of their largest values (nresult, out).
+// Sums of round-off errors, (8.18), that results feel as parts of their largest values (nresult,
+// out).
 static bool find_output_changes(struct ct_run *r, double t, const struct roundoff *e,
                                 const double *at, double *felt)
 {
@@ -136,7 +142,8 @@ static double small_output(const struct ct_run *r)
     return r->o->rtol > 0 ? r->o->output_rtol * (r->o->atol / r->o->rtol) : 0;
 }
 
-// The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing but round-off is zero.
+// The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing
+// but round-off is zero.
 static int find_worst(const struct ct_run *r, const double *felt, double *most)
 {
     int worst = -1;
@@ -149,7 +156,8 @@ static int find_worst(const struct ct_run *r, const double *felt, double *most)
     return worst;
 }
 
-// Where no single round-off is too much, those of all steps may be. First as if nothing damped them, which costs little.
+// Where no single round-off is too much, those of all steps may be. First as if nothing damped
+// them, which costs little.
 static void add_up(struct ct_run *r, double t, struct roundoff *e, const double *at,
                    double wanted, struct ct_roundoff_limit *b)
 {
@@ -171,7 +179,8 @@ static void add_up(struct ct_run *r, double t, struct roundoff *e, const double 
         b->sum = felt[b->output];
 }
 
-// out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places changed by `side` times many round-off errors.
+// out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places
+// changed by `side` times many round-off errors.
 static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, double *out)
 {
     const struct ct_evaluator *m = r->m;
@@ -190,7 +199,8 @@ struct cancellation {
     size_t worst; // the speed whose acceleration errs most
 };
 
-// With places changed to both sides what is linear in them cancels: the rest is as large as root 6 round-off errors.
+// With places changed to both sides what is linear in them cancels: the rest is as large as root 6
+// round-off errors.
 static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
 {
     enum { LOOKS = 8 };
@@ -229,7 +239,8 @@ static double remembered(struct ct_run *r, double t, size_t k)
     return t / fmax(1, (r->scratch[k] - r->dy[nq + k]) / change * t);
 }
 
-// Does what such an inertia moves get so far out of step that an output errs by more than is wanted?
+// Does what such an inertia moves get so far out of step that an output errs by more than is
+// wanted?
 static void find_phase_error(struct ct_run *r, double t, const double *at, double wanted,
                              struct ct_roundoff_limit *b)
 {

@@ -40,10 +40,12 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// A little later, or before, is this part of the run: far enough for a contradiction to be more than round-off.
+// A little later, or before, is this part of the run: far enough for a contradiction to be more
+// than round-off.
 static const double little = 1e-3;
 
-// Where steps ended as the constraints could not be met: the row that stays open farthest a little later.
+// Where steps ended as the constraints could not be met: the row that stays open farthest a little
+// later.
 static void name_open_row(struct ct_run *r)
 {
     if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
@@ -72,8 +74,8 @@ static bool find_left(struct ct_run *r, double *left)
     return ct_partition_inertias(r->s, r->e->is_small, left);
 }
 
-// The speed that carries small coordinates whose inertia has shrunk most against what it is with these at zero; *part (out) of it is
-// left. -1: none has lost much.
+// The speed that carries small coordinates whose inertia has shrunk most against what it is with
+// these at zero; *part (out) of it is left. -1: none has lost much.
 static int lost_speed(struct ct_run *r, double *part)
 {
     const size_t nu = r->m->nu;
@@ -97,7 +99,8 @@ static int lost_speed(struct ct_run *r, double *part)
     return lost;
 }
 
-// Equations that are cut to first order have lost an inertia, which leaves no step: whose, and what to do.
+// Equations that are cut to first order have lost an inertia, which leaves no step: whose, and what
+// to do.
 static bool name_lost(struct ct_run *r)
 {
     double part;
@@ -130,7 +133,8 @@ const char *ct_run_singular_joints(const struct ct_run *r)
     return r->singular_joints;
 }
 
-// Where the run began there are fewer independent rows than on each of the motions that go on from there, and none is taken.
+// Where the run began there are fewer independent rows than on each of the motions that go on from
+// there, and none is taken.
 static void name_singular_start(struct ct_run *r)
 {
     const double near
@@ -173,7 +177,8 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
     }
 }
 
-// Steps of order 2 come to round-off long before those of the others do, near singular configurations first.
+// Steps of order 2 come to round-off long before those of the others do, near singular
+// configurations first.
 static void advise_order(struct ct_run *r)
 {
     const int low = 2;
@@ -186,7 +191,8 @@ static void advise_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
-// Has an event been in the position, or next to it, or is one about to be there? Behind it no step comes out of the position.
+// Has an event been in the position, or next to it, or is one about to be there? Behind it no step
+// comes out of the position.
 static bool has_switched(const struct ct_run *r)
 {
     const double t = r->stats.last_time, near = little * r->o->duration;
@@ -209,7 +215,8 @@ static bool is_driven_to_rest(const struct ct_run *r)
         && ct_vector_largest(r->y + r->m->nq, r->m->nu) < rest * r->singular->swiftest;
 }
 
-// What leads on near a singular configuration: where round-off is what ends steps, a tolerance that leaves it unfelt.
+// What leads on near a singular configuration: where round-off is what ends steps, a tolerance that
+// leaves it unfelt.
 static const char *advise_there(struct ct_run *r)
 {
     if (has_switched(r))

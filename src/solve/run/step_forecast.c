@@ -1,10 +1,12 @@
-// Step forecast, what is said of runs that take long: how many steps are to come, and what moves fastest. See run_internal.h.
+// Step forecast, what is said of runs that take long: how many steps are to come, and what moves
+// fastest. See run_internal.h.
 #include "solve/run/run_internal.h"
 
 // Some minutes of most systems, and more than shipped ones take.
 const double ct_run_many_steps = 1e6;
 
-// The coordinate whose speed moves most in the fastest motion at t, y, and its rate; NULL: it cannot be told.
+// The coordinate whose speed moves most in the fastest motion at t, y, and its rate; NULL: it
+// cannot be told.
 static const char *find_fastest(struct ct_run *r, double t, const double *y, double *rate)
 {
     const int nq = (int)r->m->nq, last = nq + (int)r->m->nu;

@@ -1,9 +1,11 @@
 // End of reach: does a driven motion lead to where the constraints cannot be met any more?
 //
-// Before a position in which constraints come to depend on each other the motion either crosses it or ends in it. It ends if
-// behind it no place of the bodies meets the constraints: the sum of their squares has a least value above 0 there, one that grows
-// with time. That is looked for from the place where the present speeds lead, by Levenberg and Marquardt's method, at two times. At
-// a position that can be crossed there are places that meet all, next to where the speeds lead, and the least value found is 0.
+// Before a position in which constraints come to depend on each other the motion either crosses it
+// or ends in it. It ends if behind it no place of the bodies meets the constraints: the sum of
+// their squares has a least value above 0 there, one that grows with time. That is looked for from
+// the place where the present speeds lead, by Levenberg and Marquardt's method, at two times. At a
+// position that can be crossed there are places that meet all, next to where the speeds lead, and
+// the least value found is 0.
 //
 // Source: Nocedal and Wright (2006), Numerical Optimization, 10.3, for the method.
 #include "solve/constraint/partition_internal.h"
@@ -51,12 +53,13 @@ static double find_slope(const struct search *s)
     return trace * phi > 0 ? sqrt(ct_vector_dot(s->g, s->g, (size_t)nu) / (trace * phi)) : 0;
 }
 
-// To the place next to s->y where the misfit is least. size (out): of what is open there, the root of the sum of squares. False
-// if that is not found.
+// To the place next to s->y where the misfit is least. size (out): of what is open there, the root
+// of the sum of squares. False if that is not found.
 static bool find_least(struct search *s, double *size)
 {
     enum { MOST = 100 };
-    const double flat = 1e-7; // the root of round-off: what a misfit tells of where it is least
+    // the root of round-off: what a misfit tells of where it is least
+    const double flat = sqrt(DBL_EPSILON);
     const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
     double mu = 1e-3, now = find_misfit(s, s->y);

@@ -1,8 +1,8 @@
 // Rank monitor: predicts the next singular configuration ahead of a motion. See singular.h.
 //
-// The smallest pivot of J, as rows and columns are chosen, vanishes at a singular configuration about linearly in time. Its zero is
-// extrapolated by secants along the motion. A change of sign of the test function (singularity_test_function.c) tells
-// that a step has passed over one.
+// The smallest pivot of J, as rows and columns are chosen, vanishes at a singular configuration
+// about linearly in time. Its zero is extrapolated by secants along the motion. A change of sign of
+// the test function (singularity_test_function.c) tells that a step has passed over one.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -53,7 +53,7 @@ void ct_rank_monitor_start(struct ct_rank_monitor *w)
     w->rank = 0;
 }
 
-// ---- ahead ------------------------------------------------------------------------------------------------
+// ---- ahead --------------------------------------------------------------------------------------
 
 static void look_at(struct ct_rank_monitor *w, double t, const double *y)
 {
@@ -78,15 +78,17 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
     return ct_rank_monitor_pivot(w, ct_time_just_before(a->t + s, a->pending), w->y);
 }
 
-// A position counts as singular ahead when the smallest pivot has fallen to the first part of its largest value so far
-// and goes on falling; where it has fallen to the second part pivots are sought at every evaluation, at the third f is
-// better not computed; at the second already where steps keep their rows and could have kept others.
+// A position counts as singular ahead when the smallest pivot has fallen to the first part of its
+// largest value so far and goes on falling; where it has fallen to the second part pivots are
+// sought at every evaluation, at the third f is better not computed; at the second already where
+// steps keep their rows and could have kept others.
 static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
-// At so little round-off, which is divided by its square, leaves no digit of which motion goes on: no step ends there.
+// At so little round-off, which is divided by its square, leaves no digit of which motion goes on:
+// no step ends there.
 static const double lost_pivot = 1e-7;
 
-// Round-off of accelerations is eps over the square of the pivot, against its largest. Where that would be more than this part of what
-// is wanted they have too few digits.
+// Round-off of accelerations is eps over the square of the pivot, against its largest. Where that
+// would be more than this part of what is wanted they have too few digits.
 static const double felt_rounding = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
@@ -101,7 +103,8 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
     return is_roundoff_limited(w, ct_rank_monitor_pivot(w, t, y));
 }
 
-// Time to the zero of the smallest pivot, by secants along the motion with its present accelerations. INFINITY if the pivot rises.
+// Time to the zero of the smallest pivot, by secants along the motion with its present
+// accelerations. INFINITY if the pivot rises.
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
@@ -150,10 +153,12 @@ static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahea
     w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : singular_pivot) / part;
 }
 
-// Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what they were at the last look,
-// there is no need of another. Fixed steps cross nothing, and are told only whether pivots are to be sought at every evaluation.
-// The sign of their product changes there, however far apart looks are. With step control it is that, too, that must hardly have changed, and no position may be near by what was seen then:
-// so little is neither lost of the largest pivot nor of the first sight of a position.
+// Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what
+// they were at the last look, there is no need of another. Fixed steps cross nothing, and are told
+// only whether pivots are to be sought at every evaluation. The sign of their product changes
+// there, however far apart looks are. With step control it is that, too, that must hardly have
+// changed, and no position may be near by what was seen then: so little is neither lost of the
+// largest pivot nor of the first sight of a position.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
     const double hardly = 1.05, steps_away = 8;
@@ -172,8 +177,8 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
         && ct_is_within(f->volume / w->volume, hardly);
 }
 
-// Have speeds changed by far more since the last look, dt before, than accelerations there or here make of them? Motions that meet in a
-// position have others.
+// Have speeds changed by far more since the last look, dt before, than accelerations there or here
+// make of them? Motions that meet in a position have others.
 static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
                        const double *a)
 {
@@ -202,7 +207,8 @@ static void keep_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_t
     keep_speeds(w, at);
 }
 
-// From the last state, of which the form has told: what has not changed until then may have on the step from there.
+// From the last state, of which the form has told: what has not changed until then may have on the
+// step from there.
 static void look_back(struct ct_rank_monitor *w, double pending)
 {
     ct_rank_monitor_pivot(w, ct_time_just_before(w->t, pending), w->last);
@@ -244,8 +250,9 @@ static void note_state(struct ct_rank_monitor *w, double t, const double *y)
     memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
 }
 
-// A step that ends in the position itself, as one to an event there, chooses rows for it, of which there are fewer: those of before, for the
-// same step taken shorter. False where there are as many as ever.
+// A step that ends in the position itself, as one to an event there, chooses rows for it, of which
+// there are fewer: those of before, for the same step taken shorter. False where there are as many
+// as ever.
 static bool return_rows(struct ct_rank_monitor *w, double pending)
 {
     if (w->s->rank >= w->rank)
@@ -256,8 +263,8 @@ static bool return_rows(struct ct_rank_monitor *w, double pending)
     return true;
 }
 
-// Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot is not to be compared with the last
-// one.
+// Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot
+// is not to be compared with the last one.
 static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look *l)
 {
     const bool was_unforeseen
@@ -266,8 +273,8 @@ static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look 
         || (was_unforeseen && l->part < (w->solver_unchanged ? singular_pivot : near_pivot));
 }
 
-// Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where rank is lost by two at a time
-// both places are on the same side.
+// Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where
+// rank is lost by two at a time both places are on the same side.
 static bool is_steep(const struct ct_rank_monitor *w, double dt)
 {
     return w->pivot > 0 && w->pivot < 2 * dt * w->fall;
@@ -295,7 +302,8 @@ static void keep(struct ct_rank_monitor *w, const struct ct_rank_test *at, const
     w->farthest = fmax(w->farthest, fmax(w->most, l->now));
 }
 
-// Notes, for the end of the run, how near a step that is no crossing has come to a singular configuration.
+// Notes, for the end of the run, how near a step that is no crossing has come to a singular
+// configuration.
 static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
 {
     if (l->is_another)
@@ -375,8 +383,8 @@ void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double 
     w->farthest = fmax(w->farthest, w->most);
 }
 
-// The stages of a crossing keep away from the position and are put onto the constraints: an order of pivots that holds
-// where it begins holds for all of them.
+// The stages of a crossing keep away from the position and are put onto the constraints: an order
+// of pivots that holds where it begins holds for all of them.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;

@@ -23,23 +23,26 @@ double ct_rank_monitor_pivot(struct ct_rank_monitor *w, double t, const double *
 /// The same s seconds later.
 double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                    double s);
-/// Does the way from the last state, with these pivots at its ends, come across a position or close by one?
+/// Does the way from the last state, with these pivots at its ends, come across a position or close
+/// by one?
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
                                 double before, double behind);
 
-/// How far [rad, m] y at t, where steps begin, is from a position: above 0 ahead along the motion, below 0 behind; as the smallest
-/// pivot changes within s seconds, infinite where it does not change or does not tell.
+/// How far [rad, m] y at t, where steps begin, is from a position: above 0 ahead along the motion,
+/// below 0 behind; as the smallest pivot changes within s seconds, infinite where it does not
+/// change or does not tell.
 double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
                                 const double *dy, double s);
 /// Beside a position, at y: farther off the smallest pivot is so many times what it is here.
 void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
                                  double times);
-/// At y, where steps begin, a position so much ahead is known of that is nearer than positions are where they are foreseen: the
-/// largest pivot is taken to be so many times the one of now.
+/// At y, where steps begin, a position so much ahead is known of that is nearer than positions are
+/// where they are foreseen: the largest pivot is taken to be so many times the one of now.
 void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
                                 double times);
-/// At y, where the time is t, it is known of a position so much ahead: the first step from there is to cross it, whatever round-off
-/// beside the position makes of it, as none from nearer by would be better.
+/// At y, where the time is t, it is known of a position so much ahead: the first step from there is
+/// to cross it, whatever round-off beside the position makes of it, as none from nearer by would be
+/// better.
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in);
 /// Is y so near to one that round-off of accelerations in double precision is felt?
 bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y);

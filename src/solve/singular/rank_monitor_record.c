@@ -1,4 +1,5 @@
-// Rank monitor: finds and records the singular configurations on a crossing, for the report and for dense output. See singular.h.
+// Rank monitor: finds and records the singular configurations on a crossing, for the report and for
+// dense output. See singular.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "numeric/dense.h"
@@ -7,11 +8,20 @@
 #include <math.h>
 #include <string.h>
 
-// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence.
+// A way that is searched is looked at in PARTS; from the best of them the search is narrowed
+// NARROWED times to an eighth. Positions are then known to `resolved` of the way.
+enum { PARTS = 16, NARROWED = 3 };
+static const double narrower = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
+
+// Part of the way, to either side of a position, where its dependence is looked at.
+static const double distance = 1.0 / (4 * PARTS);
+
+// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
+// `distance` or nearer: entries of rows that take part are of order 1, those of others of order
+// distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out (tests/cli/singular.sh).
 static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 {
-    const double involved
-        = 1e-3; // of the largest entry; rows that take no part have the square of the distance
+    const double involved = 1e-3; // of the largest entry
     const int n = w->s->rank;
     double most = 0;
     for (int i = 0; i < n; i++)
@@ -53,17 +63,15 @@ static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, doubl
 
 typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
 
-// From where the pivot is nearly as small as it becomes, within d: it falls and rises about linearly, so that its sizes before and
-// behind tell.
+// From where the pivot is nearly as small as it becomes, within d: it falls and rises about
+// linearly, so that its sizes before and behind tell.
 static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct passage *p,
                         double theta, double d)
 {
-    enum { LOOKS = 3 };
-    const double nearer = 0.125;
-    for (int i = 0; i < LOOKS; i++) {
+    for (int i = 0; i < NARROWED; i++) {
         const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
-        d *= nearer;
+        d *= narrower;
     }
     return theta;
 }
@@ -73,12 +81,11 @@ static double narrow(struct ct_rank_monitor *w, const struct passage *p, double 
     return narrow_by(pivot_on, w, p, theta, d);
 }
 
-enum { PARTS = 16 }; // of a way that is searched
-
-// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if it is not.
+// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if
+// it is not.
 static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p, double zero)
 {
-    const double beside = 0.1, theta = narrow(w, p, 0.5, beside);
+    const double theta = narrow(w, p, 0.5, 1.0 / PARTS);
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
@@ -97,11 +104,12 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// Where the test function changes its sign. theta (PARTS, out); returns how many such places there are.
+// Where the test function changes its sign. theta (PARTS, out); returns how many such places there
+// are.
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                         double *theta)
 {
-    const double part = 1.0 / PARTS, near = part / 4;
+    const double part = 1.0 / PARTS;
     struct ct_tangent_basis *last = w->along, *next = w->here;
     int n = 0;
     double before = pivot_on(w, p, 0);
@@ -110,7 +118,7 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
         const double at = i * part, behind = pivot_on(w, p, at);
         ct_tangent_basis_find(w->s, next);
         if (ct_singularity_test_sign_changed(w->s, last, next)) {
-            theta[n] = narrow(w, p, at - behind / (before + behind) * part, near);
+            theta[n] = narrow(w, p, at - behind / (before + behind) * part, distance);
             n += pivot_on(w, p, theta[n]) < zero;
         }
         struct ct_tangent_basis *v = last;
@@ -121,26 +129,27 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
     return n;
 }
 
-// Rows that depend there and by how much the rank falls: with d the distance from the position det J_d is as d^loss.
+// Rows that depend there and by how much the rank falls: with d the distance from the position det
+// J_d is as d^loss.
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
                             struct ct_singular_configuration *at)
 {
-    const double d = 0.02, nearer = 0.5;
     double far, near;
     const int n = w->s->rank;
     memset(at->row, 0, w->m->nrow * sizeof *at->row);
     at->rank_loss = 0;
-    pivot_on(w, p, theta - d);
+    pivot_on(w, p, theta - distance);
     if (!ct_partition_dependence(w->s, w->x, &far))
         return;
-    pivot_on(w, p, theta - d * nearer);
+    pivot_on(w, p, theta - distance / 2);
     if (!ct_partition_dependence(w->s, w->x, &near))
         return;
-    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(nearer))));
+    at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(0.5))));
     mark_rows(w, at->row);
 }
 
-// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it begins, if that is known?
+// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it
+// begins, if that is known?
 static bool tells_of(struct ct_rank_monitor *w, const struct passage *p, int rank_loss)
 {
     pivot_on(w, p, 1);
@@ -156,8 +165,8 @@ struct found {
     bool is_seen; // one, of which all is known in the last of w->passed
 };
 
-// One in the middle, where it has been foreseen, as most often. False if there may be others: multipliers tell two of them apart that are next
-// to each other.
+// One in the middle, where it has been foreseen, as most often. False if there may be others:
+// multipliers tell two of them apart that are next to each other.
 static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, double zero,
                           struct found *f)
 {
@@ -176,9 +185,8 @@ static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, do
 
 static void find_positions(struct ct_rank_monitor *w, const struct passage *p, struct found *f)
 {
-    const double vanished
-        = 1e-4; // of the pivot where the crossing began: near misses that are followed leave more
-    const double zero = vanished * pivot_on(w, p, 0);
+    // the pivot falls linearly from where the crossing began: a zero is one to what is resolved
+    const double zero = resolved * pivot_on(w, p, 0);
     double theta[PARTS];
     if (find_foreseen(w, p, zero, f))
         return;
@@ -214,14 +222,15 @@ static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, 
     return ct_partition_retained_pivot(w->s);
 }
 
-// To as many digits as the way has: what multipliers make of a position is divided by the time to it.
+// To as many digits as the way has: what multipliers make of a position is divided by the time to
+// it.
 static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
                        const struct found *f)
 {
-    const double beside = 4e-4;
     w->npole = 0;
     for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
-        w->pole[w->npole++] = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], beside));
+        w->pole[w->npole++]
+            = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], 4 * resolved));
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
@@ -240,7 +249,8 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
     return has_passed;
 }
 
-// Steps came across a position, or close by, where on their way the pivot falls below this part of what it is at both ends.
+// Steps came across a position, or close by, where on their way the pivot falls below this part of
+// what it is at both ends.
 static const double nearly_zero = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
@@ -251,7 +261,8 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
     return part > 0 && part < 1;
 }
 
-// Is there a position within s seconds of y, the speeds being what they are? The machine is left next to it.
+// Is there a position within s seconds of y, the speeds being what they are? The machine is left
+// next to it.
 static bool is_within(struct ct_rank_monitor *w, double t, const double *y, double s)
 {
     const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};

@@ -18,15 +18,15 @@ static bool is_near(void *user, double t, const double *y)
     return ct_rank_monitor_is_roundoff_limited(w, ct_rank_monitor_time(w, t), y);
 }
 
-// The stages of a crossing keep away from the singular configuration and are put onto the constraints: the order of
-// pivots at its beginning holds for all of them.
+// The stages of a crossing keep away from the singular configuration and are put onto the
+// constraints: the order of pivots at its beginning holds for all of them.
 static void set_crossing(void *user, bool is_crossing)
 {
     ct_rank_monitor_set_crossing(user, is_crossing);
 }
 
-// The residual of x' Phi with x'J = 0, x of size one. Where rows are redundant the kept ones may become
-// dependent before all of them do: then none is measured.
+// The residual of x' Phi with x'J = 0, x of size one. Where rows are redundant the kept ones may
+// become dependent before all of them do: then none is measured.
 static double dependent_residual(struct ct_rank_monitor *w)
 {
     const struct ct_evaluator *m = w->m;

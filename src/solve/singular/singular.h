@@ -1,12 +1,14 @@
-// Singular configurations: all that a run, its report and the driver of the integration ask about them.
+// Singular configurations: all that a run, its report and the driver of the integration ask about
+// them.
 //
 //     rank monitor    predicts them ahead of a motion, and records those that it has passed
 //     hooks           what the driver of the integration asks while it crosses one
 //     start           tests of a start in or near one, and the first step from there
 //     dense output    results at samples on a crossing
 //
-// Where J loses rank u' has a limit along the motion that cannot be computed. The driver of the integration crosses
-// such a position in one step (integrate/crossing.h); where it is and how near, is found here.  (6.8)
+// Where J loses rank u' has a limit along the motion that cannot be computed. The driver of the
+// integration crosses such a position in one step (integrate/crossing.h); where it is and how near,
+// is found here.  (section 6.8)
 #ifndef CT_SOLVE_SINGULAR_SINGULAR_H
 #define CT_SOLVE_SINGULAR_SINGULAR_H
 
@@ -72,24 +74,29 @@ struct ct_rank_monitor_step {
     bool is_fixed, is_across; // of fixed size; made to cross a position
 };
 
-/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has come near a singular
-/// configuration, or past it, before that was foreseen, and may be taken again: not with fixed steps, which are told only whether
-/// they are beside one, and counted where they have come past it.
+/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has
+/// come near a singular configuration, or past it, before that was foreseen, and may be taken
+/// again: not with fixed steps, which are told only whether they are beside one, and counted where
+/// they have come past it.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
                              const double *dy, const struct ct_rank_monitor_step *step);
-/// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or later, or not at all.
+/// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or
+/// later, or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy);
-/// Is y, where steps have ended, near a singular configuration, foreseen or not, or would a step of this size, 0 where it is not fixed,
-/// come past one? row (nrow, out): those that depend there; none of a large system.
+/// Is y, where steps have ended, near a singular configuration, foreseen or not, or would a step of
+/// this size, 0 where it is not fixed, come past one? row (nrow, out): those that depend there;
+/// none of a large system.
 bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
                                       double step, bool *row);
-/// Does J have less rank at y, where the coordinate partitioning has chosen, or as near to y as loops are closed, than where the mechanism can
-/// go from there? row (nrow, out): those that take part in what depends at y alone. Not looked for in large systems. The machine is
-/// left with its constraints at y.
+/// Does J have less rank at y, where the coordinate partitioning has chosen, or as near to y as
+/// loops are closed, than where the mechanism can go from there? row (nrow, out): those that take
+/// part in what depends at y alone. Not looked for in large systems. The machine is left with its
+/// constraints at y.
 bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition *s, double t,
                             const double *y, bool *row);
-/// At y in a singular configuration: what (8.23) is missed by, of the squares of the speeds that it is made of. freedoms (out): there.
+/// At y in a singular configuration: what (8.23) is missed by, of the squares of the speeds that it
+/// is made of. freedoms (out): there.
 double ct_singular_start_misfit(struct ct_arena *scratch, const struct ct_partition *s,
                                 double t, const double *y, int *freedoms);
 /// The hook of that name.
@@ -115,11 +122,12 @@ struct ct_singular_start {
     double t0;                  // out: where steps begin, 0 or before
 };
 
-/// From a start in a singular configuration, with speeds that select one of the motions through it, to a little before it:
-/// y, t0. The same from a start near one if it can be crossed; otherwise steps begin at the start. False with
-/// CT_E_STEP_OPEN if the speeds belong to no motion.
+/// From a start in a singular configuration, with speeds that select one of the motions through it,
+/// to a little before it: y, t0. The same from a start near one if it can be crossed; otherwise
+/// steps begin at the start. False with CT_E_STEP_OPEN if the speeds belong to no motion.
 bool ct_singular_initial_step(struct ct_singular_start *r);
-/// Is the start, with its derivative dy, near a singular configuration, so that its first step is a special one?
+/// Is the start, with its derivative dy, near a singular configuration, so that its first step is a
+/// special one?
 bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy);
 /// Is y the start, as well as a start near a singular configuration is known?
 bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny);
@@ -129,8 +137,8 @@ struct ct_singular_dense_output;
 /// For the results of the monitor's evaluator; everything lives in a.
 struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena *a,
                                                                  struct ct_rank_monitor *w);
-/// value (nresult, out): results at (t, y) within the crossing that b interpolates. False if they cannot be
-/// computed at its stages.
+/// value (nresult, out): results at (t, y) within the crossing that b interpolates. False if they
+/// cannot be computed at its stages.
 bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, const double *y,
                               const struct ct_gap_interpolation *b, double *value);
 

@@ -1,13 +1,16 @@
-// Dense output across a singular configuration: accelerations and multipliers in the gap of a crossing, from what they are at its stages.
+// Dense output across a singular configuration: accelerations and multipliers in the gap of a
+// crossing, from what they are at its stages.
 //
-// Accelerations are smooth across a singular configuration, and interpolated. Multipliers are not: what bears on the motion that is blocked
-// there but for the position, forces that do not vanish, is carried by rows that come to depend, and grows like 1/(t - t_k) towards a
-// position at t_k. Less that part they are smooth:
+// Accelerations are smooth across a singular configuration, and interpolated. Multipliers are not:
+// what bears on the motion that is blocked there but for the position, forces that do not vanish,
+// is carried by rows that come to depend, and grows like 1/(t - t_k) towards a position at t_k.
+// Less that part they are smooth:
 //
 //     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
 //
-// with the product in brackets, and P, interpolated between stages, and those positions that stages tell of. Results that are linear in multipliers are interpolated so themselves:
-// what y errs by in the gap times loads without bound would be seen in those that have no part in them.
+// with the product in brackets, and P, interpolated between stages, and those positions that stages
+// tell of. Results that are linear in multipliers are interpolated so themselves: what y errs by in
+// the gap times loads without bound would be seen in those that have no part in them.
 #include "solve/singular/singular.h"
 
 #include "integrate/crossing.h"
@@ -19,8 +22,8 @@
 
 enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// With poles at the positions, or without: weights of the stages for t, and for what the two beside the gap are found to be from the others, less
-// what they are.
+// With poles at the positions, or without: weights of the stages for t, and for what the two beside
+// the gap are found to be from the others, less what they are.
 struct model {
     double weight[N], check[CHECKED][N];
 };
@@ -48,7 +51,8 @@ static struct numbers create_numbers(struct ct_arena *a, size_t n)
         .n = n, .at = CT_NEWN(a, double, n *N + 1), .value = CT_NEWN(a, double, n + 1)};
 }
 
-// Is g, which has multipliers in it, linear in them, and smooth but for them? ds (nrow): in no simple relation.
+// Is g, which has multipliers in it, linear in them, and smooth but for them? ds (nrow): in no
+// simple relation.
 static bool is_linear(const struct ct_equations *e, ct_ex g, const ct_ex *lam, const ct_ex *ds)
 {
     const unsigned has_lam = 1u << CT_SYM_LAM, kinds = ct_ex_kinds(e->x, g);
@@ -169,8 +173,8 @@ static double error_of(const struct model *m, const double *at)
     return error;
 }
 
-// A number has poles if the stages tell of them: with poles they predict the two stages beside the gap
-// ten times as well.
+// A number has poles if the stages tell of them: with poles they predict the two stages beside the
+// gap ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
     const double clearly = 0.1;

@@ -1,12 +1,15 @@
-// First step of a run that starts in a singular configuration with speeds, or near one: backward collocation.
+// First step of a run that starts in a singular configuration with speeds, or near one: backward
+// collocation.
 //
-// In a singular configuration rows of J are dependent and accelerations cannot be computed. Speeds of one of the motions through it satisfy
+// In a singular configuration rows of J are dependent and accelerations cannot be computed. Speeds
+// of one of the motions through it satisfy
 //
 //     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
 //
-// and select that motion. Near a singular configuration accelerations exist, but have too few digits for steps. Collocation
-// centred on the singular configuration finds the state half a step before it. The run begins there and crosses the
-// configuration as any other run does. Collocation: crossing.h.
+// and select that motion. Near a singular configuration accelerations exist, but have too few
+// digits for steps. Collocation centred on the singular configuration finds the state half a step
+// before it. The run begins there and crosses the configuration as any other run does. Collocation:
+// crossing.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -16,16 +19,17 @@
 #include <math.h>
 #include <string.h>
 
-// Largest change of a coordinate from where the motion is slowest to either end of the step [rad, m], at first; halved where the
-// step errs.
+// Largest change of a coordinate from where the motion is slowest to either end of the step [rad,
+// m], at first; halved where the step errs.
 static const double longest_way = 0.4;
 enum { LOOKS = 12 }; // a motion that lingers leaves faster than accelerations of now tell
 
-// Starts from so far [rad, m] come to the position by a step across it and what is learnt on the way; up to there from it a start tells
-// nothing of how the smallest pivot falls.
+// Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
+// way; up to there from it a start tells nothing of how the smallest pivot falls.
 static const double beside = 0.2, near = 0.5;
 
-// The step may err by so much of the largest state, or by so much of what is asked if that is more. (8.35)
+// The step may err by so much of the largest state, or by so much of what is asked if that is more.
+// (8.35)
 static const double exact = 1e-12, unfelt = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
@@ -39,7 +43,8 @@ struct initial_step {
     struct ct_tangent_basis *view[2];
 };
 
-// A step across, h, around a place `middle` seconds after the start, and what it errs by, of the largest state.
+// A step across, h, around a place `middle` seconds after the start, and what it errs by, of the
+// largest state.
 struct across {
     double middle, h, error;
 };
@@ -60,7 +65,8 @@ static double speed_at(const struct initial_step *l, double t)
     return sqrt(fmax(0, l->u * l->u + t * (2 * l->ua + t * l->a * l->a)));
 }
 
-// How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no motion leave much more.
+// How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no
+// motion leave much more.
 static double off_constraints(struct ct_singular_start *r, double t, const double *y)
 {
     ct_evaluator_set(r->m, t, y);
@@ -68,7 +74,8 @@ static double off_constraints(struct ct_singular_start *r, double t, const doubl
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h after it.
+// Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h
+// after it.
 static bool choose_near_singular(struct ct_singular_start *r, double h, const double *y)
 {
     const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
@@ -90,8 +97,8 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
     return false;
 }
 
-// How far y may be from the start to be on the motion that is meant, of the largest state: speeds beside a position are known no better,
-// other motions are as far as speeds are large.
+// How far y may be from the start to be on the motion that is meant, of the largest state: speeds
+// beside a position are known no better, other motions are as far as speeds are large.
 static const double meant = 1e-4;
 
 // How far y (ny) is from it, the work aside.
@@ -108,7 +115,8 @@ bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny
     return miss(assembled, y, ny) <= meant;
 }
 
-// Does the step from l->before lead across, and to the start on its way? r->stage (out): what it makes of the start.
+// Does the step from l->before lead across, and to the start on its way? r->stage (out): what it
+// makes of the start.
 static bool leads_across(struct ct_singular_start *r, const struct initial_step *l,
                          const struct across *c)
 {
@@ -126,8 +134,8 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
     return ct_singular_meets_start(r->assembled, r->stage, (size_t)r->p->ny);
 }
 
-// Sweeps of the step into l->before, down to a part of the largest state or, where they come to round-off before, to ten times as
-// much and so on. Returns what the step errs by, or INFINITY.
+// Sweeps of the step into l->before, down to a part of the largest state or, where they come to
+// round-off before, to ten times as much and so on. Returns what the step errs by, or INFINITY.
 static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
                                   const struct across *c)
 {
@@ -155,7 +163,8 @@ static bool put_on_constraints(struct ct_singular_start *r, const struct initial
     return e == CT_EVAL_OK;
 }
 
-// The state where a step across begins, into l->before, and what that errs by; INFINITY where it does not lead across.
+// The state where a step across begins, into l->before, and what that errs by; INFINITY where it
+// does not lead across.
 static void look_back(struct ct_singular_start *r, const struct initial_step *l,
                       struct across *c)
 {
@@ -173,7 +182,8 @@ static void look_back(struct ct_singular_start *r, const struct initial_step *l,
         c->error = error;
 }
 
-// Does J keep its rank on either side of the gap? Near a position among the stages samples would be among round-off errors.
+// Does J keep its rank on either side of the gap? Near a position among the stages samples would be
+// among round-off errors.
 static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
                        const struct across *c)
 {
@@ -207,8 +217,9 @@ static bool keeps_sides(struct ct_singular_start *r, const struct initial_step *
     return true;
 }
 
-// The longest step around `middle` that errs little enough, of those that are halves of each other and reach the start, in place of
-// best (in and out) if that is shorter: it ends farther from the position.
+// The longest step around `middle` that errs little enough, of those that are halves of each other
+// and reach the start, in place of best (in and out) if that is shorter: it ends farther from the
+// position.
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct across *best)
 {
@@ -222,7 +233,8 @@ static void find_step(struct ct_singular_start *r, const struct initial_step *l,
     }
 }
 
-// Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them leaves is far below.
+// Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them
+// leaves is far below.
 static const double belongs = 1e-7;
 
 static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)

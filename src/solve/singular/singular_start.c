@@ -1,20 +1,23 @@
 // Test whether a start is a singular configuration; see singular.h.
 //
-// J has the same rank at all configurations of a motion except singular ones, where it has less. The rank at the
-// start is compared with the rank at a configuration 0.1 rad or m away: a step in the null space of J, projected onto the
-// constraints by Gauss-Newton steps of least norm.
+// J has the same rank at all configurations of a motion except singular ones, where it has less.
+// The rank at the start is compared with the rank at a configuration 0.1 rad or m away: a step in
+// the null space of J, projected onto the constraints by Gauss-Newton steps of least norm.
 #include "solve/singular/singular.h"
 
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Loops that close to 1e-13 meet a singular configuration to about the root of that: what is less of J is left out.
+// Loops that close to 1e-13 meet a singular configuration to about the root of that: what is less
+// of J is left out.
 static const double unmet = 1e-6;
 
-// Rows take part in what is lost where they have this part of the most that one has. Which of them a choice of pivots leaves out is
-// a matter of round-off where they are alike; what is always lost turns by as much as the way there.
+// Rows take part in what is lost where they have this part of the most that one has. Which of them
+// a choice of pivots leaves out is a matter of round-off where they are alike; what is always lost
+// turns by as much as the way there.
 static const double part_taken = 0.3;
 
 struct probe {
@@ -72,7 +75,8 @@ static void move(struct probe *p, struct ct_arena *scratch, double way)
 static bool close(struct probe *p, double way)
 {
     enum { MOST = 20 };
-    const double closed = 1e-9; // [m, rad]: far below what is looked for in J
+    const double closed
+        = sqrt(DBL_EPSILON); // [m, rad]: J errs by as much, what is lost by 1e-5
     for (int i = 0; i < MOST; i++) {
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
@@ -100,7 +104,8 @@ static int find_rank(struct probe *p, double least)
     return ct_evaluator_order_rows(p->m, p->m->J, least, p->iwork, p->A, p->x, p->work);
 }
 
-// N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says nothing, J' N = 0.
+// N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says
+// nothing, J' N = 0.
 static bool find_combinations(struct probe *p, double *N)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
@@ -121,7 +126,8 @@ static void size_rows(const struct probe *p, double *size)
     }
 }
 
-// size (nrow): times how much of each row is in combinations `here` that are none `there`. The former are overwritten.
+// size (nrow): times how much of each row is in combinations `here` that are none `there`. The
+// former are overwritten.
 static void weigh_rows(const struct probe *p, double *size, double *here, int nhere,
                        const double *there, int nthere)
 {
@@ -154,8 +160,8 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
     return p;
 }
 
-// Rank of J at y, rows being measured by the largest beside it, as all may vanish there; not below what round-off leaves.
-// p->largest: that row, in its own unit.
+// Rank of J at y, rows being measured by the largest beside it, as all may vanish there; not below
+// what round-off leaves. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
     const double way = 0.1;
@@ -171,7 +177,8 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     return find_rank(p, fmax(unmet * beside, p->m->rank_tolerance));
 }
 
-// Rank of J beside y, with the largest way along which it is more than `here`; where it is not, `here` or less.
+// Rank of J beside y, with the largest way along which it is more than `here`; where it is not,
+// `here` or less.
 static int find_rank_nearby(struct probe *p, struct ct_arena *scratch, const double *y,
                             int here)
 {

@@ -1,7 +1,9 @@
-// Test function of singular configurations: does J lose rank between two configurations of a motion?  (8.40)
+// Test function of singular configurations: does J lose rank between two configurations of a
+// motion?  (8.40)
 //
-// With J T = 0 and N'J = 0, [J N_0; T_0' 0] with T_0 and N_0 of another place is regular as long as J has its rank, while tangents
-// and what annihilates J turn by less than a right angle. With the rows and columns that are kept here first, and signs of the orders,
+// With J T = 0 and N'J = 0, [J N_0; T_0' 0] with T_0 and N_0 of another place is regular as long as
+// J has its rank, while tangents and what annihilates J turn by less than a right angle. With the
+// rows and columns that are kept here first, and signs of the orders,
 //
 //     det [J N_0; T_0' 0] = +- det J_d det (T_0'T) det (N_0'N)
 #include "solve/constraint/partition_internal.h"
@@ -31,14 +33,16 @@ void ct_tangent_basis_reserve(struct ct_partition *s, struct ct_tangent_basis *v
     reserve(s, &v->N, &v->room_N, m * (m - r));
 }
 
-// Where rank has been lost since there is more than there is room for, and no place to compare with.
+// Where rank has been lost since there is more than there is room for, and no place to compare
+// with.
 static bool has_room(const struct ct_partition *s, const struct ct_tangent_basis *v)
 {
     const size_t n = s->m->nu, m = s->m->nrow, r = (size_t)s->rank;
     return r && n * (n - r) <= v->room_T && m * (m - r) <= v->room_N;
 }
 
-// 1, or -1 if an odd number of exchanges sorts a and b, which together are 0 ... na + nb - 1. place (na + nb)
+// 1, or -1 if an odd number of exchanges sorts a and b, which together are 0 ... na + nb - 1. place
+// (na + nb)
 static int parity_of(const int *a, int na, const int *b, int nb, int *place)
 {
     int parity = 1;
@@ -76,7 +80,8 @@ static void find_tangents(const struct ct_partition *s, double *T)
     }
 }
 
-// Redundant rows as combinations of the kept ones: N has 1 for the former, less what the latter count in them.
+// Redundant rows as combinations of the kept ones: N has 1 for the former, less what the latter
+// count in them.
 static void find_left_null_space(const struct ct_partition *s, double *N)
 {
     const int m = (int)s->m->nrow, r = s->rank;
