@@ -226,7 +226,8 @@ static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
 
 static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
 {
-    struct ct_term t = {.negative = negative, .number = 1, .divisor = 1};
+    struct ct_term t
+        = {.e = e, .is_subtracted = negative, .negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
     if (pr->p.fractions) {
         t.number = ct_fraction_tidy(t.number);
@@ -290,8 +291,6 @@ static void flatten_sum(struct ct_printer *pr, struct ct_terms *t, ct_ex e)
         pr->left -= !is_whole;
         if (is_whole || !(is_sum || node->op == CT_OP_NEG)) {
             struct ct_term one = make_term(pr, s.e, s.negative);
-            one.of = s.e;
-            one.is_subtracted = s.negative;
             CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
             continue;
         }
@@ -337,15 +336,4 @@ struct ct_terms ct_terms_of_sum(struct ct_printer *pr, ct_ex e)
     ct_sort(pr->arena, t.at, t.n, sizeof *t.at, compare_terms, pr);
     lead_with_positive(&t);
     return t;
-}
-
-size_t ct_ex_terms(struct ct_arena *a, struct ct_exs *x, ct_ex e, const struct ct_print *p,
-                   ct_ex **out)
-{
-    struct ct_printer pr = {.arena = a, .x = x, .body = UINT32_MAX, .p = *p, .left = SIZE_MAX};
-    const struct ct_terms t = ct_terms_of_sum(&pr, e);
-    *out = CT_NEWN(a, ct_ex, t.n + 1);
-    for (size_t i = 0; i < t.n; i++)
-        (*out)[i] = t.at[i].is_subtracted ? ct_ex_neg(x, t.at[i].of) : t.at[i].of;
-    return t.n;
 }

@@ -59,13 +59,13 @@ enum ct_term_class {
 
 /// number * above / (divisor * below)
 struct ct_term {
+    ct_ex e;            ///< the operand of the sum
+    bool is_subtracted; ///< the term is -e
     bool negative;
     double number, divisor;
     int pi; ///< its exponent
     struct ct_factors above, below;
     enum ct_term_class class;
-    ct_ex of;           ///< what stands in the sum
-    bool is_subtracted; ///< there
 };
 
 struct ct_terms {

@@ -123,14 +123,16 @@ static struct ct_build *derive_marked(struct finder *f)
     const struct ct_build *like = f->d->e->build;
     struct ct_ctx *quiet = CT_NEW(f->a, struct ct_ctx);
     const struct ct_formulate_options o = {.tree = CT_TREE_GIVEN,
-                                           .keep_all = like->keep_all,
-                                           .rigid = like->is_rigid,
-                                           .held = like->drivers_are_held,
-                                           .gaps = like->has_offsets,
+                                           .keep_all = like->options->keep_all,
+                                           .rigid = like->options->is_rigid,
+                                           .held = like->options->drivers_are_held,
+                                           .gaps = like->options->has_offsets,
                                            .like = f->d->e};
     quiet->model = quiet->scratch = f->a;
-    struct ct_build *b = ct_build_create(quiet, f->a, &f->marked.model, &o, like->is_linear);
-    if (quiet->nerror || b->nedge != like->nedge || b->nnode != like->nnode)
+    struct ct_build *b
+        = ct_build_create(quiet, f->a, &f->marked.model, &o, like->options->is_linear);
+    if (quiet->nerror || b->topology->nedge != like->topology->nedge
+        || b->topology->nnode != like->topology->nnode)
         return NULL;
     b->T = like->T;
     b->R = like->R;
@@ -594,15 +596,17 @@ static void list_terms(struct finder *f, struct side *side)
     struct ct_provenance *p = f->out;
     struct ct_equations *e = f->d->e;
     const size_t before = p->nterm;
-    ct_ex *term;
+    struct ct_print_term *term;
     const ct_ex sum = expression_of(e, f->r, side->kind, side->equation, side->is_right);
     const size_t n = ct_ex_terms(f->d->a, e->x, sum, &f->d->print, &term);
     for (size_t i = 0; i < n; i++) {
-        const struct ct_equation_term t = {.kind = side->kind,
-                                           .equation = side->equation,
-                                           .is_right = side->is_right,
-                                           .e = term[i]};
-        if (!ct_ex_is_zero(term[i]))
+        const struct ct_equation_term t
+            = {.kind = side->kind,
+               .equation = side->equation,
+               .is_right = side->is_right,
+               .e = term[i].is_subtracted ? ct_ex_neg(e->x, term[i].value) : term[i].value,
+               .text = term[i].text};
+        if (!ct_ex_is_zero(t.e))
             CT_PUSH(f->d->a, p->term, p->nterm, f->term_cap, t);
     }
     side->nterm = p->nterm - before;
@@ -658,7 +662,7 @@ static void name_symbol(uint32_t *of, const struct ct_exs *x, ct_ex symbol, uint
 
 static uint32_t owner_of_edge(const struct finder *f, int edge, bool *is_known)
 {
-    const struct ct_edge_info *e = &f->d->e->build->edge[edge];
+    const struct ct_edge_info *e = &f->d->e->build->topology->edge[edge];
     *is_known
         = e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
     return e->kind == CT_EDGE_BODY ? f->marked.of_body[e->index]

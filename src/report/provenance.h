@@ -34,6 +34,7 @@ struct ct_equation_term {
     size_t equation; // speed, row, driver or output, as the kind says
     bool is_right;
     ct_ex e;                // as it is printed: may use definitions
+    const char *text;       // the same, as it stands behind the terms before it
     ct_ex full;             // the same without definitions
     const uint32_t *origin; // into the list of origins, ascending  (norigin)
     size_t norigin;
