@@ -52,7 +52,7 @@ struct matrix {
     const char *name, *latex; // what stands before its entries
     const char *says;         // in the heading
     const char *number;       // of the equation
-    const char **row, **column;
+    const char *const *row, *const *column;
     size_t nrow, ncolumn;
     const ct_ex *value; // (nrow, ncolumn), row by row
     bool is_symmetric;  // the lower triangle is shown
@@ -92,7 +92,7 @@ static void put_matrix(struct ct_derivation *d, const struct matrix *m)
         put_entries(d, m);
 }
 
-static const char *xyz[] = {"x", "y", "z"};
+static const char *const xyz[] = {"x", "y", "z"};
 
 // ---- shape integrals of an element ---------------------------------------------------------------------
 

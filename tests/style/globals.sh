@@ -21,7 +21,7 @@ done | awk -F'|' '
     # of the C library, its start code and OpenMP: locks of named critical sections
     if (name ~ /@/ || name ~ /^__/ || name ~ /^completed\./) next
     if (object ~ /base_guard\.c/ && (name == "innermost" || name == "fail_after")) next
-    if (object ~ /cotree:$/ && name ~ /^(signal_seen|explanation|waited_for|outside)$/) next
+    if (object ~ /cotree:$/ && name ~ /^(signal_seen|explanation|waited_for|outside|cancelled|lock)$/) next
     print object " " name
     bad = 1
   }
