@@ -1,6 +1,7 @@
 // The pipeline: model file -> equations of motion, stage by stage.
 #include "system.h"
 
+#include "formulate/build.h"
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
@@ -110,14 +111,20 @@ static bool read_model(struct ct_system *s, const struct source *from,
                        const struct ct_system_options *o)
 {
     const double start = ct_monotonic_time();
-    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
+    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + o->noutput + 1);
+    size_t n = 0;
     for (size_t i = 0; i < o->nset; i++)
-        set[i].text = o->set[i];
+        set[n++].text = o->set[i];
+    for (size_t i = 0; i < o->noutput; i++)
+        set[n++] = (struct ct_set){o->output[i], CT_SET_OUTPUT};
+    if (o->input)
+        set[n++]
+            = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
     s->text = from->text ? ct_arena_strndup(s->own.model, from->text, from->n) : NULL;
     const bool ok
         = (s->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name), s->text,
-                                    from->n, set, o->nset, &s->model)
-                   : ct_model_read(&s->own, from->name, set, o->nset, &s->model))
+                                    from->n, set, n, &s->model)
+                   : ct_model_read(&s->own, from->name, set, n, &s->model))
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
     s->read = ct_monotonic_time() - start;
@@ -242,6 +249,7 @@ struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys)
     struct ct_system *s = CT_NEW(a, struct ct_system);
     const struct ct_model *model = ct_model_fork(a, &sys->model);
     s->is_private = true;
+    s->origin = sys;
     s->model = *model;
     s->tree = sys->tree;
     s->read = sys->read;
@@ -326,8 +334,8 @@ static bool draw(void *task)
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     for (int i = 0; i < e->graph->nedge; i++) {
-        quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
-        marked[i] = strcmp(e->edge_kind[i], "flexible arm") == 0;
+        quiet[i] = ct_edge_is_rigid_arm(&e->build->topology->edge[i]);
+        marked[i] = e->build->topology->edge[i].beam >= 0;
     }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,

@@ -15,7 +15,7 @@
 
 static bool closes(const struct ct_build *b, size_t edge, int joint)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     return (e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE) && e->index == joint
         && (!b->T.is_branch[edge] || (e->has_rotation && !b->R.is_branch[edge]));
 }
@@ -34,18 +34,18 @@ static void find_members(struct ct_arena *a, const struct ct_build *b, struct ct
 {
     const char **list = NULL;
     size_t n = 0, cap = 0;
-    int *branch = CT_NEWN(a, int, b->nnode);
-    signed char *sign = CT_NEWN(a, signed char, b->nnode);
+    int *branch = CT_NEWN(a, int, b->topology->nnode);
+    signed char *sign = CT_NEWN(a, signed char, b->topology->nnode);
     add_member(a, &list, &n, &cap, l->name);
-    for (size_t i = 0; i < b->nedge && l->joint >= 0; i++)
+    for (size_t i = 0; i < b->topology->nedge && l->joint >= 0; i++)
         for (int k = 0; k < 2 && closes(b, i, l->joint); k++) {
             const struct ct_tree *t = k ? &b->R : &b->T;
-            if (t->is_branch[i] || (k && !b->edge[i].has_rotation))
+            if (t->is_branch[i] || (k && !b->topology->edge[i].has_rotation))
                 continue;
-            const int m = ct_tree_circuit(&b->graph, t, (int)i, branch, sign);
+            const int m = ct_tree_circuit(&b->topology->graph, t, (int)i, branch, sign);
             for (int j = 0; j < m; j++)
-                if (b->edge[branch[j]].kind != CT_EDGE_ARM)
-                    add_member(a, &list, &n, &cap, b->edge[branch[j]].name);
+                if (b->topology->edge[branch[j]].kind != CT_EDGE_ARM)
+                    add_member(a, &list, &n, &cap, b->topology->edge[branch[j]].name);
         }
     l->member = list;
     l->nmember = n;
@@ -185,7 +185,7 @@ static void add_candidate(struct releases *r, int joint, enum ct_release_kind ki
 // Turns and slides in axes of `from`. Out of the plane of a planar model nothing is known.
 static void add_freedoms(struct releases *r, struct ct_build *b, int joint)
 {
-    const int tail = b->wiring[b->edge_of_joint[joint]].tail;
+    const int tail = b->topology->wiring[b->topology->edge_of_joint[joint]].tail;
     ct_ex3 force, torque;
     ct_reaction_derive(b, joint, &force, &torque);
     for (int turns = 1; turns >= 0; turns--) {

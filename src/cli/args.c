@@ -9,10 +9,11 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_report,   &cli_equations,  &cli_graph,       &cli_draw,
-       &cli_accuracy,   &cli_sweep,    &cli_check,      &cli_equilibrium, &cli_modes,
-       &cli_linearize,  &cli_buckling, &cli_kinematics, &cli_inverse,     &cli_export,
-       &cli_components, &cli_methods,  &cli_schema,     &cli_completion,  NULL};
+    = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
+       &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
+       &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
+       &cli_export,   &cli_components, &cli_methods,   &cli_schema,     &cli_completion,
+       NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -22,6 +23,10 @@ const struct cli_option cli_options[] = {
      "where results go; the suffix says the type"},
     {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
+    {"input", 0, "FILE.csv", CLI_TEXT, FIELD(input), CLI_SIMULATE, true,
+     "plays inputs: columns by name and 't', linear between rows"},
+    {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_SIMULATE, true,
+     "with --input: a row counts from its t on"},
     {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
      "auto, joints, absolute, a number of 'graph --trees', or\n"
      "a YAML FILE: lists of branches translation and rotation",
@@ -60,13 +65,20 @@ const struct cli_option cli_options[] = {
      "number of rows, the lowest ones; 10"},
     {"hold-drivers", 0, NULL, CLI_FLAG, FIELD(hold_drivers), CLI_STATIC, false,
      "equilibrium: motions stand still, even steady ones"},
-    {"vary", 0, "NAME=FROM:TO:N", CLI_LIST, FIELD(vary), CLI_SWEEP, false,
+    {"vary", 0, "NAME=FROM:TO:N", CLI_LIST, FIELD(vary), CLI_VARIES, false,
      "N values of a parameter, both ends included;\n"
      "may be repeated"},
-    {"sample", 0, "K", CLI_COUNT_OF, FIELD(sample), CLI_SWEEP, false,
+    {"sample", 0, "K", CLI_COUNT_OF, FIELD(sample), CLI_VARIES, false,
      "K random members instead of a grid"},
-    {"seed", 0, "S", CLI_SEED, FIELD(seed), CLI_SWEEP, false,
+    {"seed", 0, "S", CLI_SEED, FIELD(seed), CLI_VARIES, false,
      "of the random numbers; 0. Same seed, same members"},
+    {"members", 0, "FILE.csv", CLI_TEXT, FIELD(members), CLI_VARIES, false,
+     "a member a row, its columns are parameters"},
+    {"shard", 0, "I/N", CLI_SHARD, FIELD(shard), CLI_SWEEP, false,
+     "every N-th member from the I-th on: one of N parts"},
+    {"take", 0, "NAME=F(EXPR)", CLI_LIST, FIELD(take), CLI_SWEEP, false,
+     "a column of what EXPR does over the run, F being max, min,\n"
+     "mean, rms, final or time (first rise through zero)"},
     {"resume", 0, NULL, CLI_FLAG, FIELD(resume), CLI_SWEEP, false,
      "go on with the rows in FILE.partial"},
     {"threads", 0, "N", CLI_COUNT_OF, FIELD(threads), CLI_SWEEP, false,
@@ -183,6 +195,18 @@ static bool parse_seed(const char *text, unsigned long long *v)
     return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
 }
 
+// I/N; whether I is one of N the library says.
+static bool parse_shard(const char *text, long *shard, long *shards)
+{
+    const size_t n = strcspn(text, "/");
+    char first[32];
+    if (!text[n] || n >= sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)n, text);
+    return parse_integer(first, 1, shard) && parse_integer(text + n + 1, 1, shards)
+        && *shard <= *shards;
+}
+
 static bool wrong_value(const struct cli_command *c, const struct cli_option *o,
                         const char *value, const char *wanted)
 {
@@ -215,6 +239,9 @@ static bool store(const struct cli_command *c, const struct cli_option *o, const
     case CLI_SEED:
         return parse_seed(value, field)
             || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
+    case CLI_SHARD:
+        return parse_shard(value, field, &args->shards)
+            || wrong_value(c, o, value, "I/N with I from 1 to N");
     case CLI_COUNT_OF:
         return parse_integer(value, 1, field)
             || wrong_value(c, o, value, "an integer from 1 to 1000000000");
@@ -361,6 +388,10 @@ static bool parse_plain(struct parser *p, const char *text)
         return parse_command(p, text);
     if (p->command->words)
         return parse_word(p, text);
+    if (p->command->files) {
+        p->args->files.text[p->args->files.n++] = text;
+        return true;
+    }
     if (!p->command->takes_model)
         return cli_complain(p->command, "'%s' takes no model: '%s'", p->command->name, text),
                false;
@@ -444,8 +475,9 @@ static bool is_same_file(const char *a, const char *b)
 static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
-    const char *const file[] = {args->output, args->summary, args->plot,      args->curve,
-                                args->report, args->model,   args->reference, args->tree};
+    const char *const file[]
+        = {args->output, args->summary,   args->plot, args->curve,  args->report,
+           args->model,  args->reference, args->tree, args->members};
     enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)
@@ -461,11 +493,15 @@ static bool check_files(const struct parser *p)
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
-    *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
-                              .vary.text = calloc((size_t)argc + 1, sizeof(char *)),
-                              .given.text = calloc((size_t)argc + 1, sizeof(char *))};
+    const size_t n = (size_t)argc + 1;
+    *args = (struct cli_args){.set.text = calloc(n, sizeof(char *)),
+                              .vary.text = calloc(n, sizeof(char *)),
+                              .take.text = calloc(n, sizeof(char *)),
+                              .files.text = calloc(n, sizeof(char *)),
+                              .given.text = calloc(n, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    const bool has_room = args->set.text && args->vary.text && args->given.text;
+    const bool has_room = args->set.text && args->vary.text && args->take.text
+                       && args->files.text && args->given.text;
     bool ok = has_room || (fputs("cotree: error: out of memory [E001]\n", stderr), false);
     args->no_memory = !has_room;
     ok = ok && parse_all(&p);
@@ -478,6 +514,10 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
         return cli_complain(p.command, "'%s' needs a word: %s", p.command->name,
                             p.command->examples[0]),
                false;
+    if (p.command->files && !args->files.n)
+        return cli_complain(p.command, "'%s' needs files: %s", p.command->name,
+                            p.command->files),
+               false;
     if (p.command->takes_model && !args->model)
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
                             p.command->name, p.command->name),
@@ -489,6 +529,8 @@ void cli_args_finish(struct cli_args *args)
 {
     free(args->set.text);
     free(args->vary.text);
+    free(args->take.text);
+    free(args->files.text);
     free(args->given.text);
 }
 
@@ -537,9 +579,11 @@ void cli_print_help(FILE *out, const struct cli_command *command)
         print_program_help(out);
         return;
     }
-    fprintf(out, "usage: cotree %s%s [options]\n\n%s\n%s\n", command->name,
+    fprintf(out, "usage: cotree %s%s%s [options]\n\n%s\n%s\n", command->name,
+            command->files ? " " : "",
             command->takes_model ? " MODEL.yaml"
             : command->words     ? " SHELL"
+            : command->files     ? command->files
                                  : "",
             command->summary, command->more);
     for (size_t i = 0; i < cli_noption; i++)

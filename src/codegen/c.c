@@ -63,12 +63,11 @@ static void __attribute__((format(printf, 2, 3))) putf(struct writer *w, const c
     va_end(ap);
 }
 
-// A comment may not end early.
-static const char *comment_text(struct ct_arena *a, const char *s)
+const char *ct_c_comment(struct ct_arena *a, const char *s)
 {
     char *copy = ct_arena_strdup(a, s);
-    for (char *c = copy; *c; c++)
-        if (*c == '*' || *c == '\n' || *c == '\\')
+    for (char *c = copy; *c; c++) // `?` begins trigraphs, one of which is a backslash
+        if (*c == '*' || *c == '\\' || *c == '?' || (unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';
     return copy;
 }
@@ -214,7 +213,7 @@ static void put_statement(struct writer *w, uint32_t k)
     else
         putf(w, "    w[%u] = %s;", w->crossing[v], text);
     if (has_label(w, v))
-        putf(w, " /* %s */", comment_text(w->arena, w->l->x->label[w->l->node[v]]));
+        putf(w, " /* %s */", ct_c_comment(w->arena, w->l->x->label[w->l->node[v]]));
     put(w, "\n");
     if (has_name && w->crossing[v] != none)
         putf(w, "    w[%u] = t%u;\n", w->crossing[v], k);
@@ -324,9 +323,10 @@ static void put_functions(struct writer *w)
         call[part] = ct_arena_printf(w->arena, "    %s_%zu(%s);\n", w->o.name, part,
                                      arguments(w, &r, false));
     }
-    if (w->o.lanes == 1)
+    if (w->o.lanes == 1 && !w->o.is_static)
         putf(w, "void %s(const double *in, double *out);\n\n", w->o.name);
-    putf(w, w->o.lanes == 1 ? "void %s" : "static void %s_lane", w->o.name);
+    putf(w, "%svoid %s%s", w->o.lanes > 1 || w->o.is_static ? "static " : "", w->o.name,
+         w->o.lanes > 1 ? "_lane" : "");
     put(w, "(const double *in, double *out)\n{\n    (void)in;\n    (void)out;\n");
     if (npart == 1)
         put_body(w, &r, read);
@@ -352,14 +352,22 @@ static void put_array(struct writer *w, uint32_t table, const char *name, const 
 }
 
 // The operations of ct_table_value, in its order.
-static void put_table_function(struct writer *w)
+static void put_table_function(struct writer *w, bool any_holds)
 {
     const char *n = w->o.name;
-    putf(w, "struct %s_table {\n    int n;\n    const double *x, *y, *m;\n};\n\n", n);
+    putf(w, "struct %s_table {\n    int n;\n    const double *x, *y, *m;\n%s};\n\n", n,
+         any_holds ? "    int holds;\n" : "");
     putf(w, "static double %s_table(struct %s_table t, int order, double at)\n{\n", n, n);
     put(w, "    int low = 0, high = t.n - 1, i;\n"
-           "    double h, s, slope, c1, c2 = 0, c3 = 0;\n"
-           "    if (!(at >= t.x[0] && at <= t.x[t.n - 1]))\n"
+           "    double h, s, slope, c1, c2 = 0, c3 = 0;\n");
+    if (any_holds)
+        put(w, "    if (t.holds && order)\n"
+               "        return 0;\n"
+               "    if (t.holds && (t.n == 1 || at >= t.x[t.n - 1]))\n"
+               "        return t.y[t.n - 1];\n"
+               "    if (t.holds && at < t.x[0])\n"
+               "        return t.y[0];\n");
+    put(w, "    if (!(at >= t.x[0] && at <= t.x[t.n - 1]))\n"
            "        return NAN;\n"
            "    while (high - low > 1) {\n"
            "        const int middle = (low + high) / 2;\n"
@@ -368,7 +376,11 @@ static void put_table_function(struct writer *w)
            "        else\n"
            "            high = middle;\n"
            "    }\n"
-           "    i = low;\n"
+           "    i = low;\n");
+    if (any_holds)
+        put(w, "    if (t.holds)\n"
+               "        return t.y[i];\n");
+    put(w, ""
            "    h = t.x[i + 1] - t.x[i];\n"
            "    s = at - t.x[i];\n"
            "    slope = (t.y[i + 1] - t.y[i]) / h;\n"
@@ -397,13 +409,15 @@ static void put_tables(struct writer *w)
 {
     const size_t ntable = w->l->x->ntable;
     unsigned char *used = CT_NEWN(w->arena, unsigned char, ntable);
-    bool any = false;
+    bool any = false, any_holds = false;
     for (uint32_t k = 0; k < w->nstatement; k++)
-        if (w->list[k].ins->op == CT_OP_TABLE)
+        if (w->list[k].ins->op == CT_OP_TABLE) {
             used[w->list[k].ins->table] = any = true;
+            any_holds |= w->l->table[w->list[k].ins->table].holds;
+        }
     if (!any)
         return;
-    put_table_function(w);
+    put_table_function(w, any_holds);
     for (uint32_t k = 0; k < ntable; k++) {
         const struct ct_table *t = &w->l->table[k];
         if (!used[k])
@@ -416,9 +430,10 @@ static void put_tables(struct writer *w)
         putf(w, "static const struct %s_table %s_table%u = {%zu, %s_table%u_x, %s_table%u_y, ",
              n, n, k, t->n, n, k, n, k);
         if (t->m)
-            putf(w, "%s_table%u_m};\n\n", n, k);
+            putf(w, "%s_table%u_m", n, k);
         else
-            put(w, "0};\n\n");
+            put(w, "0");
+        put(w, !any_holds ? "};\n\n" : t->holds ? ", 1};\n\n" : ", 0};\n\n");
     }
 }
 
@@ -428,7 +443,7 @@ static void put_head(struct writer *w)
 {
     put(w, "/* ");
     if (w->o.title)
-        putf(w, "%s: ", comment_text(w->arena, w->o.title));
+        putf(w, "%s: ", ct_c_comment(w->arena, w->o.title));
     putf(w, "%u operations. Compile with -ffp-contract=off to keep the bits. */\n",
          w->nstatement);
     put(w, "#include <math.h>\n\n");

@@ -34,15 +34,15 @@ static ct_ex3 reaction(struct ct_build *b, size_t joint)
 {
     ct_ex3 force, torque;
     ct_reaction_derive(b, (int)joint, &force, &torque);
-    if (!b->keeps_plane)
+    if (!b->topology->keeps_plane)
         return force;
-    const ct_ex out = ct_ex3_dot(b->x, force, b->normal);
-    return ct_ex3_sub(b->x, force, ct_ex3_scale(b->x, out, b->normal));
+    const ct_ex out = ct_ex3_dot(b->x, force, b->topology->normal);
+    return ct_ex3_sub(b->x, force, ct_ex3_scale(b->x, out, b->topology->normal));
 }
 
 static bool has_reaction(const struct ct_build *b, const struct ct_scene *s, size_t joint)
 {
-    return s->joint[joint].symbol != CT_SYMBOL_NONE && b->edge_of_joint[joint] >= 0;
+    return s->joint[joint].symbol != CT_SYMBOL_NONE && b->topology->edge_of_joint[joint] >= 0;
 }
 
 static void list_values(struct ct_build *b, struct ct_arena *a, struct ct_animation *m)

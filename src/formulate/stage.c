@@ -34,18 +34,17 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                  const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){
-        .ctx = ctx,
-        .arena = a,
-        .model = m,
+    struct ct_build_options *options = CT_NEW(a, struct ct_build_options);
+    *options = (struct ct_build_options){
         .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
         .keep_all = o->keep_all,
         .keeps_all_deformations
-        = o->frees_beams || (o->like && o->like->build->keeps_all_deformations),
+        = o->frees_beams || (o->like && o->like->build->options->keeps_all_deformations),
         .drivers_are_held = o->held,
         .has_offsets = o->gaps,
         .like = o->like,
         .is_linear = is_linear};
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .options = options};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -73,7 +72,6 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
     b->x = b->eqs->x = ct_exs_clone(a, from->x);
     const size_t ndecided = b->x->ndecided;
     b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
-    b->edge = copy(a, from->edge, b->nedge, b->edge_cap, sizeof *b->edge);
     b->coordinate
         = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
     return b;
@@ -82,10 +80,12 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
 bool ct_build_derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
-    ct_unknowns_choose(b);
+    struct ct_kinematics *kinematics = CT_NEW(b->arena, struct ct_kinematics);
+    b->kinematics = kinematics;
+    ct_unknowns_choose(b, kinematics);
     b->eqs->Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    ct_rotation_derive(b);
-    ct_translation_derive(b);
+    ct_rotation_derive(b, kinematics);
+    ct_translation_derive(b, kinematics);
     ct_rows_derive(b);
     if (with_dynamics)
         ct_loads_derive(b);

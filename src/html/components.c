@@ -29,7 +29,7 @@ static const char *add_name(struct ct_arena *a, const char *names, const char *n
 
 const char *ct_components_of_edge(struct ct_arena *a, const struct ct_system *sys, int edge)
 {
-    const struct ct_edge_info *e = &sys->equations.build->edge[edge];
+    const struct ct_edge_info *e = &sys->equations.build->topology->edge[edge];
     const struct ct_graph *g = sys->equations.graph;
     if (e->kind != CT_EDGE_ARM)
         return e->self ? add_name(a, e->self->name, e->name) : e->name;
@@ -38,7 +38,7 @@ const char *ct_components_of_edge(struct ct_arena *a, const struct ct_system *sy
 
 const char *ct_components_of_node(struct ct_arena *a, const struct ct_system *sys, int node)
 {
-    const struct ct_node_info *v = &sys->equations.build->node[node];
+    const struct ct_node_info *v = &sys->equations.build->topology->node[node];
     const char *body = v->body > 0 ? sys->model.body[v->body].instance.name : "ground";
     return add_name(a, v->name, body);
 }

@@ -81,7 +81,7 @@ static void put_edge_classes(struct picture *p, int i)
     const struct ct_equations *e = p->e;
     fprintf(p->h->out, "edge %s %s%s", e->T->is_branch[i] ? "branch-t" : "chord-t",
             e->R->is_branch[i] ? "branch-r" : "chord-r",
-            e->build->edge[i].kind == CT_EDGE_ARM ? " arm" : "");
+            e->build->topology->edge[i].kind == CT_EDGE_ARM ? " arm" : "");
 }
 
 static void put_description(struct picture *p, int i)
@@ -129,7 +129,7 @@ static void put_edge(struct picture *p, int i)
     fprintf(out, "<path class=\"arrow\" d=\"M%.1f %.1fL%.1f %.1fL%.1f %.1fZ\"/>",
             tip.x + 6 * tx, tip.y + 6 * ty, tip.x - 5 * tx - 5 * ty, tip.y - 5 * ty + 5 * tx,
             tip.x - 5 * tx + 5 * ty, tip.y - 5 * ty - 5 * tx);
-    const bool is_arm = e->build->edge[i].kind == CT_EDGE_ARM;
+    const bool is_arm = e->build->topology->edge[i].kind == CT_EDGE_ARM;
     fprintf(out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d", middle.x,
             middle.y + 4, i + 1);
     if (!is_arm) {
@@ -177,7 +177,8 @@ static void put_picture(struct ct_html *h)
     // names need room: the area grows with their number
     const double scale = fmin(fmax(sqrt(g->nnode / FEW), 1), 2);
     for (int i = 0; i < g->nedge; i++)
-        length[i] = scale * (e->build->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH);
+        length[i]
+            = scale * (e->build->topology->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH);
     ct_layout_find(h->a, g, length, p.at);
     fit(&p);
     fprintf(h->out,
@@ -224,7 +225,7 @@ static void put_equation(struct ct_html *h, struct ct_derivation *d, const struc
             is_branch     ? of_rotation ? "torques" : "forces"
             : of_rotation ? "rotations"
                           : "displacements");
-    if (of_rotation && !h->sys->equations.build->edge[edge].has_rotation)
+    if (of_rotation && !h->sys->equations.build->topology->edge[edge].has_rotation)
         fputs("none of its own: it does not turn", out); // a particle, a force
     else if (is_branch)
         put_sides(out, d, ct_derivation_cutset(d, cutsets, row, edge, of_rotation ? "T" : "F"),

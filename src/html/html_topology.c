@@ -19,7 +19,7 @@ static void put_branches(struct ct_html *h, const bool *is_branch)
     bool has_any = false;
     fputs("<td class=\"members\">", h->out);
     for (int i = 0; i < e->graph->nedge; i++) {
-        if (!is_branch[i] || e->build->edge[i].kind == CT_EDGE_ARM)
+        if (!is_branch[i] || e->build->topology->edge[i].kind == CT_EDGE_ARM)
             continue;
         fputs(has_any ? ", <span" : "<span", h->out);
         ct_html_put_components(h->out, ct_components_of_edge(h->a, h->sys, i));

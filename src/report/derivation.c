@@ -205,7 +205,7 @@ const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct
 {
     const struct ct_build *b = d->e->build;
     const char *mass = ct_derivation_text(d, body->mass);
-    const char *com = b->node[b->node_of_com[body - d->m->body]].name;
+    const char *com = b->topology->node[b->topology->node_of_com[body - d->m->body]].name;
     if (ct_ex_is_zero(body->mass))
         return NULL;
     if (strchr(mass, ' '))

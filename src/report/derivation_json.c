@@ -116,17 +116,17 @@ static void put_terminal(struct writer *w)
     const struct ct_build *b = w->d->e->build;
     ct_stage_terminal(w->d); // the page of this writer is never printed
     ct_json_array(&w->j, "terminal");
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         put_component(w, e->name, w->d->e->edge_kind[i],
-                      e->self       ? e->self->cls->across
-                      : e->flexible ? "d = r, S: place and turn of the section"
-                                    : "d, S constant",
+                      e->self        ? e->self->cls->across
+                      : e->beam >= 0 ? "d = r, S: place and turn of the section"
+                                     : "d, S constant",
                       e->self ? e->self->cls->through : "F, T are reactions");
     }
     for (size_t j = 0; j < w->d->m->njoint; j++) { // gears
         const struct ct_instance *self = &w->d->m->joint[j];
-        if (b->edge_of_joint[j] < 0)
+        if (b->topology->edge_of_joint[j] < 0)
             put_component(w, self->name, self->cls->name, self->cls->across,
                           self->cls->through);
     }
@@ -298,7 +298,7 @@ static void put_unknowns(struct writer *w, const struct ct_reduced *r)
     }
     ct_json_end(&w->j);
     ct_json_array(&w->j, "speeds");
-    for (size_t i = 0; i < e->nu; i++) {
+    for (size_t i = 0; i < e->nmotion; i++) {
         ct_json_object(&w->j, NULL);
         ct_json_text(&w->j, "name", e->u[i].name);
         ct_json_text(&w->j, "coordinate", e->u[i].q >= 0 ? e->q[e->u[i].q].name : NULL);
@@ -306,6 +306,16 @@ static void put_unknowns(struct writer *w, const struct ct_reduced *r)
         ct_json_end(&w->j);
     }
     ct_json_end(&w->j);
+    if (e->nstate)
+        ct_json_array(&w->j, "states");
+    for (size_t i = e->nmotion; i < e->nu; i++) {
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "name", e->u[i].name);
+        ct_json_text(&w->j, "rate", text(w, r->Q[i]));
+        ct_json_end(&w->j);
+    }
+    if (e->nstate)
+        ct_json_end(&w->j);
     ct_json_array(&w->j, "rows");
     for (size_t i = 0; i < e->nrow; i++)
         ct_json_text(&w->j, NULL, e->row[i].name);
@@ -370,8 +380,11 @@ static void put_reduced(struct writer *w)
     put_unknowns(w, &r);
     put_known(w, &r);
     put_definitions(w, &r.definitions);
-    put_matrix(w, "M", e->M, r.M, e->nM);
-    put_vector(w, "Q", r.Q, e->nu);
+    size_t nM = e->nM;
+    while (nM && ct_speed_is_state(e, (size_t)e->M[nM - 1].row)) // behind all others
+        nM--;
+    put_matrix(w, "M", e->M, r.M, nM);
+    put_vector(w, "Q", r.Q, e->nmotion);
     put_matrix(w, "J", e->J, r.J, e->nJ);
     put_vector(w, "phi", r.phi, e->nrow);
     put_vector(w, "gam", r.gam, e->nrow);

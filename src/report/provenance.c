@@ -122,14 +122,16 @@ static struct ct_build *derive_marked(struct finder *f)
     const struct ct_build *like = f->d->e->build;
     struct ct_ctx *quiet = CT_NEW(f->a, struct ct_ctx);
     const struct ct_formulate_options o = {.tree = CT_TREE_GIVEN,
-                                           .keep_all = like->keep_all,
-                                           .rigid = like->is_rigid,
-                                           .held = like->drivers_are_held,
-                                           .gaps = like->has_offsets,
+                                           .keep_all = like->options->keep_all,
+                                           .rigid = like->options->is_rigid,
+                                           .held = like->options->drivers_are_held,
+                                           .gaps = like->options->has_offsets,
                                            .like = f->d->e};
     quiet->model = quiet->scratch = f->a;
-    struct ct_build *b = ct_build_create(quiet, f->a, &f->marked.model, &o, like->is_linear);
-    if (quiet->nerror || b->nedge != like->nedge || b->nnode != like->nnode)
+    struct ct_build *b
+        = ct_build_create(quiet, f->a, &f->marked.model, &o, like->options->is_linear);
+    if (quiet->nerror || b->topology->nedge != like->topology->nedge
+        || b->topology->nnode != like->topology->nnode)
         return NULL;
     b->T = like->T;
     b->R = like->R;
@@ -638,7 +640,7 @@ static void name_symbol(uint32_t *of, const struct ct_exs *x, ct_ex symbol, uint
 
 static uint32_t owner_of_edge(const struct finder *f, int edge, bool *is_known)
 {
-    const struct ct_edge_info *e = &f->d->e->build->edge[edge];
+    const struct ct_edge_info *e = &f->d->e->build->topology->edge[edge];
     *is_known
         = e->kind == CT_EDGE_BODY || e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
     return e->kind == CT_EDGE_BODY ? f->marked.of_body[e->index]

@@ -48,7 +48,7 @@ size_t ct_tree_pairs_names(struct ct_arena *a, const struct ct_equations *e,
     const char **list = CT_NEWN(a, const char *, (size_t)e->graph->nedge + 1);
     size_t n = 0;
     for (int i = 0; i < e->graph->nedge; i++)
-        if (is_branch[i] && e->build->edge[i].kind != CT_EDGE_ARM)
+        if (is_branch[i] && e->build->topology->edge[i].kind != CT_EDGE_ARM)
             list[n++] = e->edge_name[i];
     *name = list;
     return n;
