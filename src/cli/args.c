@@ -87,6 +87,8 @@ const struct cli_option cli_options[] = {
      "1, 4 or 8 side by side: members in a core, inputs of programs"},
     {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE | CLI_REPORT, false,
      "a second run; the difference tells the global error"},
+    {"accuracy", 0, NULL, CLI_FLAG, FIELD(accuracy), CLI_REPORT, false,
+     "with the work-precision plot, as accuracy --plot draws it"},
     {"error", 0, "E", CLI_NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
     {"per-decade", 0, "N", CLI_COUNT_OF, FIELD(per_decade), CLI_ACCURACY, false,

@@ -177,8 +177,7 @@ static void put_picture(struct ct_html *h)
     // names need room: the area grows with their number
     const double scale = fmin(fmax(sqrt(g->nnode / FEW), 1), 2);
     for (int i = 0; i < g->nedge; i++)
-        length[i]
-            = scale * (e->build->topology->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH);
+        length[i] = scale * (e->build->topology->edge[i].kind == CT_EDGE_ARM ? ARM : LENGTH);
     ct_layout_find(h->a, g, length, p.at);
     fit(&p);
     fprintf(h->out,
