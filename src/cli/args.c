@@ -23,9 +23,9 @@ const struct cli_option cli_options[] = {
      "where results go; the suffix says the type"},
     {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
-    {"input", 0, "FILE.csv", CLI_TEXT, FIELD(input), CLI_SIMULATE, true,
+    {"input", 0, "FILE.csv", CLI_TEXT, FIELD(input), CLI_SIMULATE | CLI_REPORT, true,
      "plays inputs: columns by name and 't', linear between rows"},
-    {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_SIMULATE, true,
+    {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_SIMULATE | CLI_REPORT, true,
      "with --input: a row counts from its t on"},
     {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
      "auto, joints, absolute, a number of 'graph --trees', or\n"
