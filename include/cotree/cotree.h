@@ -787,13 +787,14 @@ struct ct_report_options {
     /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
     const char *const *command;
     size_t ncommand;
+    const struct ct_accuracy *accuracy; /* its work-precision plot is shown; NULL: none */
 };
 
 /**
  * A system, its equations and its motion as one HTML file that needs nothing else. docs/report.md says what is on it.
  *
  * The run is always verified. Without an end time the page shows the start. The same system and options give the same
- * bytes.
+ * bytes, but for the times in a work-precision plot.
  *
  * Errors: E002; E530 where the library was built without the page; those of assembly and of runs.
  */

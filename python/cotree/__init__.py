@@ -260,6 +260,17 @@ class System:
         return self._simulate(lib.ct_sim_run,
                               _run_options(until=until, tolerance=tolerance, **options))
 
+    def report(self, path, until=None, tolerance=None, **options):
+        """The model, its equations and its motion as one HTML page; options as those of `simulate`."""
+        context = _l.Context()
+        o = _l.ReportOptions(path=os.fsencode(path),
+                             run=_run_options(until=until, tolerance=tolerance, **options))
+        o.size = ctypes.sizeof(o)
+        if not _interruptible(context, lambda: lib.ct_system_report(context.pointer, self.pointer,
+                                                                    _byref(o))):
+            context.fail()
+        context.warn()
+
     def _with_input(self, input, hold):
         """The same system with inputs that a table plays."""
         given = dict(self._given, hold=bool(hold))
@@ -277,17 +288,6 @@ class System:
                 for row in zip(*columns):
                     file.write(",".join(map(_number, row)) + "\n")
             return System(self.path, self._text, dict(given, input=path))
-
-    def report(self, path, until=None, tolerance=None, **options):
-        """The model, its equations and its motion as one HTML page; options as those of `simulate`."""
-        context = _l.Context()
-        o = _l.ReportOptions(path=os.fsencode(path),
-                             run=_run_options(until=until, tolerance=tolerance, **options))
-        o.size = ctypes.sizeof(o)
-        if not _interruptible(context, lambda: lib.ct_system_report(context.pointer, self.pointer,
-                                                                    _byref(o))):
-            context.fail()
-        context.warn()
 
     def inverse(self, until=None, **options):
         """The motion of a system whose freedoms are all driven, and the efforts that it takes."""

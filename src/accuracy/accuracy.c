@@ -362,14 +362,25 @@ bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a, const ch
     return a && ct_enter(ctx, write_table, &o);
 }
 
+static struct ct_work_precision_plot plot_of(const struct ct_accuracy *a)
+{
+    return (struct ct_work_precision_plot){.title = a->system->model.name,
+                                           .wanted = a->wanted,
+                                           .uncertainty = a->uncertainty,
+                                           .best = a->best};
+}
+
+void ct_accuracy_print_plot(FILE *out, const struct ct_accuracy *a)
+{
+    const struct ct_work_precision_plot plot = plot_of(a);
+    ct_work_precision_print(out, a->point, a->npoint, &plot);
+}
+
 static bool draw_plot(void *task)
 {
     const struct output *o = task;
     const struct ct_accuracy *a = o->a;
-    const struct ct_work_precision_plot plot = {.title = a->system->model.name,
-                                                .wanted = a->wanted,
-                                                .uncertainty = a->uncertainty,
-                                                .best = a->best};
+    const struct ct_work_precision_plot plot = plot_of(a);
     return ct_work_precision_draw(o->ctx, o->path, a->point, a->npoint, &plot);
 }
 

@@ -53,6 +53,9 @@ struct ct_setting {
 // Makes a->sim of a setting. False with a message in a->said.
 bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s);
 
+// The work-precision plot as <svg> ... </svg>.
+void ct_accuracy_print_plot(FILE *out, const struct ct_accuracy *a);
+
 // Destroys a->sim.
 void ct_accuracy_end_run(struct ct_accuracy *a);
 

@@ -19,8 +19,21 @@ static const char **list_command(const struct cli_args *args, size_t *n)
     return word;
 }
 
+// The methods and tolerances that `accuracy` tries by itself.
+static struct ct_accuracy *study(struct ct_ctx *ctx, struct ct_system *sys,
+                                 const struct cli_args *args)
+{
+    const struct ct_accuracy_options o
+        = {.run = {.until = args->until, .samples = args->samples},
+           .bar = args->quiet ? NULL : stderr};
+    return ct_accuracy_create(ctx, sys, &o);
+}
+
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
+    if (args->hold && !args->input)
+        return cli_complain(&cli_report,
+                            "--hold says how the rows of --input count; there is no --input");
     char *standard = args->output ? NULL : cli_standard_path(args->model, ".html");
     const char *path = args->output ? args->output : standard;
     struct ct_report_options options = {.run = cli_sim_options(args),
@@ -29,11 +42,15 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     const char **command = list_command(args, &options.ncommand);
     options.command = command;
     struct ct_system *sys = cli_load(ctx, args);
-    int status = ct_system_report(ctx, sys, &options) ? CLI_DONE : CLI_FAILED;
+    struct ct_accuracy *accuracy = args->accuracy ? study(ctx, sys, args) : NULL;
+    options.accuracy = accuracy;
+    const bool is_ready = sys && (accuracy || !args->accuracy);
+    int status = is_ready && ct_system_report(ctx, sys, &options) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;
     if (status == CLI_DONE && options.path && !args->quiet)
         fprintf(stderr, "page         %s\n", options.path);
+    ct_accuracy_destroy(accuracy);
     ct_system_destroy(sys);
     free(command);
     free(standard);

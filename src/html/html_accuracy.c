@@ -2,6 +2,7 @@
 // computer stands here: the same input gives the same page.
 #include "html/html.h"
 
+#include "accuracy/accuracy.h"
 #include "sim/summary.h"
 #include "solve/singular/singular.h"
 
@@ -94,6 +95,17 @@ static void put_work(struct ct_html *h)
                     : "No step was refused for its error.");
 }
 
+static void put_work_precision(struct ct_html *h)
+{
+    if (!h->options->accuracy)
+        return;
+    fputs("<h3>Work and precision</h3>\n<figure class=\"work-precision\">\n", h->out);
+    ct_accuracy_print_plot(h->out, h->options->accuracy);
+    fputs("<figcaption>Error against time for several methods and tolerances, as <code>cotree "
+          "accuracy</code> finds them.</figcaption></figure>\n",
+          h->out);
+}
+
 void ct_html_accuracy(struct ct_html *h)
 {
     ct_html_open_section(h, "accuracy", "Accuracy");
@@ -103,6 +115,7 @@ void ct_html_accuracy(struct ct_html *h)
         put_ledger(h);
         put_estimates(h);
         put_work(h);
+        put_work_precision(h);
     }
     ct_html_close_section(h);
 }

@@ -58,8 +58,15 @@ static size_t words_width(const char *s)
 // What lines are indented by: \quad, and again where they go on; the room an estimate may be wrong by.
 enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
-// Length of a piece up to the next place where a line may end: before a sign, or a factor, at any depth of
-// parentheses but not within braces or cases.
+// Before a factor, or a relation.
+static bool is_within_product(const char *s)
+{
+    return !strncmp(s, " \\, ", 4) || !strncmp(s, " < ", 3) || !strncmp(s, " > ", 3)
+        || !strncmp(s, " \\leq ", 6) || !strncmp(s, " \\geq ", 6);
+}
+
+// Length of a piece up to the next place where a line may end: before a sign, or a factor, at any
+// depth of parentheses but not within braces or cases.
 static size_t piece_of(const char *s, bool at_factors)
 {
     int braces = 0;
@@ -69,7 +76,7 @@ static size_t piece_of(const char *s, bool at_factors)
         if (i == 0 || braces > 0)
             continue;
         if (!strncmp(s + i, " + ", 3) || !strncmp(s + i, " - ", 3)
-            || !strncmp(s + i, ",\\; ", 4) || (at_factors && !strncmp(s + i, " \\, ", 4)))
+            || !strncmp(s + i, ",\\; ", 4) || (at_factors && is_within_product(s + i)))
             return i;
     }
     return strlen(s);

@@ -41,7 +41,10 @@ void ct_work_precision_name(char *text, size_t size, const struct ct_work_precis
 bool ct_work_precision_write(struct ct_ctx *ctx, const char *path,
                              const struct ct_work_precision_point *point, size_t n);
 
-/// Error against seconds, both logarithmic, one line for each method, as SVG. Errors: E002.
+/// Error against seconds, both logarithmic, one line for each method, as SVG: <svg> ... </svg>.
+void ct_work_precision_print(FILE *out, const struct ct_work_precision_point *point, size_t n,
+                             const struct ct_work_precision_plot *plot);
+/// The same as a file. Errors: E002.
 bool ct_work_precision_draw(struct ct_ctx *ctx, const char *path,
                             const struct ct_work_precision_point *point, size_t n,
                             const struct ct_work_precision_plot *plot);

@@ -216,18 +216,11 @@ static void draw_all(const struct canvas *c, const struct ct_work_precision_poin
                 place(&c->x, plot->best->seconds), place(&c->y, plot->best->error), 2 * MARK);
 }
 
-bool ct_work_precision_draw(struct ct_ctx *ctx, const char *path,
-                            const struct ct_work_precision_point *point, size_t n,
-                            const struct ct_work_precision_plot *plot)
+void ct_work_precision_print(FILE *out, const struct ct_work_precision_point *point, size_t n,
+                             const struct ct_work_precision_plot *plot)
 {
-    struct ct_outfile file;
-    enum ct_suffix unused;
-    if (!ct_suffix_read(ctx, path, CT_SUFFIX_SVG, &unused)
-        || !ct_outfile_open(ctx, &file, path))
-        return false;
-    struct canvas c = {.out = file.stream,
-                       .x = axis_over(LEFT, WIDTH - RIGHT),
-                       .y = axis_over(HEIGHT - BOTTOM, TOP)};
+    struct canvas c = {
+        .out = out, .x = axis_over(LEFT, WIDTH - RIGHT), .y = axis_over(HEIGHT - BOTTOM, TOP)};
     for (size_t i = 0; i < n; i++)
         if (is_drawn(&point[i])) {
             widen(&c.x, point[i].seconds);
@@ -248,5 +241,17 @@ bool ct_work_precision_draw(struct ct_ctx *ctx, const char *path,
             WIDTH / 10, HEIGHT / 10, WIDTH, HEIGHT, FONT);
     draw_all(&c, point, n, plot);
     fputs("</svg>\n", c.out);
+}
+
+bool ct_work_precision_draw(struct ct_ctx *ctx, const char *path,
+                            const struct ct_work_precision_point *point, size_t n,
+                            const struct ct_work_precision_plot *plot)
+{
+    struct ct_outfile file;
+    enum ct_suffix unused;
+    if (!ct_suffix_read(ctx, path, CT_SUFFIX_SVG, &unused)
+        || !ct_outfile_open(ctx, &file, path))
+        return false;
+    ct_work_precision_print(file.stream, point, n, plot);
     return ct_outfile_close(ctx, &file);
 }
