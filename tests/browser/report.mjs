@@ -30,6 +30,19 @@ async function checkMotion(page, end) {
   assert.ok(!before.equals(await pixels(page)), "the motion stands still");
 }
 
+// A panel that the window cuts off shows its upper part.
+async function checkCutOff(browser, file) {
+  const { page, close } = await open(browser, file, { viewport: { width: 1200, height: 1600 } });
+  const { x, y, width, height } = await page.locator("#motion-panel").boundingBox();
+  const clip = { x, y, width, height: height / 2 };
+  const whole = await page.screenshot({ clip });
+  await page.setViewportSize({ width: 1200, height: Math.round(y + 0.7 * height) });
+  await page.waitForTimeout(300);
+  const cut = await page.screenshot({ clip: { ...clip, height: clip.height - 60 } });
+  assert.ok(cut.length > 0.6 * whole.length, "a part of the motion is blank");
+  await close();
+}
+
 async function checkModel({ name, size, light, more }, browser) {
   const model = system(name);
   const file = report(model, `${name}.html`);
@@ -96,6 +109,7 @@ async function checkControls(browser) {
   await checkManifest(page, file, system("slider_crank"));
   await close();
   await checkNoScripts(browser, file);
+  await checkCutOff(browser, file);
   // a phone, in the dark: nothing is wider than the screen
   const phone = await open(browser, file, { viewport: { width: 390, height: 844 }, dark: true });
   assert.ok((await phone.page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
