@@ -88,22 +88,13 @@ static void put_about(struct ct_html *h, const struct ct_modes *s)
 static void put_table(struct ct_html *h, const struct ct_modes *s)
 {
     ct_html_open_section(h, "modes", "Modes");
-    fputs("<table>\n<tr><th>mode</th><th class=\"right\">frequency [Hz]</th>"
-          "<th class=\"right\">damping</th></tr>\n",
-          h->out);
+    fputs("<table>\n<tr><th>mode</th><th>frequency [Hz]</th><th>damping</th></tr>\n", h->out);
     for (size_t i = 0; i < s->n; i++) {
         const struct ct_mode_info m = ct_modes_info(s, i);
-        const double numbers[] = {m.frequency_hz, m.damping};
         fprintf(h->out,
                 "<tr><td><label><input type=\"radio\" name=\"mode\" value=\"%zu\"%s> "
-                "%zu</label></td>",
-                i, i == 0 ? " checked" : "", i + 1);
-        for (size_t k = 0; k < COUNT(numbers); k++) {
-            fputs("<td class=\"right\">", h->out);
-            ct_html_put_number(h->out, numbers[k]);
-            fputs("</td>", h->out);
-        }
-        fputs("</tr>\n", h->out);
+                "%zu</label></td><td>%.5g</td><td>%.3g</td></tr>\n",
+                i, i == 0 ? " checked" : "", i + 1, m.frequency_hz, m.damping);
     }
     fputs("</table>\n", h->out);
     put_about(h, s);
