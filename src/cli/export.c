@@ -29,11 +29,13 @@ const struct cli_command cli_export = {
     .summary = "writes the model as C source or as an FMU",
     .use = CLI_EXPORT,
     .takes_model = true,
-    .more
-    = "\n"
-      "A folder gets NAME.h, NAME.c, NAME_test.c and NAME.json: C99 that needs libm alone, what\n"
-      "compares it with values and a motion computed here, and where each number stands. An FMU is\n"
-      "one file for other simulators: model exchange and co-simulation, sources and a binary.\n",
+    .more = "\n"
+            "A folder gets NAME.h, NAME.c, NAME_test.c and NAME.json: C99 that needs libm "
+            "alone, what\n"
+            "compares it with values and a motion computed here, and where each number stands. "
+            "An FMU is\n"
+            "one file for other simulators: model exchange and co-simulation, sources and a "
+            "binary.\n",
     .examples = {"cotree export puma560.yaml --format c -o arm",
                  "cotree export four_bar.yaml --format fmu3 -o four_bar.fmu"},
     .run = run,
