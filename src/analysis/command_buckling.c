@@ -53,6 +53,13 @@ static bool find(void *task)
     size_t parameter;
     if (!s->load)
         return ct_error(&s->own, (struct ct_mark){0}, CT_E_USAGE, "which load is to grow?");
+    if (s->system->model.nstate)
+        return ct_error(
+            &s->own, s->system->model.state[0].mark, CT_E_OF_STATES,
+            "buckling is a question of stiffness alone, and this model has the state "
+            "'%s': where a controlled structure gives way show 'modes' and "
+            "'linearize' about an equilibrium under load",
+            s->system->model.state[0].name);
     s->system = ct_system_borrow(&s->own, s->system);
     s->variant = ct_variant_create(&s->own, &s->system->model, 1);
     if (!ct_variant_load(&s->own, s->variant, s->load, &parameter)
@@ -210,8 +217,9 @@ bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const ch
     return s && ct_enter(ctx, write_curve, &o);
 }
 
-static void print_summary(const struct ct_buckling *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_buckling *s = object;
     const struct ct_buckling_list *list = &s->list;
     size_t exact = 0;
     ct_configuration_print(&s->at, out);
@@ -237,9 +245,10 @@ static void print_summary(const struct ct_buckling *s, FILE *out)
 
 void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_buckling_summary(const struct ct_buckling *s)
+{
+    return ct_print_text(print_summary, s);
 }

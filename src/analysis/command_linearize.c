@@ -97,6 +97,8 @@ static struct slopes evaluate_slopes(struct ct_linearization *s, const ct_ex *f,
                                  : level[d / nu] + n * (d % nu);
         at[slope[i].row] = program.out[i];
     }
+    for (size_t k = e->nmotion; k < nu; k++)
+        ct_state_take_as_place(out.q + n * k, out.u + n * k, out.a + n * k, n);
     return out;
 }
 
@@ -204,8 +206,11 @@ static void name_states(struct ct_linearization *s, const struct ct_state_space 
         const int k = x->place[i] < 0 ? -1 : l->independent[x->place[i]];
         s->state[i]
             = k < 0 ? ct_arena_printf(a, "place%d", i + 1) : ct_linear_coordinate(e, a, k);
-        s->x0[i] = k >= 0 && e->u[k].q >= 0 ? l->y[e->u[k].q] : 0;
-        s->rate0[i] = k >= 0 ? l->y[e->nq + (size_t)k] : 0;
+        const bool is_state = k >= 0 && ct_speed_is_state(e, (size_t)k);
+        s->x0[i] = is_state                 ? l->y[e->nq + (size_t)k]
+                 : k >= 0 && e->u[k].q >= 0 ? l->y[e->u[k].q]
+                                            : 0;
+        s->rate0[i] = is_state ? l->a[k] : k >= 0 ? l->y[e->nq + (size_t)k] : 0;
     }
     for (int i = 0; i < x->nspeed; i++) {
         const int k = x->speed[i] < 0 ? -1 : l->independent[x->speed[i]], at = x->nplace + i;
@@ -486,8 +491,9 @@ static void print_names(FILE *out, const char *title, const char *const *name, s
     fputc('\n', out);
 }
 
-static void print_summary(const struct ct_linearization *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_linearization *s = object;
     ct_configuration_print(&s->at, out);
     print_names(out, "states", s->state, s->nstate);
     print_names(out, "inputs", s->input, s->ninput);
@@ -496,9 +502,10 @@ static void print_summary(const struct ct_linearization *s, FILE *out)
 
 void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_linearization_summary(const struct ct_linearization *s)
+{
+    return ct_print_text(print_summary, s);
 }

@@ -17,7 +17,7 @@ static const char **branches(struct ct_arena *a, const struct ct_equations *e,
     const char **name = CT_NEWN(a, const char *, e->graph->nedge + 1);
     *n = 0;
     for (int i = 0; i < e->graph->nedge; i++)
-        if (t->is_branch[i] && strcmp(e->edge_kind[i], "arm") != 0)
+        if (t->is_branch[i] && !ct_edge_is_rigid_arm(&e->build->topology->edge[i]))
             name[(*n)++] = e->edge_name[i];
     return name;
 }
@@ -68,7 +68,7 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     struct ct_evaluator *m = ct_evaluator_create(own->model, model, e);
     struct ct_linear *l = ct_linear_create(own, own->model, m);
     ct_initial_state_apply(&start, m, l->y);
-    for (size_t k = 0; k < m->nu && at_rest; k++)
+    for (size_t k = 0; k < e->nmotion && at_rest; k++)
         l->y[m->nq + k] = 0;
     double *before = CT_NEWN(own->model, double, m->nq + m->nu + 1);
     memcpy(before, l->y, (m->nq + m->nu) * sizeof *before);
@@ -101,7 +101,7 @@ static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
     for (size_t i = 0; i < e->ndriver; i++)
         if (!is_steady(e, l, i))
             return false;
-    for (size_t k = 0; k < l->m->nu; k++)
+    for (size_t k = 0; k < e->nmotion; k++)
         if (fabs(l->y[l->m->nq + k]) > still) // rows ask for speeds
             return false;
     return true;
@@ -202,7 +202,7 @@ bool ct_configuration_find(struct ct_ctx *own, struct ct_system *sys,
     }
     if (!c->about)
         c->about = words[0];
-    c->is_large = c->may_be_large && c->equations->nu > CT_MOST_DENSE
+    c->is_large = c->may_be_large && !c->equations->nstate && c->equations->nu > CT_MOST_DENSE
                && (strcmp(c->about, words[0]) == 0
                    || (strcmp(c->about, words[1]) == 0 && !has_drivers(&sys->model)));
     if (!c->is_large && !can_be_full(own, sys, c))
@@ -271,8 +271,8 @@ void ct_configuration_print(const struct ct_configuration *c, FILE *out)
         fputs("about         the start", out);
     if (c->l->acceleration > noticeable)
         fprintf(out,
-                "; not an equilibrium: accelerations up to %.3g, what follows holds for this "
+                "; not an equilibrium: accelerations%s up to %.3g, what follows holds for this "
                 "instant",
-                c->l->acceleration);
+                c->e->nstate ? " and rates of states" : "", c->l->acceleration);
     fputc('\n', out);
 }

@@ -472,12 +472,14 @@ static bool solve_modal(struct list *list, const struct basis *s)
 
 // ---- all of it ------------------------------------------------------------------------------
 
-// Massless coordinates with dampers: their places are states without speeds.
+// Massless coordinates with dampers, and states of the model: their places are states without speeds.
 static bool solve_state_space(struct list *list, int rigid)
 {
     struct ct_state_space s;
     if (!ct_state_space_create(list->l->ctx, list->a, list->l, &s))
         return false;
+    if (list->l->m->e->nstate)
+        rigid = count_steady(list->a, s.A, s.n);
     const double zero = roundoff * s.n * ct_vector_largest(s.A, (size_t)s.n * (size_t)s.n);
     return add_general(list, s.A, s.y_x, s.n, zero, rigid);
 }
@@ -491,7 +493,10 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
     const size_t ff = (size_t)f * (size_t)f;
     bool ok = true;
     *how = "no freedoms";
-    if (f) {
+    if (f && l->m->e->nstate) {
+        *how = ct_arena_printf(a, "general (%zu states of the model)", l->m->e->nstate);
+        ok = solve_state_space(&list, 0);
+    } else if (f) {
         solve_symmetric(a, l->Mr, l->Kr, f, &s);
         const double rate = s.k ? sqrt(fmax(fabs(s.w2[s.k - 1]), fabs(s.w2[0]))) : 0;
         const bool has_speeds

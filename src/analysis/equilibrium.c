@@ -225,6 +225,8 @@ static bool has_no_potential(const struct ct_linear *l)
 
 bool ct_equilibrium_find(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
+    if (l->m->e->nstate)
+        return ct_equilibrium_find_with_states(l, out);
     if (!ct_linear_rest(l)) // with room for the matrices
         return false;
     struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_dense), start = s;

@@ -30,6 +30,9 @@ struct ct_equilibrium_result {
  */
 bool ct_equilibrium_find(struct ct_linear *l, struct ct_equilibrium_result *out);
 
+/// The same of models with states, whose rates vanish as well: Newton's method (equilibrium_states.c).
+bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_result *out);
+
 /// The same of systems too large for dense matrices, with sparse factors. The equations have the
 /// rows of their residual. Sets a and lam in l, no matrices. *applies is false, and no
 /// equilibrium is sought, where something moves, or factors are not available.

@@ -124,6 +124,14 @@ bool ct_linear_close(struct ct_linear *l)
     return true;
 }
 
+void ct_linear_retract(struct ct_linear *l, const double *dq)
+{
+    const struct ct_equations *e = l->m->e;
+    ct_evaluator_retract(l->m, l->y, dq);
+    for (size_t k = e->nmotion; k < e->nu; k++)
+        l->y[e->nq + k] += dq[k];
+}
+
 // ---- matrices -------------------------------------------------------------------------------
 
 static const double *scatter(double *A, size_t n, size_t nu, const struct ct_slope *s,
@@ -154,6 +162,13 @@ static void speed_slopes(struct ct_linear *l, double *D, const double *u)
             l->m->slopes + f->ndq + f->ndu + f->nda + f->ndk);
 }
 
+// Places of states are the states themselves: what multiplies z' moves from M to C, what multiplies z from C to K (nu x nu).
+static void take_states_as_places(const struct ct_equations *e, double *K, double *C, double *M)
+{
+    for (size_t k = e->nmotion; k < e->nu; k++)
+        ct_state_take_as_place(K + e->nu * k, C + e->nu * k, M + e->nu * k, e->nu);
+}
+
 // M, C, K, J, D at the state, with its accelerations and multipliers.
 static bool slopes(struct ct_linear *l)
 {
@@ -175,6 +190,7 @@ static bool slopes(struct ct_linear *l)
         return ct_error(l->ctx, (struct ct_mark){.file = m->model->file}, CT_E_SINGULAR,
                         "the equations have no finite derivatives at this configuration");
     const double *value = ct_evaluator_scatter(m, l->K, l->C, l->M);
+    take_states_as_places(m->e, l->K, l->C, l->M);
     value = scatter(l->D, nrow, nu, f->dv, f->ndv, value);
     memset(l->J, 0, nrow * nu * sizeof *l->J);
     for (size_t i = 0; i < m->e->nJ; i++)
@@ -266,7 +282,7 @@ static void turning_chart(struct ct_linear *l)
     double *EZ = l->b;
     memset(EZ, 0, (size_t)n * (size_t)f * sizeof *EZ);
     for (int k = 0; k < n; k++) {
-        if (l->m->e->u[k].q >= 0)
+        if (l->m->e->u[k].q >= 0 || ct_speed_is_state(l->m->e, (size_t)k))
             continue;
         for (int j = 0; j < f; j++) {
             const double *th = l->Z + k + (size_t)n * (size_t)j;
@@ -453,6 +469,8 @@ const char *ct_linear_coordinate(const struct ct_equations *e, struct ct_arena *
 {
     if (e->u[k].q >= 0)
         return e->q[e->u[k].q].name;
+    if (ct_speed_is_state(e, (size_t)k))
+        return e->u[k].name;
     const char *dot = strrchr(e->u[k].name, '.');
     const size_t n = dot ? (size_t)(dot - e->u[k].name) : strlen(e->u[k].name);
     int start = k; // angular velocities come in threes

@@ -6,6 +6,9 @@
 //     dq = Z y,   du = Z w + X y,   da = Z w' + X w + X2 y,   y' = w + G y
 //     Mr w' + Cr w + Kr y = Z' B f
 //
+// A state z of the model, a speed in the equations, stands among dq here: z' - rate = 0 has the
+// matrices of a coordinate without mass that a damper of one holds.
+//
 // K has the derivative of -J' lam at the multipliers of the state. dq is a motion in the
 // speeds: rotations are varied in the chart at the state. Z has unit rows at the independent
 // speeds, so that y are their coordinates and w their speeds; X, X2 and G vanish at rest. What
@@ -58,6 +61,20 @@ bool ct_linear_close(struct ct_linear *l);
 bool ct_linear_rest(struct ct_linear *l);
 /// The same with the accelerations of the motion.
 bool ct_linear_move(struct ct_linear *l);
+
+/// l->y moved by dq (nu), states of the model as well.
+void ct_linear_retract(struct ct_linear *l, const double *dq);
+/// Derivatives (n each) by a state of the model where those by the place, the speed and the
+/// acceleration of a speed stand: what is known by z and z' moves up to the place and the speed.
+static inline void ct_state_take_as_place(double *by_place, double *by_speed,
+                                          double *by_acceleration, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        by_place[i] = by_speed[i];
+        by_speed[i] = by_acceleration[i];
+        by_acceleration[i] = 0;
+    }
+}
 
 /// dq (nu, out) = Z y.
 void ct_linear_expand(const struct ct_linear *l, double *dq, const double *y);

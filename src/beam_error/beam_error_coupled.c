@@ -53,7 +53,8 @@ static struct ct_build *rigid_scene(struct ct_build *b)
     struct ct_build *r = ct_build_create(b->ctx, b->arena, b->model, &o, NULL);
     if (!ct_build_choose_trees(&r, &o, &unused) || !(r->is_derived || ct_build_derive(r, true)))
         return NULL;
-    if (r->eqs->nrow || r->eqs->nu > MOST || r->eqs->nmemory || r->eqs->nswitch > MOST_MODES)
+    if (r->eqs->nrow || r->eqs->nstate || r->eqs->nu > MOST || r->eqs->nmemory
+        || r->eqs->nswitch > MOST_MODES)
         return NULL;
     ct_dynamics_derive(r);
     return b->rigid = r;
@@ -84,7 +85,7 @@ static bool find_start(const struct ct_build *r, double *start)
         start[i] = e->q[i].quaternion == 0;
     for (size_t i = 0; i < r->ncoordinate; i++) {
         const struct ct_coordinate *c = &r->coordinate[i];
-        const struct ct_edge_info *edge = &r->edge[c->edge];
+        const struct ct_edge_info *edge = &r->topology->edge[c->edge];
         if (edge->kind != CT_EDGE_JOINT)
             continue;
         const struct ct_initial *at = &edge->self->initial;

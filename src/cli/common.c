@@ -9,7 +9,9 @@ struct ct_system_options cli_system_options(const struct cli_args *args)
     return (struct ct_system_options){.set = args->set.text,
                                       .nset = args->set.n,
                                       .tree = args->tree,
-                                      .keep_all = args->keep_all};
+                                      .keep_all = args->keep_all,
+                                      .input = args->input,
+                                      .hold_input = args->hold};
 }
 
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
@@ -17,13 +19,13 @@ struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
     return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
 }
 
-struct ct_system *cli_load_for_analysis(struct ct_ctx *ctx, const struct cli_args *args,
-                                        enum ct_columns_more columns)
+struct ct_system_options cli_analysis_options(const struct cli_args *args,
+                                              enum ct_columns_more columns)
 {
     struct ct_system_options options = cli_system_options(args);
     options.columns = columns;
     options.for_analysis = true;
-    return ct_system_load(ctx, args->model, &options);
+    return options;
 }
 
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,

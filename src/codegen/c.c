@@ -352,14 +352,22 @@ static void put_array(struct writer *w, uint32_t table, const char *name, const 
 }
 
 // The operations of ct_table_value, in its order.
-static void put_table_function(struct writer *w)
+static void put_table_function(struct writer *w, bool any_holds)
 {
     const char *n = w->o.name;
-    putf(w, "struct %s_table {\n    int n;\n    const double *x, *y, *m;\n};\n\n", n);
+    putf(w, "struct %s_table {\n    int n;\n    const double *x, *y, *m;\n%s};\n\n", n,
+         any_holds ? "    int holds;\n" : "");
     putf(w, "static double %s_table(struct %s_table t, int order, double at)\n{\n", n, n);
     put(w, "    int low = 0, high = t.n - 1, i;\n"
-           "    double h, s, slope, c1, c2 = 0, c3 = 0;\n"
-           "    if (!(at >= t.x[0] && at <= t.x[t.n - 1]))\n"
+           "    double h, s, slope, c1, c2 = 0, c3 = 0;\n");
+    if (any_holds)
+        put(w, "    if (t.holds && order)\n"
+               "        return 0;\n"
+               "    if (t.holds && (t.n == 1 || at >= t.x[t.n - 1]))\n"
+               "        return t.y[t.n - 1];\n"
+               "    if (t.holds && at < t.x[0])\n"
+               "        return t.y[0];\n");
+    put(w, "    if (!(at >= t.x[0] && at <= t.x[t.n - 1]))\n"
            "        return NAN;\n"
            "    while (high - low > 1) {\n"
            "        const int middle = (low + high) / 2;\n"
@@ -368,7 +376,11 @@ static void put_table_function(struct writer *w)
            "        else\n"
            "            high = middle;\n"
            "    }\n"
-           "    i = low;\n"
+           "    i = low;\n");
+    if (any_holds)
+        put(w, "    if (t.holds)\n"
+               "        return t.y[i];\n");
+    put(w, ""
            "    h = t.x[i + 1] - t.x[i];\n"
            "    s = at - t.x[i];\n"
            "    slope = (t.y[i + 1] - t.y[i]) / h;\n"
@@ -397,13 +409,15 @@ static void put_tables(struct writer *w)
 {
     const size_t ntable = w->l->x->ntable;
     unsigned char *used = CT_NEWN(w->arena, unsigned char, ntable);
-    bool any = false;
+    bool any = false, any_holds = false;
     for (uint32_t k = 0; k < w->nstatement; k++)
-        if (w->list[k].ins->op == CT_OP_TABLE)
+        if (w->list[k].ins->op == CT_OP_TABLE) {
             used[w->list[k].ins->table] = any = true;
+            any_holds |= w->l->table[w->list[k].ins->table].holds;
+        }
     if (!any)
         return;
-    put_table_function(w);
+    put_table_function(w, any_holds);
     for (uint32_t k = 0; k < ntable; k++) {
         const struct ct_table *t = &w->l->table[k];
         if (!used[k])
@@ -416,9 +430,10 @@ static void put_tables(struct writer *w)
         putf(w, "static const struct %s_table %s_table%u = {%zu, %s_table%u_x, %s_table%u_y, ",
              n, n, k, t->n, n, k, n, k);
         if (t->m)
-            putf(w, "%s_table%u_m};\n\n", n, k);
+            putf(w, "%s_table%u_m", n, k);
         else
-            put(w, "0};\n\n");
+            put(w, "0");
+        put(w, !any_holds ? "};\n\n" : t->holds ? ", 1};\n\n" : ", 0};\n\n");
     }
 }
 

@@ -345,7 +345,7 @@ static const char *const text_directions[]
        "static void normalise_direction(double *q, double *seed)\n"
        "{\n"
        "    int i, k;\n"
-       "    for (i = 0; i < $_NU; i++)\n"
+       "    for (i = 0; i < n_motion; i++)\n"
        "        if (place[i] < 0) {\n"
        "            double *const p = q - 1 - place[i], *const d = seed - 1 - place[i];\n"
        "            const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * "

@@ -305,7 +305,7 @@ static const char text_noquaternions[] = "static void normalise(double *q)\n"
                                          "static void retract(double *q, const double *d)\n"
                                          "{\n"
                                          "    int i;\n"
-                                         "    for (i = 0; i < $_NU; i++)\n"
+                                         "    for (i = 0; i < n_motion; i++)\n"
                                          "        q[place[i]] += d[i];\n"
                                          "}\n"
                                          "\n";
@@ -314,7 +314,7 @@ static const char text_quaternions[]
     = "static void normalise(double *q)\n"
       "{\n"
       "    int i, k;\n"
-      "    for (i = 0; i < $_NU; i++)\n"
+      "    for (i = 0; i < n_motion; i++)\n"
       "        if (place[i] < 0) {\n"
       "            double *const p = q - 1 - place[i];\n"
       "            const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * "
@@ -329,7 +329,7 @@ static const char text_quaternions[]
       "static void retract(double *q, const double *d)\n"
       "{\n"
       "    int i;\n"
-      "    for (i = 0; i < $_NU; i++) {\n"
+      "    for (i = 0; i < n_motion; i++) {\n"
       "        double *const p = q - 1 - place[i];\n"
       "        double angle, c, s, w[4];\n"
       "        if (place[i] >= 0) {\n"
@@ -900,7 +900,7 @@ static void put_places(struct ct_export_text *t, const struct ct_equations *e)
 {
     int *place = CT_NEWN(t->arena, int, e->nu + 1), next = 0;
     bool has_quaternions = false;
-    for (size_t k = 0; k < e->nu; k++) {
+    for (size_t k = 0; k < e->nmotion; k++) {
         place[k] = e->u[k].q;
         if (e->u[k].q >= 0)
             continue;
@@ -910,7 +910,9 @@ static void put_places(struct ct_export_text *t, const struct ct_equations *e)
         has_quaternions = true;
         k += 2;
     }
-    put_integers(t, "place", place, e->nu);
+    put_integers(t, "place", place, e->nmotion);
+    ct_export_putf(t, "enum { n_motion = %zu }; /* speeds; states have no coordinate */\n\n",
+                   e->nmotion);
     put(t, has_quaternions ? text_quaternions : text_noquaternions);
 }
 

@@ -49,7 +49,19 @@ struct ct_parameter {
     ct_ex definition; // in terms of parameters before it
     const char *unit; // that it was given with; NULL: none
     double value;
-    bool is_input; // set from outside, also while a motion goes on
+    bool is_input;  // set from outside, also while a motion goes on
+    bool is_played; // a file does so: `played`
+    ct_ex played;   // a function of time
+};
+
+/// A state of the user's own, z' = rate: of a controller, an actuator, a filter.
+struct ct_state {
+    const char *name;
+    struct ct_mark mark, rate_mark;
+    ct_ex symbol;     // the SIGNAL that expressions know it by
+    ct_ex rate;       // of time, signals and states
+    ct_ex initial;    // of parameters
+    const char *unit; // of the state; NULL: none was given
 };
 
 /// One entry of `outputs`: a signal, a vector signal (several columns later) or an expression.
@@ -81,10 +93,13 @@ struct ct_model {
     struct ct_exs *x;
     const char *file; // as given on the command line
     const char *name, *description;
-    ct_ex time;     // the symbol t
-    ct_ex3 gravity; // [m/s^2]
+    ct_ex time;                  // the symbol t
+    ct_ex3 gravity;              // [m/s^2]
+    struct ct_mark gravity_mark; // of its key; no file where it is not given
     struct ct_parameter *parameter;
     size_t nparameter, parameter_cap;
+    struct ct_state *state;
+    size_t nstate, state_cap;
     struct ct_frame *frame;
     size_t nframe, frame_cap;
     struct ct_body *body; // [0] is ground
@@ -98,13 +113,19 @@ struct ct_model {
     struct ct_simulation simulation;
     unsigned char *decided; // by symbol: a count depends on it (structural); NULL: none does
     double *value;          // by number of symbol: t (0) and the parameters
-    struct ct_names parameter_index; // names -> indices
+    struct ct_names parameter_index, state_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
 };
 
-/// An override from the command line: "NAME=VALUE", the value an expression or a quantity.
+/// An override from the command line: "NAME=VALUE", the value an expression or a quantity; or a CSV file that plays inputs.
 struct ct_set {
     const char *text;
+    enum ct_set_kind {
+        CT_SET_VALUE,
+        CT_SET_INPUTS,      // linear between its rows
+        CT_SET_INPUTS_HELD, // a row counts from its time on
+        CT_SET_OUTPUT       // an output NAME=EXPRESSION behind those of the file
+    } kind;
 };
 
 /// Read, check and resolve a model file. Reports every problem it can find in one pass, in the

@@ -2,7 +2,7 @@
 // expressions:
 //
 //     read.c                                                      the file
-//     read_parameter  read_body  read_joint  read_force  read_run   sections
+//     read_parameter  read_state  read_body  read_joint  read_force  read_run   sections
 //     read_beam  read_point  read_component                       parts of components
 //     read_value  read_beam_value  read_field                     values by kind
 //     read_expr <-> read_table                                    expressions, names, tables
@@ -21,6 +21,8 @@ struct ct_reader {
     struct ct_arena *a; // of the model
     struct ct_model *m;
     const struct ct_node *root;
+    const struct ct_set *set; // besides the file  (nset)
+    size_t nset;
     bool parameters_ok; // all have values; else checks that need a missing one are left out
     const char **known; // names for suggestions: t and the parameters
     size_t nknown, known_cap;
@@ -43,6 +45,8 @@ struct ct_reader {
     unsigned flags; // CT_KEY_... of the value being read
     const struct ct_node **body_node, **joint_node, **force_node;
     size_t nbody_node, body_node_cap, njoint_node, joint_node_cap, nforce_node, force_node_cap;
+    const struct ct_node **state_node;
+    size_t nstate_node, state_node_cap;
 };
 
 // ---- keys and shapes ---------------------------------------------------------------------------
@@ -111,15 +115,16 @@ const char *ct_read_path_beside(struct ct_reader *r, const char *file);
 /// any
 bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *wanted,
                    ct_ex *e);
+/// The columns of a CSV file as functions of time that inputs of their names are from now on. Errors: E134, E135, E412, E119.
+bool ct_read_played_inputs(struct ct_reader *r, const char *path, bool holds);
 /// [rad] Angles beyond it, written without a unit, are asked about: E152.
 extern const double ct_read_full_turn;
 
 // ---- components --------------------------------------------------------------------------------
 
-/// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
+/// The class named by `type`, or the standard class of the family without it; NULL after an error.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_node_pair *p, const char *sort,
-                                               const char *standard);
+                                               const struct ct_node_pair *p, const char *sort);
 /// Allocate the values of all keys, none given.
 void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's
@@ -133,6 +138,11 @@ bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
 // ---- sections: `declare` makes names known, `fill` reads values --------------------------------
 
 void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t nset);
+/// A number, the text of a scalar, with the unit that stands beside it, where it has none of its own.
+const struct ct_node *ct_read_with_unit(struct ct_reader *r, const struct ct_node *number,
+                                        const struct ct_node *unit);
+void ct_read_states_declare(struct ct_reader *r);
+void ct_read_states_fill(struct ct_reader *r);
 void ct_read_bodies_declare(struct ct_reader *r);
 void ct_read_bodies_fill(struct ct_reader *r);
 /// All of a beam besides its points; b->instance has its class. Fills b->beam, b->mass.

@@ -123,9 +123,21 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
         return r->flags & (CT_KEY_TIME | CT_KEY_STATE) ? CT_NAME_OK : CT_NAME_FORBIDDEN;
     }
     const int i = ct_names_get(&r->m->parameter_index, name);
+    const int state = ct_names_get(&r->m->state_index, name);
+    if (state >= 0) {
+        *e = signal_symbol(r, name, r->m->state[state].mark);
+        *why = r->flags & CT_KEY_TIME ? "it is a state, and this is a function of time alone"
+                                      : "it is a state, and this value is constant";
+        return r->flags & CT_KEY_STATE ? CT_NAME_OK : CT_NAME_FORBIDDEN;
+    }
     if (i < 0)
         return CT_NAME_UNKNOWN;
     *e = r->m->parameter[i].symbol;
+    if (r->m->parameter[i].is_played) {
+        *e = r->m->parameter[i].played;
+        *why = "a file plays this input, and the value is constant in time";
+        return r->flags & (CT_KEY_TIME | CT_KEY_STATE) ? CT_NAME_OK : CT_NAME_FORBIDDEN;
+    }
     return CT_NAME_OK;
 }
 

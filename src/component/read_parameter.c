@@ -39,6 +39,9 @@ static bool add_parameter(struct ct_reader *r, const struct ct_node_pair *p, boo
                         p->key);
     if (other >= 0)
         return false; // a key given twice has been reported
+    if (ct_names_get(&m->state_index, p->key) >= 0)
+        return ct_error(r->ctx, p->mark, CT_E_NAME,
+                        "'%s' is a state already: give the %s another name", p->key, sort);
     const int i = (int)m->nparameter;
     const ct_ex s = ct_ex_sym(m->x, CT_SYM_PARAM, p->key, (uint32_t)i);
     m->x->sym[ct_ex_node(m->x, s)->a].mark = p->mark;
@@ -52,6 +55,24 @@ static bool add_parameter(struct ct_reader *r, const struct ct_node_pair *p, boo
 
 static const char *const input_keys[] = {"value", "unit"};
 
+const struct ct_node *ct_read_with_unit(struct ct_reader *r, const struct ct_node *number,
+                                        const struct ct_node *unit)
+{
+    const char *name = NULL;
+    double value;
+    if (!unit || number->kind != CT_NODE_SCALAR || !ct_read_text(r, unit, &name))
+        return number;
+    const size_t sign = number->text[0] == '-';
+    if (number->text[sign + ct_number_parse(number->text + sign, &value)] != 0)
+        return number;
+    struct ct_node *both = CT_NEW(r->a, struct ct_node);
+    *both = *number;
+    both->text = ct_arena_printf(r->a, "%s %s", number->text, name);
+    both->is_exact = false;
+    both->mark = unit->mark;
+    return both;
+}
+
 // The value of an input, `{value: V, unit: U}` or V itself: with the unit, where V has none of its own.
 static const struct ct_node *input_value(struct ct_reader *r, const struct ct_node_pair *p)
 {
@@ -61,22 +82,10 @@ static const struct ct_node *input_value(struct ct_reader *r, const struct ct_no
     ct_read_keys(r, node, ct_arena_printf(r->a, "input '%s'", p->key), input_keys,
                  COUNT(input_keys));
     const struct ct_node *value = ct_node_get(node, "value"), *unit = ct_node_get(node, "unit");
-    struct ct_node *both = CT_NEW(r->a, struct ct_node);
-    *both = (struct ct_node){
+    struct ct_node *zero = CT_NEW(r->a, struct ct_node);
+    *zero = (struct ct_node){
         .kind = CT_NODE_SCALAR, .mark = node->mark, .text = "0", .is_plain = true};
-    if (value)
-        *both = *value;
-    const char *name = NULL;
-    if (unit && (!ct_read_text(r, unit, &name) || both->kind != CT_NODE_SCALAR))
-        return both;
-    double number;
-    const size_t sign = both->text[0] == '-';
-    if (name && both->text[sign + ct_number_parse(both->text + sign, &number)] == 0) {
-        both->text = ct_arena_printf(r->a, "%s %s", both->text, name);
-        both->is_exact = false;
-        both->mark = unit->mark;
-    }
-    return both;
+    return ct_read_with_unit(r, value ? value : zero, unit);
 }
 
 // The errors since `first` become errors of the command line.
@@ -101,6 +110,8 @@ static bool parse_override(struct ct_reader *r, const char *text, struct work *w
     if (i < 0)
         return ct_error(r->ctx, none, CT_E_USAGE, "the model has no parameter '%s'%s", name,
                         ct_read_suggestion(r, name, r->known + 1, r->nknown - 1));
+    if (r->m->parameter[i].is_played)
+        return ct_error(r->ctx, none, CT_E_USAGE, "a file plays the input '%s'", name);
     const struct ct_node value
         = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
     w->node[i] = NULL;
@@ -115,6 +126,8 @@ static bool apply_overrides(struct ct_reader *r, const struct ct_set *set, size_
 {
     bool ok = true;
     for (size_t k = 0; k < nset; k++) {
+        if (set[k].kind != CT_SET_VALUE)
+            continue;
         const size_t first = r->ctx->ndiagnostic;
         ok &= parse_override(r, set[k].text, w);
         move_errors_to_command_line(r, first, set[k].text);
@@ -272,10 +285,14 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
     w.order = CT_NEWN(scratch, int, w.n);
     w.is_wrong = CT_NEWN(scratch, bool, w.n);
     r->m->value = CT_NEWN(r->a, double, r->m->x->nsym);
-    for (size_t i = 0; i < w.n; i++) {
-        w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
+    for (size_t i = 0; i < w.n; i++)
         if (w.node[i]->kind == CT_NODE_SCALAR)
             r->m->parameter[i].unit = ct_parse_unit(w.node[i]->text);
+    for (size_t k = 0; k < nset; k++)
+        if (set[k].kind == CT_SET_INPUTS || set[k].kind == CT_SET_INPUTS_HELD)
+            ok &= ct_read_played_inputs(r, set[k].text, set[k].kind == CT_SET_INPUTS_HELD);
+    for (size_t i = 0; i < w.n; i++) {
+        w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
         r->m->parameter[i].value = NAN; // until it is known
         r->m->value[1 + i] = NAN;
     }

@@ -25,27 +25,27 @@ const char *ct_read_path_beside(struct ct_reader *r, const char *file)
     return ct_arena_printf(r->a, "%.*s%s", (int)(slash + 1 - r->m->file), r->m->file, file);
 }
 
-static bool read_csv(struct ct_reader *r, const struct ct_node *node, const char *path,
+static bool read_csv(struct ct_reader *r, struct ct_mark mark, const char *path,
                      struct ct_sheet *csv)
 {
     char *text;
     size_t n;
     switch (ct_text_read_regular(r->ctx->scratch, path, max_bytes, &text, &n)) {
     case CT_TEXT_UNREADABLE:
-        return ct_error(r->ctx, node->mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
+        return ct_error(r->ctx, mark, CT_E_TABLE, "cannot read the table '%s': %s", path,
                         strerror(errno));
     case CT_TEXT_TOO_BIG:
-        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB",
-                        path, max_bytes >> 20);
+        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is larger than %zu MiB", path,
+                        max_bytes >> 20);
     case CT_TEXT_ENDLESS:
-        return ct_error(r->ctx, node->mark, CT_E_TABLE, "the table '%s' is no regular file",
-                        path);
+        return ct_error(r->ctx, mark, CT_E_TABLE, "the table '%s' is no regular file", path);
     case CT_TEXT_OK:
         break;
     }
     if (ct_sheet_parse(r->ctx, r->ctx->scratch, path, text, n, csv))
         return true;
-    ct_note(r->ctx, node->mark, "the table is used here");
+    if (mark.file)
+        ct_note(r->ctx, mark, "the table is used here");
     return false;
 }
 
@@ -187,12 +187,12 @@ static bool read_unit(struct ct_reader *r, const char *what, const char *unit,
 }
 
 // Times in seconds.
-static bool read_times(struct ct_reader *r, const struct ct_node *file,
-                       const struct ct_sheet *csv, size_t column, double *x)
+static bool read_times(struct ct_reader *r, struct ct_mark mark, const struct ct_sheet *csv,
+                       size_t column, double *x)
 {
     const char *unit = unit_in_head(r->ctx->scratch, csv->field[column]);
     double second = 1;
-    if (unit && !read_unit(r, csv->field[column], unit, file->mark, "s", &second))
+    if (unit && !read_unit(r, csv->field[column], unit, mark, "s", &second))
         return false;
     if (!read_column(r, csv, column, x))
         return false;
@@ -206,7 +206,7 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
 {
     struct ct_sheet csv = {0};
     size_t kt = 0, ky = 0;
-    if (!read_csv(r, file, t->file, &csv))
+    if (!read_csv(r, file->mark, t->file, &csv))
         return false;
     const bool has_t = find_column(r, file, &csv, "t", &kt);
     if (!find_column(r, column, &csv, t->column, &ky) || !has_t)
@@ -217,7 +217,7 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
     t->n = csv.nrow - 1;
     double *x = CT_NEWN(r->a, double, t->n), *y = CT_NEWN(r->a, double, t->n), *m = NULL;
     t->column = ct_arena_strdup(r->a, csv.field[ky]); // with its unit
-    if (!read_times(r, file, &csv, kt, x) || !read_column(r, &csv, ky, y)
+    if (!read_times(r, file->mark, &csv, kt, x) || !read_column(r, &csv, ky, y)
         || !check_increasing(r, &csv, kt, x) || !check_start(r, &csv, kt, x, t->n)) {
         ct_note(r->ctx, file->mark, "the table is used here");
         return false;
@@ -230,6 +230,15 @@ static bool fill_table(struct ct_reader *r, const struct ct_node *file,
     t->y = y;
     t->m = m;
     return true;
+}
+
+static uint32_t add_table(struct ct_reader *r, struct ct_table t)
+{
+    struct ct_exs *x = r->m->x;
+    const size_t number = x->ntable;
+    CT_PUSH(r->a, r->sampled, x->ntable, x->table_cap, t);
+    x->table = r->sampled;
+    return (uint32_t)number;
 }
 
 // What values are multiplied by to be in SI units: as `unit` says, or else the head of the column.
@@ -298,10 +307,7 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *
     if (number < 0) {
         if (!fill_table(r, file, column, kind == 0, &t))
             return false;
-        struct ct_exs *x = r->m->x;
-        number = (int)x->ntable;
-        CT_PUSH(r->a, r->sampled, x->ntable, x->table_cap, t);
-        x->table = r->sampled;
+        number = (int)add_table(r, t);
         ct_names_put(r->ctx->scratch, &r->table, key, number);
     }
     const struct ct_table *table = &r->sampled[number];
@@ -317,4 +323,119 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *
     times = ct_ex_mul(r->m->x, times, ct_ex_const(r->m->x, factor));
     *e = ct_ex_mul(r->m->x, times, ct_ex_table(r->m->x, (uint32_t)number, 0, r->m->time));
     return true;
+}
+
+// ---- tables of inputs --------------------------------------------------------------------------
+
+// The input that a column is about; -1 after an error.
+static int find_input(struct ct_reader *r, const struct ct_sheet *csv, size_t column)
+{
+    const struct ct_model *m = r->m;
+    const char *head = csv->field[column],
+               *name = ct_arena_strndup(r->ctx->scratch, head, name_length(head));
+    const int i = ct_names_get(&m->parameter_index, name);
+    const char **names = CT_NEWN(r->ctx->scratch, const char *, m->nparameter + 1);
+    size_t n = 0;
+    for (size_t k = 0; k < m->nparameter; k++)
+        if (m->parameter[k].is_input)
+            names[n++] = m->parameter[k].name;
+    if (i >= 0 && m->parameter[i].is_played)
+        ct_error(r->ctx, csv->mark[column], CT_E_NAME_TWICE, "two columns play the input '%s'",
+                 name);
+    else if (i >= 0 && m->parameter[i].is_input)
+        return i;
+    else if (i >= 0)
+        ct_error(r->ctx, csv->mark[column], CT_E_INPUT,
+                 "'%s' is a parameter of the model: what a file plays stands under 'inputs'",
+                 name);
+    else
+        ct_error(r->ctx, csv->mark[column], CT_E_INPUT, "the model has no input '%s'%s", name,
+                 ct_read_suggestion(r, name, names, n));
+    return -1;
+}
+
+// y (n) in SI units: the head of the column says its unit, which must be of the input's dimension.
+static bool read_played(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
+                        const struct ct_parameter *p, double *y)
+{
+    const char *unit = unit_in_head(r->ctx->scratch, csv->field[column]);
+    struct ct_unit own = {.si = 1};
+    size_t at;
+    double factor = 1;
+    if (unit && !read_unit(r, csv->field[column], unit, csv->mark[column], p->unit, &factor))
+        return false;
+    if (!unit && p->unit && ct_unit_parse(p->unit, strlen(p->unit), &own, &at) == CT_UNIT_OK
+        && own.si != 1)
+        ct_warning(
+            r->ctx, csv->mark[column], CT_E_UNIT,
+            "the column '%s' has no unit and is read in SI units, while the input is given "
+            "in %s: write '%s [%s]' if that is meant",
+            p->name, p->unit, p->name, p->unit);
+    if (!read_column(r, csv, column, y))
+        return false;
+    for (size_t i = 0; i + 1 < csv->nrow; i++)
+        y[i] *= factor;
+    return true;
+}
+
+// t (n, out); false where it is missing or does not increase, or where a linear table does not begin at the start.
+static bool read_played_times(struct ct_reader *r, const struct ct_sheet *csv, bool holds,
+                              size_t *column, double *t)
+{
+    *column = csv->ncolumn;
+    for (size_t k = 0; k < csv->ncolumn; k++)
+        if (is_called(csv->field[k], "t"))
+            *column = k;
+    if (*column == csv->ncolumn)
+        return ct_error(r->ctx, csv->mark[0], CT_E_TABLE, "the table '%s' has no column 't'",
+                        csv->file);
+    return read_times(r, csv->mark[*column], csv, *column, t)
+        && check_increasing(r, csv, *column, t)
+        && (holds || check_start(r, csv, *column, t, csv->nrow - 1));
+}
+
+// What the input is: where its table holds, its own value up to the first row.
+static ct_ex play(struct ct_reader *r, const struct ct_table *t, ct_ex own)
+{
+    struct ct_exs *x = r->m->x;
+    const ct_ex time = r->m->time, value = ct_ex_table(x, add_table(r, *t), 0, time);
+    if (!t->holds || t->x[0] <= 0)
+        return value;
+    return ct_ex_if(x, ct_ex_fun2(x, CT_OP_LT, time, ct_ex_const(x, t->x[0])), own, value);
+}
+
+bool ct_read_played_inputs(struct ct_reader *r, const char *path, bool holds)
+{
+    const struct ct_mark none = {0};
+    struct ct_sheet csv = {0};
+    path = ct_arena_strdup(r->a, path);
+    if (!read_csv(r, none, path, &csv))
+        return false;
+    const size_t least = holds ? 1 : 2;
+    if (csv.nrow < 1 + least)
+        return ct_error(r->ctx, (struct ct_mark){.file = path}, CT_E_TABLE_DATA,
+                        "a table of inputs needs %s below its header",
+                        holds ? "a row" : "at least two rows");
+    size_t kt;
+    double *t = CT_NEWN(r->a, double, csv.nrow);
+    bool ok = read_played_times(r, &csv, holds, &kt, t);
+    for (size_t k = 0; k < csv.ncolumn; k++) {
+        const int i = k == kt ? -1 : find_input(r, &csv, k);
+        double *y = CT_NEWN(r->a, double, csv.nrow);
+        if (i < 0 || !read_played(r, &csv, k, &r->m->parameter[i], y)) {
+            ok &= k == kt;
+            continue;
+        }
+        struct ct_parameter *p = &r->m->parameter[i];
+        const struct ct_table table = {.file = path,
+                                       .column = ct_arena_strdup(r->a, csv.field[k]),
+                                       .n = csv.nrow - 1,
+                                       .x = t,
+                                       .y = y,
+                                       .holds = holds};
+        p->is_played = true;
+        if (ok)
+            p->played = play(r, &table, p->symbol);
+    }
+    return ok;
 }

@@ -181,6 +181,9 @@ static bool read_new_names(struct ct_reader *r, const struct ct_node *node,
         if (ct_names_get(&r->m->parameter_index, v->name[i]) >= 0)
             ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE,
                           "the coordinate '%s' has the name of a parameter", v->name[i]);
+        if (ct_names_get(&r->m->state_index, v->name[i]) >= 0)
+            ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE,
+                          "the coordinate '%s' has the name of a state", v->name[i]);
         for (size_t k = 0; k < i; k++)
             if (strcmp(v->name[i], v->name[k]) == 0)
                 ok = ct_error(r->ctx, v->at[i], CT_E_NAME_TWICE,

@@ -35,8 +35,18 @@ static size_t find_interval(const struct ct_table *t, double at)
     return low;
 }
 
+// The last value that counts at `at`.
+static double held_value(const struct ct_table *t, double at)
+{
+    if (t->n == 1 || at >= t->x[t->n - 1])
+        return t->y[t->n - 1];
+    return t->y[at < t->x[0] ? 0 : find_interval(t, at)];
+}
+
 double ct_table_value(const struct ct_table *t, uint32_t order, double at)
 {
+    if (t->holds)
+        return isnan(at) ? NAN : order ? 0 : held_value(t, at);
     if (!(at >= t->x[0] && at <= t->x[t->n - 1]))
         return NAN;
     const size_t i = find_interval(t, at);

@@ -96,6 +96,8 @@ struct ct_table {
     size_t n;
     const double *x, *y; // x strictly increasing
     const double *m; // slopes at the points (cubic Hermite of the natural spline), NULL: linear
+    bool
+        holds; // y[i] counts from x[i] on, up to the next one; y[0] before, the last one after all
 };
 
 struct ct_exs {
@@ -233,6 +235,8 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t n);
+/// A node that has operands, made in x from image[id] of each operand.
+ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
 typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
                                ct_ex s);
@@ -247,7 +251,7 @@ void ct_ex_values(struct ct_exs *x, struct ct_arena *scratch, const ct_ex *a, si
 double ct_op_apply(enum ct_op op, double a, double b, double c);
 /// Its derivative by the i-th argument, where its value is v; of all but CT_OP_TABLE.
 double ct_op_partial(enum ct_op op, int i, double a, double b, double v);
-/// Value of the order-th derivative of a table at x; NaN outside its range.
+/// Value of the order-th derivative of a table at x; NaN outside its range, which one that holds does not have.
 double ct_table_value(const struct ct_table *t, uint32_t order, double x);
 
 // ---- three components --------------------------------------------------------------------------

@@ -2,7 +2,11 @@
 //
 //     q' = Z(q) u
 //     M(q, t) u' = Q(q, u, t) + J(q, t)' lam        n_u rows
+//     z' = rate(q, u, z, t)                         the model's states
 //     Phi(q, t) = 0,  v = J u + Phi_t = 0,  J u' + gam = 0     m rows          (formulation 0.4)
+//
+// States of the model are the last of the speeds u: they move no coordinate, their mass is 1, Q is their rate and J is
+// zero, so that all that solves M u' = Q + J' lam solves them, too.
 //
 // What always holds: M holds its lower triangle, J its nonzeros, both in row order; all expressions
 // live in x and use symbols of kind TIME, PARAM, Q, U, A, LAM, MODE, MEMORY, WORK only. A and LAM occur
@@ -31,12 +35,12 @@ enum ct_elastic_kind {
 };
 
 struct ct_u {
-    const char *name;          // "crank.u"
-    ct_ex symbol;              // speed
-    ct_ex derivative;          // the symbol u'
-    int q;                     // the coordinate whose rate it is; -1 for angular velocities
-    int joint, body;           // whose it is; the other is -1
-    int beam;                  // body whose elastic coordinate it belongs to; 0: none
+    const char *name; // "crank.u"
+    ct_ex symbol;     // speed
+    ct_ex derivative; // the symbol u'
+    int q;            // the coordinate whose rate it is; -1: angular velocities, states
+    int joint, body;  // whose it is; the other is -1
+    int beam;         // body whose elastic coordinate it belongs to; 0: none
     enum ct_elastic_kind kind; // of those
     bool is_rotation;          // [rad/s]
 };
@@ -199,6 +203,8 @@ struct ct_equations {
     size_t nq, q_cap;
     struct ct_u *u;
     size_t nu, u_cap;
+    size_t nmotion,
+        nstate; // of these: speeds of joints and beams; behind them the model's states, in its order
     struct ct_entry *M; // lower triangle, row by row
     size_t nM, M_cap;
     ct_ex *solution; // u' of an open system in closed form (nu), or NULL
@@ -259,5 +265,11 @@ struct ct_equations {
     const int *weight_t, *weight_r;
     const char *how; // the trees were chosen, for reports; NULL: not known
 };
+
+/// Is speed k a state of the model?
+static inline bool ct_speed_is_state(const struct ct_equations *e, size_t k)
+{
+    return k >= e->nmotion && k < e->nmotion + e->nstate;
+}
 
 #endif

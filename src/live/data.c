@@ -79,7 +79,7 @@ static bool prepare(struct ct_data *d)
         || !ct_sim_has_solver(sim) || !ct_sim_choose_backend(sim, d->options.backend))
         return false;
     d->nq = e->nq;
-    d->nu = e->nu;
+    d->nu = e->nmotion;
     d->nrow = e->nrow;
     d->ny = e->nq + e->nu + 1;
     d->y = CT_NEWN(a, double, d->ny);
@@ -328,7 +328,10 @@ static bool set(void *task)
         d->known = 0;
         return true;
     }
-    double *y = d->y + (s->kind == CT_SPEED ? d->nq : 0) + one;
+    const size_t first = s->kind == CT_COORDINATE ? 0
+                       : s->kind == CT_SPEED      ? d->nq
+                                                  : d->nq + d->nu;
+    double *y = d->y + first + one;
     d->is_moved |= memcmp(y, s->value, s->n * sizeof *y) != 0;
     memcpy(y, s->value, s->n * sizeof *y);
     d->known = d->is_moved ? 0 : d->known;

@@ -78,7 +78,8 @@ static void find_motion(struct ct_data *d)
         return;
     ct_data_enter(d);
     ct_evaluator_dynamics(m);
-    memcpy(d->M, m->M, d->nu * d->nu * sizeof *d->M); // symmetric
+    for (size_t k = 0; k < d->nu; k++) // symmetric
+        memcpy(d->M + d->nu * k, m->M + m->nu * k, d->nu * sizeof *d->M);
     for (size_t i = 0; i < d->nrow; i++)
         for (size_t k = 0; k < d->nu; k++)
             d->J[i * d->nu + k] = m->J[i + d->nrow * k];
@@ -141,6 +142,11 @@ static bool find(struct answer *a)
         return give(a, d->y, d->nq, 1);
     case CT_Q_SPEEDS:
         return give(a, d->y + d->nq, d->nu, 1);
+    case CT_Q_STATES:
+        ct_data_enter(d);
+        return give(a, d->y + d->nq + d->nu, m->e->nstate, 1);
+    case CT_Q_STATE_RATES:
+        return ct_data_accelerate(d) && give(a, s->a + d->nu, m->e->nstate, 1);
     }
     return ct_error(a->ctx, (struct ct_mark){0}, CT_E_VALUE, "there is no quantity %d",
                     (int)a->quantity);
@@ -209,6 +215,7 @@ double ct_data_value(const struct ct_data *data, enum ct_kind kind, size_t i)
     case CT_OUTPUT:
         return know(data, CT_Q_OUTPUTS) ? data->value[i] : NAN;
     case CT_STATE:
+        return data->y[data->nq + data->nu + i];
     case CT_FRAME:
     case CT_COMPONENT:
         break;
@@ -225,7 +232,7 @@ static void compile_frames(struct ct_data *d)
     const size_t n = d->sim.system->model.nframe;
     ct_ex *out = CT_NEWN(d->sim.own.scratch, ct_ex, 12 * n + 1);
     for (size_t i = 0; i < n; i++) {
-        const int node = b->node_of_frame[i];
+        const int node = b->topology->node_of_frame[i];
         const ct_ex33 R = ct_node_rotation(b, node);
         const ct_ex3 p = ct_node_position(b, node);
         for (int k = 0; k < 9; k++)

@@ -36,7 +36,7 @@ static size_t larger(size_t a, size_t b)
 static void take_out(struct inverse *s, double *v)
 {
     const struct ct_evaluator *m = ct_run_evaluator(s->d->sim.run);
-    const size_t n = m->nu, r = m->nrow;
+    const size_t n = s->d->nu, r = m->nrow;
     memset(s->x, 0, larger(n, r) * sizeof *s->x);
     for (size_t i = 0; i < r; i++)
         s->x[i] = ct_vector_dot(s->d->J + i * n, v, n);
@@ -51,7 +51,7 @@ static void list_speeds(struct inverse *s)
     const struct ct_equations *e = &s->d->sim.system->equations;
     const struct ct_model *model = &s->d->sim.system->model;
     for (int pass = 0; pass < 2 && !s->n; pass++)
-        for (size_t k = 0; k < e->nu; k++)
+        for (size_t k = 0; k < e->nmotion; k++)
             if (e->u[k].joint >= 0
                 && (pass || ct_instance_value(&model->joint[e->u[k].joint], "effort")->given))
                 s->speed[s->n++] = (int)k;

@@ -32,7 +32,8 @@ struct ct_data {
     struct ct_assembly *assembly;  // NULL: beams start in equilibrium
     struct ct_advance *advance;
     struct ct_linear *linear; // for ct_data_assemble
-    size_t nq, nu, nrow, ny;
+    size_t nq, nu, nrow,
+        ny; // nu: speeds without the model's states, which stand behind them in y
     double t, *y;
     bool *is_own;    // by parameter: it has been set, whatever its definition says
     bool is_moved;   // the state is not where steps have come to

@@ -3,7 +3,7 @@
 
 struct sides {
     ct_ex left, right;
-    const char *label;
+    const char *label, *name;
 };
 
 struct group {
@@ -11,10 +11,11 @@ struct group {
     size_t n, cap;
 };
 
-static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left,
-                ct_ex right)
+// name: of the speed or row, NULL: of neither
+static void add(struct ct_derivation *d, struct group *g, const char *label, const char *name,
+                ct_ex left, ct_ex right)
 {
-    const struct sides s = {left, right, label};
+    const struct sides s = {left, right, label, name};
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
@@ -23,7 +24,9 @@ static void put_group(struct ct_derivation *d, const struct group *g)
     ct_page_equations(&d->page);
     for (size_t i = 0; i < g->n; i++)
         ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
-                         ct_derivation_text(d, g->at[i].right), NULL);
+                         ct_derivation_text(d, g->at[i].right), NULL)
+            ->name
+            = g->at[i].name;
 }
 
 static const char *speed_label(struct ct_derivation *d, size_t i)
@@ -46,24 +49,24 @@ static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
 
 // ---- groups -----------------------------------------------------------------------------------
 
-enum { MOTION, CLOSURE, CLOSURE_RATE, EFFORT, KINEMATIC, NGROUP };
+enum { MOTION, STATES, CLOSURE, CLOSURE_RATE, EFFORT, KINEMATIC, NGROUP };
 
 static void fill(struct ct_derivation *d, const struct ct_reduced *r, struct group g[NGROUP])
 {
     struct ct_equations *e = d->e;
     for (size_t i = 0; i < e->nu; i++)
-        add(d, &g[MOTION], speed_label(d, i), ct_reduced_left(e, r, i),
-            ct_reduced_right(e, r, i));
+        add(d, &g[ct_speed_is_state(e, i) ? STATES : MOTION], speed_label(d, i), e->u[i].name,
+            ct_reduced_left(e, r, i), ct_reduced_right(e, r, i));
     for (size_t i = 0; i < e->nrow; i++) {
-        add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO);
-        add(d, &g[CLOSURE_RATE], e->row[i].name, ct_reduced_row_left(e, r, i),
+        add(d, &g[CLOSURE], e->row[i].name, e->row[i].name, r->phi[i], CT_EX_ZERO);
+        add(d, &g[CLOSURE_RATE], e->row[i].name, e->row[i].name, ct_reduced_row_left(e, r, i),
             ct_ex_neg(e->x, r->gam[i]));
     }
     for (size_t i = 0; i < e->ndriver; i++)
-        add(d, &g[EFFORT], e->driver[i].name, r->effort[i], CT_EX_ZERO);
+        add(d, &g[EFFORT], e->driver[i].name, NULL, r->effort[i], CT_EX_ZERO);
     for (size_t i = 0; i < e->nq; i++)
         if (e->q[i].quaternion >= 0)
-            add(d, &g[KINEMATIC], NULL, e->q[i].symbol, r->rate[i]);
+            add(d, &g[KINEMATIC], NULL, NULL, e->q[i].symbol, r->rate[i]);
 }
 
 static void put_kinematic(struct ct_derivation *d, const struct group *g)
@@ -144,10 +147,12 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
                        const struct ct_entry *entry, const ct_ex *value, size_t n,
                        bool is_symmetric)
 {
-    const size_t nu = d->e->nu;
+    const size_t nu = d->e->nmotion;
     const char **cell = CT_NEWN(d->a, const char *, nrow *nu + 1);
     for (size_t k = 0; k < n; k++) {
         const size_t i = (size_t)entry[k].row, j = (size_t)entry[k].column;
+        if (j >= nu) // of a state of the model, which is 1
+            continue;
         cell[i * nu + j] = ct_derivation_text(d, value[k]);
     }
     ct_page_matrix(&d->page, nu + 1);
@@ -168,19 +173,20 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
-static void put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
+void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
     const char **row = CT_NEWN(d->a, const char *, e->nu + e->nrow + 1);
     static const char larger[] = "%zu x %zu, larger than a page; its entries stand in the "
                                  "equations below";
-    if (e->nu < 2)
+    const size_t nu = e->nmotion;
+    if (nu < 2)
         return;
-    for (size_t i = 0; i < e->nu; i++)
+    for (size_t i = 0; i < nu; i++)
         row[i] = ct_derivation_name(d, speed_label(d, i));
     ct_page_heading(&d->page, "mass matrix M (symmetric)");
-    if (e->nu > MOST_COLUMNS || !put_matrix(d, row, e->nu, e->M, r->M, e->nM, true))
-        ct_page_sentence(&d->page, larger, e->nu, e->nu);
+    if (nu > MOST_COLUMNS || !put_matrix(d, row, nu, e->M, r->M, e->nM, true))
+        ct_page_sentence(&d->page, larger, nu, nu);
     if (!e->nrow)
         return;
     ct_page_heading(&d->page, "Jacobian J of the constraints");
@@ -189,9 +195,9 @@ static void put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
             = ct_derivation_is_latex(d)
                 ? ct_arena_printf(d->a, "\\mathrm{%s}", ct_latex_quoted(d->a, e->row[i].name))
                 : e->row[i].name;
-    if (e->nu > MOST_COLUMNS || e->nrow > MOST_COLUMNS
+    if (nu > MOST_COLUMNS || e->nrow > MOST_COLUMNS
         || !put_matrix(d, row, e->nrow, e->J, r->J, e->nJ, false))
-        ct_page_sentence(&d->page, larger, e->nrow, e->nu);
+        ct_page_sentence(&d->page, larger, e->nrow, nu);
 }
 
 static const char *count(struct ct_derivation *d, size_t n, const char *one, const char *many)
@@ -231,15 +237,20 @@ void ct_stage_reduced(struct ct_derivation *d)
     fill(d, &r, g);
     ct_page_title(&d->page, "Equations of motion");
     ct_page_sentence(
-        &d->page, "%s, %s%s", count(d, e->nu, "unknown speed", "unknown speeds"),
-        count(d, e->nrow, "constraint", "constraints"),
-        e->nu ? "; each equation is the cutset of a branch, projected on its motion" : "");
+        &d->page, "%s, %s%s%s%s", count(d, e->nmotion, "unknown speed", "unknown speeds"),
+        count(d, e->nrow, "constraint", "constraints"), e->nstate ? ", " : "",
+        e->nstate ? count(d, e->nstate, "state", "states") : "",
+        e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
     ct_derivation_put_definitions(d, "with", &r.definitions);
-    put_matrices(d, &r);
-    if (e->nu) {
+    ct_derivation_put_matrices(d, &r);
+    if (e->nmotion) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
         put_group(d, &g[MOTION]);
+    }
+    if (e->nstate) {
+        ct_page_heading(&d->page, "rates of the states");
+        put_group(d, &g[STATES]);
     }
     if (e->nrow) {
         ct_page_heading(&d->page, "constraints: Phi = 0");

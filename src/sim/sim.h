@@ -51,6 +51,8 @@ struct ct_sim {
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
+    const enum ct_take_kind *take; // from the last results, over the run  (ntake)
+    size_t ntake;
     bool is_verified; // a second run is wanted
     double *kept;     // rows so far, for it  (nkept x nresult)
     size_t nkept;

@@ -33,7 +33,7 @@ const char *ct_sim_solver(const struct ct_sim *sim)
 
 long ct_sim_freedoms(const struct ct_sim *sim)
 {
-    return (long)sim->system->equations.nu - sim->report.rank;
+    return (long)sim->system->equations.nmotion - sim->report.rank;
 }
 
 long ct_sim_redundant(const struct ct_sim *sim)
@@ -43,7 +43,7 @@ long ct_sim_redundant(const struct ct_sim *sim)
 
 bool ct_is_arm(const struct ct_equations *e, int edge)
 {
-    return e->build->edge[edge].kind == CT_EDGE_ARM;
+    return e->build->topology->edge[edge].kind == CT_EDGE_ARM;
 }
 
 bool ct_is_first_of_joint(const struct ct_equations *e, const bool *row, size_t i)

@@ -74,8 +74,11 @@ static void print_trees(FILE *out, const struct ct_equations *e)
 static void print_freedoms(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    fprintf(out, "coordinates  %zu, speeds %zu, constraints %zu, redundant %ld, freedoms %ld\n",
-            e->nq, e->nu, e->nrow, ct_sim_redundant(sim), ct_sim_freedoms(sim));
+    fprintf(out, "coordinates  %zu, speeds %zu, constraints %zu, redundant %ld, freedoms %ld",
+            e->nq, e->nmotion, e->nrow, ct_sim_redundant(sim), ct_sim_freedoms(sim));
+    if (e->nstate)
+        fprintf(out, ", states %zu", e->nstate);
+    fputc('\n', out);
 }
 
 // Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
@@ -88,6 +91,13 @@ static void print_start(FILE *out, const struct ct_sim *sim)
     for (size_t i = 0; i < ct_sim_start_count(sim); i++)
         if (ct_sim_start_text(sim, i, text, sizeof text) && n++ < MOST_SHOWN)
             add(&l, text);
+    const struct ct_model *m = &sim->system->model;
+    for (size_t i = 0; i < m->nstate; i++)
+        if (n++ < MOST_SHOWN) {
+            snprintf(text, sizeof text, "%.80s = %.6g", m->state[i].name,
+                     ct_model_number(m, m->state[i].initial));
+            add(&l, text);
+        }
     if (n > MOST_SHOWN) {
         snprintf(text, sizeof text, "%zu more", n - MOST_SHOWN);
         add(&l, text);
@@ -290,8 +300,9 @@ static void print_file(FILE *out, const struct ct_sim *sim)
         fprintf(out, "results      %ld samples in %s\n", sim->nwritten, path);
 }
 
-static void print_summary(const struct ct_sim *sim, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_sim *sim = object;
     const struct ct_run_report *r = &sim->report;
     fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
     print_freedoms(out, sim);
@@ -317,27 +328,12 @@ static void print_summary(const struct ct_sim *sim, FILE *out)
 
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
-    if (!sim || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(sim, out);
-    ct_locale_leave(before);
-}
-
-static bool print_text(void *task, FILE *out)
-{
-    const struct ct_sim *sim = task;
-    ct_sim_print_summary(sim, out);
-    return true;
+    ct_print_to(out, print_summary, sim);
 }
 
 char *ct_sim_summary(const struct ct_sim *sim)
 {
-    union {
-        const struct ct_sim *given;
-        void *task;
-    } u = {sim};
-    return sim ? ct_text_of(NULL, print_text, u.task) : NULL;
+    return ct_print_text(print_summary, sim);
 }
 
 // ---- what a system is ----------------------------------------------------------------------------------
@@ -441,24 +437,30 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     }
 }
 
-static void print_check(const struct ct_sim *sim, FILE *out)
+static void print_check(const void *object, FILE *out)
 {
+    const struct ct_sim *sim = object;
     const struct ct_system *s = sim->system;
     const struct ct_model *m = &s->model;
     const struct ct_equations *e = &s->equations;
     const struct ct_evaluator *machine = ct_run_evaluator(sim->run);
+    size_t ninput = 0;
+    for (size_t i = 0; i < m->nparameter; i++)
+        ninput += m->parameter[i].is_input;
     fprintf(out, "%s\n", m->name);
     if (*m->description)
         fprintf(out, "%s\n", m->description);
     const struct part parts[] = {{(long)m->nbody - 1, "body", "bodies"},
                                  {(long)m->njoint, "joint", "joints"},
                                  {(long)m->nforce, "force", "forces"},
-                                 {(long)m->nparameter, "parameter", "parameters"},
-                                 {(long)m->noutput, "output", "outputs"}};
-    print_parts(out, "model", parts, COUNT(parts));
+                                 {(long)(m->nparameter - ninput), "parameter", "parameters"},
+                                 {(long)m->noutput, "output", "outputs"},
+                                 {(long)ninput, "input", "inputs"},
+                                 {(long)m->nstate, "state", "states"}};
+    print_parts(out, "model", parts, m->nstate ? 7 : ninput ? 6 : 5);
     print_freedoms(out, sim);
     fprintf(out, "freedoms     %ld = %zu speeds - rank %d of the constraints\n",
-            ct_sim_freedoms(sim), e->nu, sim->report.rank);
+            ct_sim_freedoms(sim), e->nmotion, sim->report.rank);
     print_redundant(out, sim);
     print_names(out, "undetermined", sim->open.row, e->nrow, row_name, e);
     print_names(out, "undetermined outputs: ", sim->open.result, e->nresult, result_name, e);
@@ -488,9 +490,10 @@ static void print_check(const struct ct_sim *sim, FILE *out)
 
 void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
 {
-    if (!sim || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_check(sim, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_check, sim);
+}
+
+char *ct_sim_check(const struct ct_sim *sim)
+{
+    return ct_print_text(print_check, sim);
 }

@@ -144,10 +144,10 @@ static bool coordinate_columns(struct ct_build *b, const struct ct_instance *joi
 static bool effort_columns(struct ct_build *b, size_t j)
 {
     const struct ct_instance *joint = &b->model->joint[j];
-    const int edge = b->edge_of_joint[j];
+    const int edge = b->topology->edge_of_joint[j];
     bool ok = true;
     for (int k = 0; edge >= 0 && joint->cls->motion && k < joint->nfree; k++)
-        if (b->coordinate[b->edge[edge].first_coordinate + k].is_driven) {
+        if (b->coordinate[b->topology->edge[edge].first_coordinate + k].is_driven) {
             const char *number
                 = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
             ok &= new_columns(b, ct_arena_printf(b->arena, "%s.effort%s", joint->name, number),
@@ -159,11 +159,11 @@ static bool effort_columns(struct ct_build *b, size_t j)
 static bool reaction_columns(struct ct_build *b, size_t j)
 {
     const struct ct_instance *joint = &b->model->joint[j];
-    const int edge = b->edge_of_joint[j];
+    const int edge = b->topology->edge_of_joint[j];
     if (edge < 0) // a gear: its effort on the first of its joints
         return new_columns(b, ct_arena_printf(b->arena, "%s.effort", joint->name), joint->mark);
     return new_columns(b, ct_arena_printf(b->arena, "%s.force", joint->name), joint->mark)
-        && (!b->edge[edge].has_rotation
+        && (!b->topology->edge[edge].has_rotation
             || new_columns(b, ct_arena_printf(b->arena, "%s.torque", joint->name),
                            joint->mark));
 }
@@ -176,6 +176,9 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     b->signals.in_outputs = true;
     for (size_t j = 0; j < n && more == CT_MORE_COORDINATES && b->model->noutput == 0; j++)
         ok &= coordinate_columns(b, &b->model->joint[j]);
+    for (size_t i = 0;
+         i < b->model->nstate && more == CT_MORE_COORDINATES && b->model->noutput == 0; i++)
+        ok &= new_columns(b, b->model->state[i].name, b->model->state[i].mark);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= effort_columns(b, j);
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)

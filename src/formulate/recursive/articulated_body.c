@@ -78,10 +78,10 @@ static void add_own(struct ct_articulated *w, int i)
         for (int c = 0; c <= r; c++)
             ct_articulated_set(k, r, c,
                                ct_ex_add(x, ct_articulated_entry(k, r, c), m->J.e[r + 3 * c]));
-        if (!w->b->is_planar || r < 2)
+        if (!w->b->topology->is_planar || r < 2)
             ct_articulated_set(k, 3 + r, 3 + r,
                                ct_ex_add(x, ct_articulated_entry(k, 3 + r, 3 + r), m->mass));
-        if (!w->b->is_planar || r == 2) { // (h x a)_r = h_p a_q - h_q a_p
+        if (!w->b->topology->is_planar || r == 2) { // (h x a)_r = h_p a_q - h_q a_p
             ct_articulated_set(k, r, 3 + q,
                                ct_ex_add(x, ct_articulated_entry(k, r, 3 + q), h->e[p]));
             ct_articulated_set(k, r, 3 + p,
@@ -260,5 +260,9 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
     w.body[0].a = ct_members_gravity_acceleration(b);
     for (size_t i = 1; i < s->n; i++)
         accelerate(&w, (int)i, out);
+    for (size_t k = b->eqs->nmotion; k < b->eqs->nu; k++) {
+        out[k] = effort[k];
+        pivot[k] = CT_EX_ONE;
+    }
     return out;
 }

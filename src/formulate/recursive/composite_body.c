@@ -119,6 +119,8 @@ void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const
                            ct_ex *r)
 {
     find_efforts(b, s, CT_FULL, r);
+    for (size_t k = b->eqs->nmotion; k < b->eqs->nu; k++)
+        r[k] = b->eqs->u[k].derivative;
     for (size_t k = 0; k < b->eqs->nu; k++)
         r[k] = ct_ex_sub(b->x, r[k], effort[k]);
 }
@@ -215,4 +217,6 @@ void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const c
     find_efforts(b, s, CT_BIAS, Q);
     for (size_t k = 0; k < b->eqs->nu; k++)
         Q[k] = ct_ex_sub(b->x, effort[k], Q[k]);
+    for (size_t k = b->eqs->nmotion; k < b->eqs->nu; k++)
+        M[k + b->eqs->nu * k] = CT_EX_ONE;
 }

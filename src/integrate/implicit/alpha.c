@@ -291,7 +291,8 @@ static inline double add_correction(struct state *s, const int nu, const int m)
     for (int i = 0; i < m; i++)
         s->end->lam[i] += c.lam[i];
     // in the index-3 form speeds have round-off over h in them: places alone decide
-    return ct_newton_iteration_norm(s->it, c.d, s->c->is_stabilised ? c.u : NULL, nu, 1);
+    return s->c->is_stabilised ? ct_newton_iteration_norm(s->it, c.d, c.u, nu, 1)
+                               : ct_newton_iteration_norm_of_places(s->it, c.d, c.u, nu);
 }
 
 static inline double solve_and_add(struct state *s, const int nu, const int m)
@@ -383,7 +384,17 @@ static inline void subtract_roundoff(struct state *s, double h, const int nu)
     }
 }
 
-// s->dd and s->du become the errors of positions and speeds; the norm of the first.
+// s->du of the model's states, for which the methods are of order 2 as for speeds, (8.8): their rates have no round-off of
+// constraints in them. Behind no step, where nothing is known of the third derivative, that of a step of order 1.
+static void find_state_errors(struct state *s, double h)
+{
+    const double speeds = h * h * h * 2 * s->f.across * s->by_speeds;
+    for (int k = s->dae->nu - s->dae->nstate; k < s->dae->nu; k++)
+        s->du[k] = s->is_fresh ? h * s->by_places * (s->end->a[k] - s->a0[k])
+                               : speeds * (s->end->jerk[k] - s->start->jerk[k]);
+}
+
+// s->dd and s->du become the errors of positions and speeds; the norm of the first, and of the model's states.
 static inline double find_errors(struct state *s, double h, const int nu)
 {
     const double places = h * h * s->by_places, pace = s->f.pace;
@@ -399,7 +410,9 @@ static inline double find_errors(struct state *s, double h, const int nu)
     }
     if (s->it->m && s->c->is_stabilised)
         subtract_roundoff(s, h, nu);
-    return ct_newton_iteration_norm(s->it, s->dd, NULL, nu, 1);
+    if (s->dae->nstate)
+        find_state_errors(s, h);
+    return ct_newton_iteration_norm_of_places(s->it, s->dd, s->du, nu);
 }
 
 // The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where

@@ -17,6 +17,8 @@ static double pace_of(const struct ct_newton_iteration *it, double small, const 
     double pace = 0;
     for (int k = 0; k < it->nu; k++) {
         const int i = it->dae->q_of[k];
+        if (i == CT_MOVES_NOTHING)
+            continue;
         const double way = i < 0 ? 1 : ct_smaller(fabs(y[i]), 1);
         pace = ct_larger(pace, (fabs(u[k]) + small) / (way + small));
     }

@@ -65,7 +65,9 @@ static bool perturb_residuals(struct ct_newton_iteration *it, double *here)
     for (int k = 0; k < nu; k++) {
         const double at = dae->q_of[k] < 0 ? dae->scale : it->y[dae->q_of[k]];
         const double place = copysign(ct_larger(fabs(at), dae->scale), at);
-        p->d[k] = toss((unsigned)k) * ct_position_roundoff * DBL_EPSILON * place;
+        p->d[k] = dae->q_of[k] == CT_MOVES_NOTHING
+                    ? 0
+                    : toss((unsigned)k) * ct_position_roundoff * DBL_EPSILON * place;
     }
     ct_newton_iteration_move(dae, it->y, p->d, p->q);
     if (!find_forces(it, it->y, here, p->phi) || !find_forces(it, p->q, p->r, p->rows))
@@ -105,11 +107,14 @@ const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it)
     return d;
 }
 
-static bool is_within(const double *d, int n, double most)
+// Of the states of the model, whose size may be any, nothing is asked. d (nu x n)
+static bool is_within(const struct ct_newton_iteration *it, const double *d, int n, double most)
 {
-    for (int i = 0; i < n; i++)
-        if (!(fabs(d[i]) <= most))
-            return false;
+    const int nmotion = it->nu - it->dae->nstate;
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < nmotion; i++)
+            if (!(fabs(d[i + k * it->nu]) <= most))
+                return false;
     return true;
 }
 
@@ -160,7 +165,8 @@ static bool is_below_roundoff(const struct ct_newton_iteration *it, double size,
                               const double *d, const double *u, int n)
 {
     return it->m && u && !it->is_finest && !it->is_further && size <= it->roundoff_size
-        && is_within(d, n, it->roundoff_position) && is_within(u, n, it->roundoff_speed);
+        && is_within(it, d, n, it->roundoff_position)
+        && is_within(it, u, n, it->roundoff_speed);
 }
 
 // Small enough where corrections followed down to round-off shrink no more or have been many.
@@ -177,10 +183,9 @@ enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iterat
         return CT_DIVERGED;
     if (it->count++ > 0) {
         const double rate = size / it->size;
-        const int n = k * it->nu;
         if (is_roundoff(it, rate, size)
-            || (rate >= 1 && !is_too_early(it) && is_within(d, n, it->least))
-            || is_below_roundoff(it, size, d, u, n)
+            || (rate >= 1 && !is_too_early(it) && is_within(it, d, k, it->least))
+            || is_below_roundoff(it, size, d, u, k)
             || is_roundoff_noise(it, rate, size, u != NULL))
             return CT_CONVERGED;
         take_rate(it, rate);

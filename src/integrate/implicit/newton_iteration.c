@@ -97,8 +97,10 @@ static void weigh(struct ct_newton_iteration *it, double rtol, double atol, doub
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
         const double size = size_of(it->groups, dae->nq + k, y);
-        it->share[k] = 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
-        it->share[it->nu + k] = 1 / ct_larger(rtol * size + atol, least_speed);
+        const bool is_state = i == CT_MOVES_NOTHING; // counts as a speed alone
+        it->share[k]
+            = is_state ? 0 : 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
+        it->share[it->nu + k] = 1 / ct_larger(rtol * size + atol, is_state ? 0 : least_speed);
     }
 }
 
@@ -134,7 +136,8 @@ static double largest_place(const struct ct_newton_iteration *it, const double *
         return largest_of_some(y, it->nu);
     for (int k = 0; k < it->nu; k++) {
         const int i = dae->q_of[k];
-        largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
+        if (i != CT_MOVES_NOTHING)
+            largest = ct_larger(largest, i < 0 ? 1 : fabs(y[i]));
     }
     return largest;
 }
@@ -173,7 +176,7 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
     it->n = it->nu + (it->is_stabilised ? 2 : 1) * it->m;
     it->rows = it->n <= CT_MOST_INVERTED ? ct_inverse_rows(it->n) : it->n;
     it->roundoff_position = roundoff / 2;
-    it->roundoff_speed = DBL_EPSILON / 2 * largest_of_some(y + dae->nq, it->nu);
+    it->roundoff_speed = DBL_EPSILON / 2 * largest_of_some(y + dae->nq, it->nu - dae->nstate);
     if (it->version == before)
         return false;
     it->has_tangent = false;
@@ -212,7 +215,7 @@ void ct_newton_iteration_add_rotation(const struct ct_newton_iteration *it, doub
 {
     c /= 2;
     for (int k = 0; k < it->nu; k++) {
-        if (it->dae->q_of[k] >= 0)
+        if (it->dae->q_of[k] != CT_MOVES_ROTATION)
             continue;
         const double *w = it->w + k, *th = d + k;
         x[k] += c * (th[1] * w[2] - th[2] * w[1]);
@@ -228,7 +231,7 @@ static void fill_turn(const struct ct_newton_iteration *it, double *B, const dou
 {
     const int n = it->n;
     for (int k = 0; k < it->nu; k++) {
-        if (it->dae->q_of[k] >= 0)
+        if (it->dae->q_of[k] != CT_MOVES_ROTATION)
             continue;
         const double *w = it->w + k, *a = A + rows * k, *b = a + rows, *c = b + rows;
         double *x = B + n * k + first, *y = x + n, *z = y + n;

@@ -235,6 +235,18 @@ static inline double ct_newton_iteration_norm(const struct ct_newton_iteration *
     return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
+/// The same of places and, of speeds, the states of the model alone.
+static inline double ct_newton_iteration_norm_of_places(const struct ct_newton_iteration *it,
+                                                        const double *d, const double *u,
+                                                        const int nu)
+{
+    const int n = it->dae->nstate, first = nu - n;
+    const double sum
+        = ct_newton_iteration_square(d, it->share, nu)
+        + (n ? ct_newton_iteration_square(u + first, it->share + nu + first, n) : 0);
+    return sqrt(sum * it->per_speed);
+}
+
 /// The norm of errors d, u (nu) of positions and speeds at y of which, but for those that p asks for, only what is slow counts of
 /// speeds, (8.10), and of the rest its part of `ample` (nu); *slow (out): the same with only what is slow of places. INFINITY where
 /// that cannot be told. `off` is overwritten.

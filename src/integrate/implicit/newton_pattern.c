@@ -130,7 +130,7 @@ static void add_turns(struct ct_newton_pattern *p, struct places *s, const int *
 {
     const struct by_column by = sort_by_column(s->a, A, p->nu);
     for (int k = 0; k < p->nu; k++) {
-        if (q_of[k] >= 0)
+        if (q_of[k] != CT_MOVES_ROTATION)
             continue;
         for (int i = 0; i < 3; i++) {
             const int next = (i + 1) % 3, other = (i + 2) % 3;

@@ -125,7 +125,7 @@ static inline set evaluate_closing(struct ct_batch *s, struct ct_lane_solver *f,
 static inline void add_positions(struct ct_batch *s, vec *y, const vec *dq, set lanes)
 {
     const mask m = mask_of(lanes);
-    for (int k = 0; k < s->nu && !s->has_quaternion; k++) {
+    for (int k = 0; k < (int)s->e->nmotion && !s->has_quaternion; k++) {
         vec *q = &y[s->coordinate_of[k]];
         *q = choose(m, *q + dq[k], *q);
     }

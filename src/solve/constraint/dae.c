@@ -184,7 +184,7 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_partition *s)
     int *q_of = CT_NEWN(a, int, e->nu + 1);
     bool is_plain = e->nq == e->nu;
     for (size_t k = 0; k < e->nu; k++) {
-        q_of[k] = e->u[k].q;
+        q_of[k] = ct_speed_is_state(e, k) ? CT_MOVES_NOTHING : e->u[k].q;
         is_plain = is_plain && q_of[k] == (int)k;
     }
     *dae = (struct ct_dae){.user = s,
@@ -192,6 +192,7 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_partition *s)
                            .nu = (int)e->nu,
                            .most_rows = (int)e->nrow,
                            .q_of = q_of,
+                           .nstate = (int)e->nstate,
                            .scale = s->scale,
                            .is_plain = is_plain,
                            .has_no_power = ct_ex_is_zero(e->power),

@@ -24,7 +24,8 @@ static void weigh_columns(struct ct_partition *s, double *w)
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
-        const double inertia = s->m->e->u[j].beam > 0 ? 0 : s->m->M[j + n * j];
+        const bool is_light = s->m->e->u[j].beam > 0 || ct_speed_is_state(s->m->e, j);
+        const double inertia = is_light ? 0 : s->m->M[j + n * j];
         least = inertia > 0 ? fmin(least, inertia) : least;
         most = fmax(most, inertia);
         w[j] = 1;
@@ -81,6 +82,8 @@ static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
 // The beam of that kind that a coordinate moves, of a joint one of the two at its ends; else NULL.
 static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
 {
+    if (u->beam <= 0 && u->joint < 0 && u->body < 0) // a state of the model
+        return NULL;
     if (u->beam > 0 || u->joint < 0)
         return bare_beam(m, (size_t)(u->beam > 0 ? u->beam : u->body));
     const struct ct_instance *joint = &m->joint[u->joint];
@@ -441,8 +444,9 @@ static bool has_inertia(struct ct_partition *s)
 // Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
 static double time_ahead(const struct ct_partition *s, double way)
 {
-    const double u = ct_vector_max_norm(s->m->input + s->m->at_u, s->m->nu),
-                 a = ct_vector_max_norm(s->a, s->m->nu);
+    const size_t n = s->m->e->nmotion;
+    const double u = ct_vector_max_norm(s->m->input + s->m->at_u, n),
+                 a = ct_vector_max_norm(s->a, n);
     return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
 }
 

@@ -13,6 +13,7 @@
 struct symbolic_solver {
     struct ct_solver form;
     const struct ct_closed *c;
+    size_t nmotion; // speeds but for the model's states
     struct ct_program solved, checked, closing;
     double M_size, J_size; // largest entries where it was made
     bool has_power;        // behind the pivots of solved
@@ -137,14 +138,15 @@ static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
     return strength(f, inertia + f->c->nfree);
 }
 
-// r (nu + rank) against the largest terms of its equations. NaN counts as infinite.
+// r (nu + rank) against the largest terms of its equations, those of the model's states left out. NaN counts as infinite.
 static double relative(const struct symbolic_solver *f, const double *r, size_t nu,
                        const double *Q)
 {
-    const double *gam = Q + nu, a = ct_vector_max_norm(f->form.a, nu);
-    const double forces = fmax(ct_vector_max_norm(Q, nu), f->M_size * a);
+    const size_t n = f->nmotion;
+    const double *gam = Q + nu, a = ct_vector_max_norm(f->form.a, n);
+    const double forces = fmax(ct_vector_max_norm(Q, n), f->M_size * a);
     const double rates = fmax(ct_vector_max_norm(gam, f->c->rank), f->J_size * a);
-    const double r0 = ct_vector_max_norm(r, nu), r1 = ct_vector_max_norm(r + nu, f->c->rank);
+    const double r0 = ct_vector_max_norm(r, n), r1 = ct_vector_max_norm(r + nu, f->c->rank);
     const double left = fmax(r0 > 0 ? r0 / forces : 0, r1 > 0 ? r1 / rates : 0);
     return isfinite(r0) && isfinite(r1) ? left : INFINITY;
 }
@@ -198,6 +200,7 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     ct_solver_set_partition(&f->form, p);
     f->M_size = ct_vector_max_norm(m->motion.out, m->e->nM);
     f->J_size = ct_vector_max_norm(J, m->e->nJ);
+    f->nmotion = m->e->nmotion;
     f->c = ct_closed_derive(own, x, m->e, &valued, m->motion.out, J,
                             kind == &ct_solver_symbolic_kkt ? CT_CLOSED_KKT
                                                             : CT_CLOSED_PARTITION,

@@ -188,6 +188,8 @@ static void compile_rest(struct ct_arena *a, struct ct_evaluator *m, const struc
             ct_ex_gradient(e->x, a, e->continuity, u, e->nu, momentum.e + e->nu);
             momentum.n += e->nu;
         }
+        for (size_t k = e->nmotion; k < e->nu; k++) // states of the model stay as they are
+            momentum.e[k] = momentum.e[e->nu + k] = u[k];
     }
     for (size_t i = 0; i < e->ndriver; i++) {
         push(&driver, e->driver[i].value);

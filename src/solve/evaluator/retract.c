@@ -34,7 +34,7 @@ void ct_evaluator_retract(const struct ct_evaluator *m, double *q, const double 
 {
     // quaternions and angular velocities follow each other in the same order
     size_t next = 0;
-    for (size_t k = 0; k < m->nu; k++) {
+    for (size_t k = 0; k < m->e->nmotion; k++) {
         if (m->e->u[k].q >= 0) {
             q[m->e->u[k].q] += d[k];
             continue;
@@ -66,7 +66,7 @@ void ct_evaluator_chart_rate(const struct ct_evaluator *m, const double *d, cons
                              double *rate)
 {
     for (size_t k = 0; k < m->nu; k++) {
-        if (m->e->u[k].q >= 0) {
+        if (m->e->u[k].q >= 0 || ct_speed_is_state(m->e, k)) {
             rate[k] = w[k];
             continue;
         }

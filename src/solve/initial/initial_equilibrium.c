@@ -204,7 +204,7 @@ bool ct_initial_equilibrium_solve(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_static_residual s
         = ct_static_residual_create(a, ct_evaluator_create(a, model, e));
     ct_initial_state_apply(start, s.m, s.y);
-    memset(s.y + s.m->nq, 0, s.m->nu * sizeof *s.y);
+    memset(s.y + s.m->nq, 0, e->nmotion * sizeof *s.y);
     ct_evaluator_set(s.m, 0, s.y);
     find_still(s.m, a, start, settles, still);
     for (size_t k = 0; k < e->nu; k++) {

@@ -19,6 +19,13 @@ void ct_initial_state_of_beams(const struct ct_equations *e, const double *value
     }
 }
 
+// States of the model, which nothing constrains.
+static void start_states(const struct ct_model *model, const struct ct_equations *e, double *u)
+{
+    for (size_t i = 0; i < e->nstate; i++)
+        u[e->nmotion + i] = ct_model_number(model, model->state[i].initial);
+}
+
 void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluator *m, double *y)
 {
     const struct ct_equations *e = m->e;
@@ -26,7 +33,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
     memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
     for (size_t i = 0; i < s->n; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
-        const struct ct_edge_info *edge = &e->build->edge[c->edge];
+        const struct ct_edge_info *edge = &e->build->topology->edge[c->edge];
         if (c->q >= 0)
             y[c->q] = s->q[i];
         if (c->u >= 0)
@@ -44,6 +51,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
             if (s->elastic_rate)
                 y[m->nq + (size_t)c->u] = s->elastic_rate[k];
         }
+    start_states(m->model, e, y + m->nq);
     ct_evaluator_normalise(m, y);
     ct_evaluator_set(m, 0, y);
     ct_switches_start(m, 0, y, NULL);

@@ -35,7 +35,7 @@ bool ct_run_tables_reach(struct ct_run *r, double t)
     for (size_t k = 0; k < x->ntable; k++) {
         const struct ct_table *b = &x->table[k];
         const double last = b->x[b->n - 1];
-        if (t >= last && t < r->o->duration)
+        if (t >= last && t < r->o->duration && !b->holds)
             return ct_error(r->ctx, (struct ct_mark){.file = NULL}, CT_E_TABLE_END,
                             "at t = %.9g the run leaves the table '%s', whose column '%s' is "
                             "known from t = %.9g to %.9g",

@@ -6,6 +6,12 @@
 
 static bool check_driven(struct ct_run *r)
 {
+    if (r->e->nstate)
+        return ct_error(
+            r->ctx, r->model->state[0].mark, CT_E_OF_STATES,
+            "what follows from driven motions alone is found sample by sample, and the "
+            "state '%s' would have to be integrated: take 'simulate'",
+            r->model->state[0].name);
     if (r->s->rank == (int)r->m->nu)
         return true;
     const struct ct_u *u = &r->e->u[r->s->independent[0]];
