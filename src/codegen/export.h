@@ -58,7 +58,8 @@ struct ct_export {
     size_t nfree, npivot;
     const double *scale;
     double weakest;
-    size_t rank; // of the constraints
+    size_t rank;    // of the constraints
+    const int *row; // those kept where some are redundant (rank)
     size_t at_q, at_u, at_a, at_lam, at_switch, at_memory, at_work, ninput;
     struct ct_export_items parameters, inputs, coordinates, speeds, states, outputs, reactions;
     bool needs_a, needs_lam; // outputs do
@@ -89,7 +90,8 @@ struct ct_export_fmu {
     double tolerance;  // of co-simulation, unless another one is asked for
     double share;      // of it that steps are held to
     // by a direction in seeds behind the input, number i for input i: of M u' - Q - J' lam, J u' + gam and q' with u', lam
-    // held; of outputs, roots and the power
+    // held, or of q' and u' itself where is_direct; of outputs, roots and the power
+    bool is_direct;
     const struct ct_listing *along, *along_outputs;
 };
 

@@ -155,8 +155,10 @@ static const char text_solver[]
       "    return rank;\n"
       "}\n"
       "\n"
-      "/* K = [M -J'; J 0] from the outputs of motion. */\n"
-      "static void put_matrices(const double *out, double *K)\n"
+      "/* K = [M -J'; J 0] from the outputs of motion; where rows are redundant those alone "
+      "that are kept, unless all are wanted: off\n"
+      " * the constraints the others contradict them. */\n"
+      "static void put_matrices(const double *out, double *K, int all)\n"
       "{\n"
       "    enum { m = n_system + 1 };\n"
       "    int k;\n"
@@ -167,7 +169,7 @@ static const char text_solver[]
       "        K[@_M_column[k] * m + @_M_row[k]] = out[$_OUT_M + k];\n"
       "    }\n"
       "    for (k = 0; k < $_NJ; k++)\n"
-      "        if (takes_part(@_J_row[k])) {\n"
+      "        if (takes_part(@_J_row[k]) && (all || is_kept[@_J_row[k]])) {\n"
       "            K[($_NU + @_J_row[k]) * m + @_J_column[k]] = out[$_OUT_J + k];\n"
       "            K[@_J_column[k] * m + $_NU + @_J_row[k]] = -out[$_OUT_J + k];\n"
       "        }\n"
@@ -179,16 +181,19 @@ static const char text_solver[]
       "{\n"
       "    enum { n = n_system, m = n_system + 1 };\n"
       "    double *const out = work, *const K = work + $_NMOTION, *const x = K + n * m;\n"
-      "    int k, rank = fixed_pivots(in, a, rate, work);\n"
+      "    int all, k, rank = fixed_pivots(in, a, rate, work);\n"
       "    if (rank)\n"
       "        return rank;\n"
       "    @_motion(in, out);\n"
-      "    put_matrices(out, K);\n"
-      "    for (k = 0; k < $_NU; k++)\n"
-      "        K[k * m + n] = out[$_OUT_Q + k];\n"
-      "    for (k = 0; k < $_NROW; k++)\n"
-      "        K[($_NU + k) * m + n] = takes_part(k) ? -out[$_OUT_GAM + k] : 0;\n"
-      "    rank = eliminate(K, x);\n"
+      "    for (all = 0; all < 2 && rank < $_NU + n_kept; all++) {\n"
+      "        put_matrices(out, K, all);\n"
+      "        for (k = 0; k < $_NU; k++)\n"
+      "            K[k * m + n] = out[$_OUT_Q + k];\n"
+      "        for (k = 0; k < $_NROW; k++)\n"
+      "            K[($_NU + k) * m + n] = takes_part(k) && (all || is_kept[k]) ? "
+      "-out[$_OUT_GAM + k] : 0;\n"
+      "        rank = eliminate(K, x);\n"
+      "    }\n"
       "    copy(a, x, $_NU);\n"
       "    copy(rate, out + $_OUT_RATE, $_NQ);\n"
       "    return rank;\n"
@@ -300,7 +305,7 @@ static const char text_noquaternions[] = "static void normalise(double *q)\n"
                                          "static void retract(double *q, const double *d)\n"
                                          "{\n"
                                          "    int i;\n"
-                                         "    for (i = 0; i < $_NU; i++)\n"
+                                         "    for (i = 0; i < n_motion; i++)\n"
                                          "        q[place[i]] += d[i];\n"
                                          "}\n"
                                          "\n";
@@ -309,7 +314,7 @@ static const char text_quaternions[]
     = "static void normalise(double *q)\n"
       "{\n"
       "    int i, k;\n"
-      "    for (i = 0; i < $_NU; i++)\n"
+      "    for (i = 0; i < n_motion; i++)\n"
       "        if (place[i] < 0) {\n"
       "            double *const p = q - 1 - place[i];\n"
       "            const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * "
@@ -324,7 +329,7 @@ static const char text_quaternions[]
       "static void retract(double *q, const double *d)\n"
       "{\n"
       "    int i;\n"
-      "    for (i = 0; i < $_NU; i++) {\n"
+      "    for (i = 0; i < n_motion; i++) {\n"
       "        double *const p = q - 1 - place[i];\n"
       "        double angle, c, s, w[4];\n"
       "        if (place[i] >= 0) {\n"
@@ -523,11 +528,11 @@ static const char text_impulse[]
       "    if (!(jump > 1e-9))\n"
       "        return 0;\n"
       "    @_motion(in, out);\n"
-      "    put_matrices(out, K);\n"
+      "    put_matrices(out, K, 0);\n"
       "    for (k = 0; k < $_NU; k++)\n"
       "        K[k * m + n] = before[p + k] - now[p + k];\n"
       "    for (k = 0; k < $_NROW; k++)\n"
-      "        K[($_NU + k) * m + n] = takes_part(k) ? -c[$_OUT_V + k] : 0;\n"
+      "        K[($_NU + k) * m + n] = takes_part(k) && is_kept[k] ? -c[$_OUT_V + k] : 0;\n"
       "    eliminate(K, x);\n"
       "    for (k = 0; k < $_NU; k++)\n"
       "        in[$_U + k] += x[k];\n"
@@ -883,6 +888,11 @@ static void put_data(struct ct_export_text *t, const struct ct_export *x)
         put_numbers(t, "open", x->open, n);
     }
     put(t, x->left_out ? text_inexact : text_exact);
+    int *kept = CT_NEWN(t->arena, int, n + 1);
+    for (size_t i = 0; i < x->rank; i++)
+        kept[x->row[i]] = 1;
+    put_integers(t, "is_kept", kept, n);
+    ct_export_putf(t, "enum { n_kept = %zu };\n\n", x->rank);
 }
 
 // By speed: its coordinate, or -1 less the first number of the quaternion that three of them turn.
@@ -890,7 +900,7 @@ static void put_places(struct ct_export_text *t, const struct ct_equations *e)
 {
     int *place = CT_NEWN(t->arena, int, e->nu + 1), next = 0;
     bool has_quaternions = false;
-    for (size_t k = 0; k < e->nu; k++) {
+    for (size_t k = 0; k < e->nmotion; k++) {
         place[k] = e->u[k].q;
         if (e->u[k].q >= 0)
             continue;
@@ -900,7 +910,9 @@ static void put_places(struct ct_export_text *t, const struct ct_equations *e)
         has_quaternions = true;
         k += 2;
     }
-    put_integers(t, "place", place, e->nu);
+    put_integers(t, "place", place, e->nmotion);
+    ct_export_putf(t, "enum { n_motion = %zu }; /* speeds; states have no coordinate */\n\n",
+                   e->nmotion);
     put(t, has_quaternions ? text_quaternions : text_noquaternions);
 }
 

@@ -56,6 +56,7 @@ static void put_sizes(struct ct_json *j, const struct ct_export *x)
         size_t n;
     } sizes[] = {{"NQ", e->nq},
                  {"NU", e->nu},
+                 {"NSTATE", e->nstate},
                  {"NROW", e->nrow},
                  {"NM", e->nM},
                  {"NJ", e->nJ},

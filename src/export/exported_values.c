@@ -137,6 +137,15 @@ static void destroy_stepper(struct stepper *s)
     ct_ctx_destroy(s->quiet);
 }
 
+// Number k of q, u, states.
+static double value_of(const struct ct_equations *e, const struct ct_data *d, size_t k)
+{
+    const size_t first_state = e->nq + e->nmotion;
+    return k < e->nq       ? ct_data_value(d, CT_COORDINATE, k)
+         : k < first_state ? ct_data_value(d, CT_SPEED, k - e->nq)
+                           : ct_data_value(d, CT_STATE, k - first_state);
+}
+
 // q, u at even times (SAMPLES x ny, out), with nstep calls between them. False where the run fails.
 static bool run(const struct ct_equations *e, struct stepper *s, double duration, long nstep,
                 double *y)
@@ -147,8 +156,7 @@ static bool run(const struct ct_equations *e, struct stepper *s, double duration
         for (long k = 0; ok && k < nstep; k++)
             ok = ct_data_step(s->quiet, s->d, duration / (double)(SAMPLES * nstep));
         for (size_t k = 0; ok && k < ny; k++) {
-            y[i * ny + k] = ct_data_value(s->d, k < e->nq ? CT_COORDINATE : CT_SPEED,
-                                          k < e->nq ? k : k - e->nq);
+            y[i * ny + k] = value_of(e, s->d, k);
             ok = isfinite(y[i * ny + k]);
         }
     }

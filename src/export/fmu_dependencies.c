@@ -238,6 +238,15 @@ static void put_residual(const struct ct_equations *e, ct_ex *out)
     }
 }
 
+// q', u'
+static void put_solution(const struct ct_equations *e, ct_ex *out)
+{
+    for (size_t i = 0; i < e->nq; i++)
+        out[i] = e->q[i].rate;
+    for (size_t i = 0; i < e->nu; i++)
+        out[e->nq + i] = e->solution[i];
+}
+
 void ct_fmu_list_directions(struct ct_fmu *f)
 {
     const struct ct_equations *e = f->w->x.e;
@@ -245,7 +254,11 @@ void ct_fmu_list_directions(struct ct_fmu *f)
     const size_t nresidual = e->nu + e->nrow + e->nq, nout = e->nresult + e->nswitch + 1;
     ct_ex *residual = CT_NEWN(scratch, ct_ex, nresidual + 1),
           *out = CT_NEWN(scratch, ct_ex, nout);
-    put_residual(e, residual);
+    f->source.is_direct = e->solution && e->nrow == 0;
+    if (f->source.is_direct)
+        put_solution(e, residual);
+    else
+        put_residual(e, residual);
     for (size_t i = 0; i < e->nresult; i++)
         out[i] = e->result[i].value;
     for (size_t i = 0; i < e->nswitch; i++)

@@ -128,6 +128,7 @@ void ct_fmu_list_variables(struct ct_fmu *f)
     const size_t first_state = f->nvariable;
     add_states(f, &x->coordinates);
     add_states(f, &x->speeds);
+    add_states(f, &x->states);
     if (x->power)
         add(f, (struct ct_fmu_variable){.name = "energy.work",
                                         .unit = "J",

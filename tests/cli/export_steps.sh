@@ -143,6 +143,20 @@ printf 't,angle\n0,0\n0.2537,0.4\n0.5031,-0.2\n0.8013,0\n2,0\n' >ramp.csv
 sed 's/name: crank/name: tabled/; s/motion: "[^"]*"/motion: {table: ramp.csv, column: angle, interpolate: linear}/' crank.yaml >tabled.yaml
 follow tabled 0.01 100 1e-6
 
+cat >pid.yaml <<'E2'
+cotree: 1
+name: pid
+states:
+  integral: {rate: "0.5 - arm.q", initial: 0.2, unit: rad*s}
+bodies: {link: {mass: 1, com: [0.3, 0, 0], inertia: 0.05}}
+joints:
+  arm: {type: revolute, from: ground, to: link, effort: "10*(0.5 - arm.q) + 3*integral - 2*arm.u"}
+outputs: [arm.q, {name: twice, value: 2*integral}]
+simulation: {duration: 1, samples: 101}
+E2
+follow pid 0.01 100 1e-6
+sed -n '/"states"/,/^  ]/p' pid/pid.json
+
 echo '-- derived parameters, and where they stand'
 cat >parameters.c <<'E2'
 #include "ball.h"

@@ -67,6 +67,20 @@ joints:
 outputs: [pin.q, pin.u, pin.a, drive.effort, pin.force]
 simulation: {duration: 1}
 E2
+cat >pid.yaml <<'E2'
+cotree: 1
+name: pid
+parameters: {Ki: 3, Kp: 10, Kd: 2, setpoint: 0.5}
+states:
+  integral: {rate: "setpoint - arm.q", initial: 0.2, unit: rad*s}
+  filter: {rate: "(arm.u - filter)/0.05", initial: 0}
+gravity: [0, -9.81, 0]
+bodies: {link: {mass: 1, com: [0.3, 0, 0], inertia: 0.05}}
+joints:
+  arm: {type: revolute, from: ground, to: link, effort: "Kp*(setpoint - arm.q) + Ki*integral - Kd*filter"}
+outputs: [arm.q, arm.u, {name: twice, value: 2*integral}]
+simulation: {duration: 2, samples: 201}
+E2
 printf 't,angle\n0,0\n0.2537,0.4\n0.5031,-0.2\n0.8013,0\n2,0\n' >ramp.csv
 sed 's/name: crank/name: tabled/; s/motion: "[^"]*"/motion: {table: ramp.csv, column: angle, interpolate: linear}/' crank.yaml >tabled.yaml
 
@@ -78,6 +92,7 @@ motion heavy_top "$SYSTEMS/heavy_top/model.yaml" 0.5 0.0001
 motion ball ball.yaml 1 0.0001
 motion crank crank.yaml 1 0.001
 motion tabled tabled.yaml 1 0.001
+motion pid pid.yaml 1 0.001
 echo '-- other trees'
 motion absolute "$SYSTEMS/slider_crank/model.yaml" 0.5 0.0002 --tree absolute
 
@@ -91,7 +106,7 @@ near run.csv set.csv 1e-6
 "$IMPORTER" ball3.fmu cs 0.001 1 damping=1 2>&1 | head -2
 
 for version in 2 3; do
-  for name in puma560 slider_crank heavy_top ball crank; do
+  for name in puma560 slider_crank heavy_top ball crank pid; do
     echo "-- states, derivatives, refusals: $name, FMI $version"
     "$IMPORTER" $name$version.fmu check
   done
