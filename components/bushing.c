@@ -57,8 +57,10 @@ static ct_ex3 rotation_vector(struct ct_exs *x, const ct_ex33 *R)
 static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     struct ct_exs *x = b->x;
-    const int tail = b->node_of_frame[self->from], head = b->node_of_frame[self->to];
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    const int tail = b->topology->node_of_frame[self->from],
+              head = b->topology->node_of_frame[self->to];
+    const int from = b->kinematics->placement[tail].frame,
+              to = b->kinematics->placement[head].frame;
     const ct_ex3 k = three(self, "stiffness", 0), kr = three(self, "stiffness", 3);
     const ct_ex3 c = three(self, "damping", 0), cr = three(self, "damping", 3);
     const ct_ex3 place = ct_path_position_seen(b, tail, head);
@@ -87,10 +89,10 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
 static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
                    ct_ex *out)
 {
-    for (size_t i = 0; i < b->nload; i++)
-        if (b->load[i].self == self)
-            return ct_vector_signal(name, "force", b->load[i].force, out)
-                || ct_vector_signal(name, "torque", b->load[i].torque, out);
+    for (size_t i = 0; i < b->dynamics.nload; i++)
+        if (b->dynamics.load[i].self == self)
+            return ct_vector_signal(name, "force", b->dynamics.load[i].force, out)
+                || ct_vector_signal(name, "torque", b->dynamics.load[i].torque, out);
     return false;
 }
 

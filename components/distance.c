@@ -14,7 +14,8 @@ static const struct ct_key keys[] = {
 static void apply(struct ct_build *b, const struct ct_instance *self)
 {
     struct ct_exs *x = b->x;
-    const int tail = b->node_of_frame[self->from], head = b->node_of_frame[self->to];
+    const int tail = b->topology->node_of_frame[self->from],
+              head = b->topology->node_of_frame[self->to];
     const struct ct_value *length = ct_instance_value(self, "length");
     const ct_ex3 zero = {{{0}, {0}, {0}}};
     const ct_ex3 d = ct_path_position(b, tail, head), v = ct_path_velocity(b, tail, head);

@@ -27,6 +27,7 @@ const struct ct_component_class ct_component_rigid = {
     .name = "rigid",
     .summary = "rigid body with mass, inertia and points",
     .family = CT_FAMILY_BODY,
+    .is_standard = true,
     .key = keys,
     .nkey = COUNT(keys),
     .across = "d, S of the centre of mass relative to ground",

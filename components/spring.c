@@ -31,7 +31,8 @@ struct state {
 static struct state find_state(struct ct_build *b, const struct ct_instance *self)
 {
     struct ct_exs *x = b->x;
-    const int tail = b->node_of_frame[self->from], head = b->node_of_frame[self->to];
+    const int tail = b->topology->node_of_frame[self->from],
+              head = b->topology->node_of_frame[self->to];
     struct state s = {.d = ct_path_position(b, tail, head)};
     s.length = ct_ex_fun(x, CT_OP_SQRT, ct_ex3_dot(x, s.d, s.d));
     s.stretch = ct_ex_sub(x, s.length, given(self, "length"));
@@ -46,8 +47,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     struct ct_exs *x = b->x;
     const struct state s = find_state(b, self);
     struct ct_load l = {.self = self,
-                        .tail = b->node_of_frame[self->from],
-                        .head = b->node_of_frame[self->to],
+                        .tail = b->topology->node_of_frame[self->from],
+                        .head = b->topology->node_of_frame[self->to],
                         .is_central = true};
     // without a natural length k d pulls, and the length need not be known
     const ct_ex per_length

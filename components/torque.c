@@ -12,9 +12,10 @@ static const struct ct_key keys[] = {
 
 static void apply(struct ct_build *b, const struct ct_instance *self)
 {
-    const int node = b->node_of_frame[self->to];
+    const int node = b->topology->node_of_frame[self->to];
     struct ct_load l = {.self = self, .head = node, .torque = ct_load_vector(b, self)};
-    l.power = ct_ex3_dot(b->x, l.torque, ct_cluster_velocity(b, b->placement[node].frame));
+    l.power = ct_ex3_dot(b->x, l.torque,
+                         ct_cluster_velocity(b, b->kinematics->placement[node].frame));
     ct_load_add(b, &l);
 }
 

@@ -1,9 +1,11 @@
 // The pipeline: model file -> equations of motion, stage by stage.
 #include "system.h"
 
+#include "formulate/build.h"
 #include "graph/print.h"
 #include "io/yaml.h"
 #include "report/equations.h"
+#include "report/tree_pairs.h"
 #include "solve/initial/initial_equilibrium.h"
 
 #include <stdlib.h>
@@ -78,6 +80,13 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
             f->tree = choices[i];
             return true;
         }
+    char *end;
+    const long number = strtol(tree, &end, 10);
+    if (!*end && number > 0 && number <= CT_MOST_CANDIDATES) {
+        f->tree = CT_TREE_AUTO;
+        f->pick = (int)number;
+        return true;
+    }
     f->tree = CT_TREE_GIVEN;
     FILE *file = fopen(tree, "r");
     if (file) {
@@ -85,7 +94,8 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
         return read_tree_file(ctx, tree, f);
     }
     return ct_error(ctx, (struct ct_mark){0}, CT_E_USAGE,
-                    "tree '%s' is neither auto, joints, absolute nor a file that can be read%s",
+                    "tree '%s' is neither auto, joints, absolute, a number from 1 to 10 nor a "
+                    "file that can be read%s",
                     tree, ct_suggest(ctx->scratch, tree, words, COUNT(words)));
 }
 
@@ -101,18 +111,20 @@ static bool read_model(struct ct_system *s, const struct source *from,
                        const struct ct_system_options *o)
 {
     const double start = ct_monotonic_time();
-    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + 1);
-    size_t n = o->nset;
-    for (size_t i = 0; i < n; i++)
-        set[i].text = o->set[i];
+    struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, o->nset + o->noutput + 1);
+    size_t n = 0;
+    for (size_t i = 0; i < o->nset; i++)
+        set[n++].text = o->set[i];
+    for (size_t i = 0; i < o->noutput; i++)
+        set[n++] = (struct ct_set){o->output[i], CT_SET_OUTPUT};
     if (o->input)
         set[n++]
             = (struct ct_set){o->input, o->hold_input ? CT_SET_INPUTS_HELD : CT_SET_INPUTS};
+    s->text = from->text ? ct_arena_strndup(s->own.model, from->text, from->n) : NULL;
     const bool ok
-        = (from->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name),
-                                       ct_arena_strndup(s->own.model, from->text, from->n),
-                                       from->n, set, n, &s->model)
-                      : ct_model_read(&s->own, from->name, set, n, &s->model))
+        = (s->text ? ct_model_parse(&s->own, ct_arena_strdup(s->own.model, from->name), s->text,
+                                    from->n, set, n, &s->model)
+                   : ct_model_read(&s->own, from->name, set, n, &s->model))
        && ct_model_change_beams(&s->own, &s->model, o->beam_elements, o->beam_formulation);
     ct_own_next_stage(&s->own);
     s->read = ct_monotonic_time() - start;
@@ -237,6 +249,7 @@ struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys)
     struct ct_system *s = CT_NEW(a, struct ct_system);
     const struct ct_model *model = ct_model_fork(a, &sys->model);
     s->is_private = true;
+    s->origin = sys;
     s->model = *model;
     s->tree = sys->tree;
     s->read = sys->read;
@@ -321,8 +334,8 @@ static bool draw(void *task)
     bool *quiet = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     bool *marked = CT_NEWN(own->scratch, bool, e->graph->nedge + 1);
     for (int i = 0; i < e->graph->nedge; i++) {
-        quiet[i] = strcmp(e->edge_kind[i], "arm") == 0;
-        marked[i] = strcmp(e->edge_kind[i], "flexible arm") == 0;
+        quiet[i] = ct_edge_is_rigid_arm(&e->build->topology->edge[i]);
+        marked[i] = e->build->topology->edge[i].beam >= 0;
     }
     const struct ct_graph_names names = {.node = node_name,
                                          .edge = edge_name,
@@ -353,6 +366,29 @@ bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char
     struct ct_ctx own = {0};
     struct drawing d = {ctx, &own, sys, format, out};
     const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, draw, &d);
+    ct_own_finish(&own);
+    return ok;
+}
+
+static bool print_trees(void *task)
+{
+    const struct drawing *d = task;
+    const struct ct_equations *e = &d->s->equations;
+    const bool is_json = d->format && !strcmp(d->format, "json");
+    if (d->format && !is_json && strcmp(d->format, "text") != 0)
+        return ct_error(d->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                        "pairs of trees have no format '%s': text or json", d->format);
+    (is_json ? ct_tree_pairs_print_json : ct_tree_pairs_print_text)(d->out, d->own->scratch, e,
+                                                                    &d->s->tree);
+    return true;
+}
+
+bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                           FILE *out)
+{
+    struct ct_ctx own = {0};
+    struct drawing d = {ctx, &own, sys, format, out};
+    const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, print_trees, &d);
     ct_own_finish(&own);
     return ok;
 }

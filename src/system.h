@@ -13,6 +13,8 @@ struct ct_system {
     struct ct_ctx own;
     bool
         is_private; // of one run, analysis or worker: what is derived later goes into its own equations
+    const struct ct_system *origin; // that it was borrowed from; NULL: it was loaded
+    const char *text;               // of the model; NULL: it is in the file
     struct ct_model model;
     struct ct_equations equations;
     struct ct_tree_report tree;

@@ -59,6 +59,8 @@ CT_API struct ct_ctx *ct_ctx_create(void);
 CT_API void ct_ctx_destroy(struct ct_ctx *ctx);
 /** Errors, warnings and notes so far, as FILE:LINE:COLUMN: error: MESSAGE with the source line. */
 CT_API void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_ctx_diagnostics(const struct ct_ctx *ctx);
 /** The gravest fault among the diagnostics. */
 CT_API enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx);
 
@@ -162,6 +164,8 @@ struct ct_system_options {
     const char *
         input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
     bool hold_input; /* a row of it counts from its t on; else it is linear between rows */
+    const char *const *output; /* "NAME=EXPRESSION": outputs behind those of the file */
+    size_t noutput;
 };
 
 /**
@@ -187,6 +191,13 @@ CT_API void ct_system_destroy(struct ct_system *sys);
 CT_API const char *ct_system_name(const struct ct_system *sys);
 CT_API size_t ct_system_column_count(const struct ct_system *sys);
 CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
+
+/**
+ * The cheapest pairs of trees that were weighed, ten at most, and why one was chosen. format: "text" or "json".
+ * Number N is chosen by the option `tree` "N". Errors: E003.
+ */
+CT_API bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
+                                  FILE *out);
 
 /** The linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
@@ -307,9 +318,9 @@ CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
 /** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
 CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
-/** The text of ct_sim_print_summary, which ct_free frees. */
+/** The texts of ct_sim_print_summary and ct_sim_print_check, and that of ct_sim_write_summary; ct_free frees them. */
 CT_API char *ct_sim_summary(const struct ct_sim *sim);
-/** That of ct_sim_write_summary. */
+CT_API char *ct_sim_check(const struct ct_sim *sim);
 CT_API char *ct_sim_summary_json(const struct ct_sim *sim);
 /** What the run did and how well it kept energy and constraints, for people. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
@@ -318,6 +329,11 @@ CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
                                  const char *path);
 /** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
+/**
+ * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
+ * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ */
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
 /**
  * The equations of motion as source code in a folder, which is made if need be. Before the run.
  *
@@ -459,6 +475,8 @@ CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
 CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path);
 /** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_accuracy_summary(const struct ct_accuracy *a);
 
 /* ---- parameter studies ---------------------------------------------------------------------------- */
 
@@ -476,6 +494,18 @@ struct ct_study_options {
     unsigned long long seed; /* of the random numbers: same seed, same members */
     long threads;            /* at most; 0: all cores. One without OpenMP. */
     long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
+    const char
+        *members; /* a CSV file of members instead of `vary`: its columns are parameters */
+    /** Of so many shards this one, from 1: every shards-th member from it on, with the rows and run numbers that it has in
+     *  the whole sweep. 0: all of it. */
+    long shard, shards;
+    /** "NAME=FUNCTION(EXPRESSION)" each: a column behind the outputs, of what the expression, one of outputs, does over the
+     *  run: max, min, mean, rms, final, or time [s], when it first rises through zero (NaN: it does not). */
+    const char *const *take;
+    size_t ntake;
+    const char
+        *text; /* ntext bytes of a model instead of the file at path, which names it then */
+    size_t ntext;
 };
 
 /** Where rows go. All of it may be zero. */
@@ -529,9 +559,23 @@ CT_API size_t ct_study_column_count(const struct ct_study *study);
 CT_API const char *ct_study_column(const struct ct_study *study, size_t i);
 /** What was done and which members failed, for people. */
 CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_study_summary(const struct ct_study *study);
 /** The same for programs: a JSON object. Errors: E002. */
 CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
                                    const char *path);
+CT_API char *ct_study_summary_json(const struct ct_study *study);
+
+/**
+ * Join the shards of a sweep, in any order, to the file that the whole sweep would have written, byte by byte.
+ *
+ * path  in   FILE.csv; NULL or "-": standard output
+ * part  in   (n) the files of all shards; beside each is PART.settings
+ *
+ * Nothing is written where it fails. Errors: E002, E003, E006; E580 to E582.
+ */
+CT_API bool ct_study_merge(struct ct_ctx *ctx, const char *path, const char *const *part,
+                           size_t n);
 
 /* ---- analyses about a configuration ------------------------------------------------------------------ */
 
@@ -565,6 +609,8 @@ CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium
                                  const char *path);
 /** How good it is and whether it is stable, for people. */
 CT_API void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_equilibrium_summary(const struct ct_equilibrium *q);
 
 struct ct_modes;
 
@@ -607,6 +653,8 @@ CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, con
 CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
 /** What the modes are about, for people. */
 CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_modes_summary(const struct ct_modes *modes);
 
 struct ct_linearization;
 
@@ -642,6 +690,8 @@ CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_lineariza
                                    const char *path);
 /** Where, and the names, for people. */
 CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_linearization_summary(const struct ct_linearization *s);
 
 struct ct_buckling;
 
@@ -673,6 +723,43 @@ CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, c
                                     long count);
 /** How the factors were found, for people. */
 CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
+/** The same as a text, which ct_free frees. */
+CT_API char *ct_buckling_summary(const struct ct_buckling *s);
+
+/* ---- analyses that vary --------------------------------------------------------------------------------- */
+
+/** Zero: the default. */
+struct ct_vary_options {
+    size_t size; /* 0, or sizeof (struct ct_vary_options) */
+    enum ct_vary_analysis {
+        CT_VARY_MODES,       /* by `modes` */
+        CT_VARY_EQUILIBRIUM, /* by `equilibrium` */
+        CT_VARY_DRIVEN       /* ct_sim_follow, by `run`: kinematics and inverse dynamics */
+    } analysis;
+    /** Members as those of a study. */
+    const char *const *vary;
+    size_t nvary;
+    long sample;
+    unsigned long long seed;
+    const char *members;
+    struct ct_modes_options modes;
+    struct ct_equilibrium_options equilibrium;
+    struct ct_sim_options run;
+    FILE *bar; /* progress is shown there if it is a terminal */
+};
+
+/**
+ * An analysis of each member of a plan as one table: `run`, what varies, then the columns of the analysis.
+ *
+ * Each member is a system of its own. One that fails is a row without results, and a warning (E583).
+ *
+ * out  in   a table (ct_contents); NULL or "-": CSV on standard output
+ *
+ * Errors   those of ct_system_load and of the options; E583 where all members fail
+ */
+CT_API bool ct_vary(struct ct_ctx *ctx, const char *path,
+                    const struct ct_system_options *system,
+                    const struct ct_vary_options *options, const char *out);
 
 /* ---- pictures -------------------------------------------------------------------------------------- */
 
@@ -694,6 +781,28 @@ struct ct_draw_options {
  */
 CT_API bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
                            const struct ct_draw_options *options);
+
+/** Zero: the run that the model asks for. */
+struct ct_report_options {
+    size_t size; /* 0, or sizeof (struct ct_report_options) */
+    struct ct_sim_options run;
+    const char *path; /* FILE.html; NULL: standard output */
+    FILE *progress;   /* a bar is shown there if it is a terminal */
+    /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
+    const char *const *command;
+    size_t ncommand;
+};
+
+/**
+ * A system, its equations and its motion as one HTML file that needs nothing else. docs/report.md says what is on it.
+ *
+ * The run is always verified. Without an end time the page shows the start. The same system and options give the same
+ * bytes.
+ *
+ * Errors: E002; E530 where the library was built without the page; those of assembly and of runs.
+ */
+CT_API bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,
+                             const struct ct_report_options *options);
 
 struct ct_plot;
 
@@ -722,6 +831,10 @@ CT_API void ct_components_print(FILE *out);
 CT_API void ct_methods_print(FILE *out);
 /** JSON Schema (draft 2020-12) of the model file. */
 CT_API void ct_schema_print(FILE *out);
+/** The same as texts, which ct_free frees. */
+CT_API char *ct_components_text(void);
+CT_API char *ct_methods_text(void);
+CT_API char *ct_schema_text(void);
 
 #ifdef __cplusplus
 }

@@ -14,7 +14,6 @@ import json
 import os
 import tempfile
 import threading
-from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 
 import numpy as np
@@ -295,40 +294,48 @@ class System:
         context.warn()
         return Data(self, context, pointer)
 
-    def sweep(self, values, until=None, tolerance=None, threads=None, **options):
-        """The outputs at the end of runs with all combinations of values, {"name": array}; the last name runs fastest."""
+    def sweep(self, values, until=None, tolerance=None, threads=None, take=None, **options):
+        """The outputs at the end of runs with all combinations of values, {"name": array}; the last name runs fastest.
+
+        take: {"peak": "max(abs(arm.q))"}, columns of what an expression does over the run: max, min, mean, rms, final,
+        time (of its first rise through zero; NaN: there is none).
+        """
         names = list(values)
         axes = [np.atleast_1d(np.asarray(values[n], dtype=float)) for n in names]
         for name in names:
             self._index("parameter", name)
-        members = list(product(*axes))
-        if self._text is None and members and all(_is_even(a) for a in axes):
-            rows, messages = self._study(names, axes, until, tolerance, threads, options)
-        else:
-            rows, messages = self._loop(names, members, until, tolerance, threads, options)
-        table = np.array(members).reshape(len(members), len(names))
-        return Sweep(names, self.outputs, table, rows, messages)
+        table = np.array(list(product(*axes))).reshape(-1, len(names))
+        taken = dict(take or {})
+        columns = self.outputs + tuple(taken)
+        rows, messages = np.full((len(table), len(columns)), np.nan), [None] * len(table)
+        if len(table):
+            with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+                file.write(",".join(names) + "\n")
+                file.writelines(",".join(map(_number, row)) + "\n" for row in table)
+                file.flush()
+                self._study(file.name, rows, messages, until, tolerance, threads, taken, options)
+        return Sweep(names, columns, table, rows, messages)
 
-    def _study(self, names, axes, until, tolerance, threads, options):
+    def _study(self, members, rows, messages, until, tolerance, threads, taken, options):
         context = _l.Context()
         system, kept = _settings(**self._given)
-        vary = _l.strings(["%s=%s:%s:%d" % (n, _number(a[0]), _number(a[-1]), len(a))
-                           for n, a in zip(names, axes)])
-        run = _run_options(until=until, tolerance=tolerance, **options)
-        study_options = _l.StudyOptions(run=run, vary=vary, nvary=len(names),
-                                        threads=threads or 0)
+        take = _l.strings(["%s=%s" % item for item in taken.items()])
+        text = None if self._text is None else self._text.encode()
+        study_options = _l.StudyOptions(
+            run=_run_options(until=until, tolerance=tolerance, **options),
+            members=_l.encode(members), threads=threads or 0, take=take, ntake=len(taken),
+            text=text, ntext=len(text or b""))
         study_options.size = ctypes.sizeof(study_options)
-        total, n = int(np.prod([len(a) for a in axes])), len(self.outputs)
-        rows, messages = np.full((total, n), np.nan), [None] * total
+        n = rows.shape[1]
 
-        def take(_, number, varied, value, message):
+        def row(_, number, varied, value, message):
             if value:
                 rows[number - 1] = np.ctypeslib.as_array(value, shape=(max(n, 1),))[:n]
             else:
                 messages[number - 1] = message.decode(errors="replace") if message else "failed"
             return True
 
-        callback = _l.STUDY_ROW(take)
+        callback = _l.STUDY_ROW(row)
         results = _l.StudyResults(row=callback)
         results.size = ctypes.sizeof(results)
 
@@ -345,32 +352,6 @@ class System:
         if not _interruptible(context, work):
             context.fail()
         del kept
-        return rows, messages
-
-    def _loop(self, names, members, until, tolerance, threads, options):
-        rows = np.full((len(members), len(self.outputs)), np.nan)
-        messages = [None] * len(members)
-        stopped = threading.Event()
-
-        def member(i):
-            if stopped.is_set():
-                return
-            given = dict(self._given)
-            given["set"] = {**(given["set"] or {}), **dict(zip(names, members[i]))}
-            try:
-                system = System(self.path, self._text, given)
-                rows[i] = system.simulate(until=until, tolerance=tolerance, **options).values[-1]
-            except Error as error:
-                messages[i] = str(error)
-
-        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-            try:
-                for answer in [pool.submit(member, i) for i in range(len(members))]:
-                    answer.result()
-            except BaseException:
-                stopped.set()
-                raise
-        return rows, messages
 
     # -- analyses --
 
@@ -752,14 +733,6 @@ class Equilibrium(dict):
     def __init__(self, values, is_stable):
         super().__init__(values)
         self.is_stable = is_stable
-
-
-def _is_even(a):
-    """Is this what a grid from its first to its last value is made of?"""
-    if len(a) < 2 or not np.all(np.isfinite(a)):
-        return False
-    even = np.linspace(a[0], a[-1], len(a))
-    return bool(np.all(np.abs(a - even) <= 4 * np.spacing(np.max(np.abs(a)))))
 
 
 def _plot(result, width=640, height=320):

@@ -32,7 +32,8 @@ class SystemOptions(Structure):
     _fields_ = [("size", c_size_t), ("set", POINTER(c_char_p)), ("nset", c_size_t),
                 ("tree", c_char_p), ("keep_all", c_bool), ("columns", c_int),
                 ("for_analysis", c_bool), ("beam_elements", c_long),
-                ("beam_formulation", c_char_p), ("input", c_char_p), ("hold_input", c_bool)]
+                ("beam_formulation", c_char_p), ("input", c_char_p), ("hold_input", c_bool),
+                ("output", POINTER(c_char_p)), ("noutput", c_size_t)]
 
 
 class SimOptions(Structure):
@@ -54,7 +55,9 @@ class SimResults(Structure):
 class StudyOptions(Structure):
     _fields_ = [("size", c_size_t), ("run", SimOptions), ("vary", POINTER(c_char_p)),
                 ("nvary", c_size_t), ("sample", c_long), ("seed", ctypes.c_ulonglong),
-                ("threads", c_long), ("lanes", c_long)]
+                ("threads", c_long), ("lanes", c_long), ("members", c_char_p),
+                ("shard", c_long), ("shards", c_long), ("take", POINTER(c_char_p)),
+                ("ntake", c_size_t), ("text", c_char_p), ("ntext", c_size_t)]
 
 
 STUDY_ROW = ctypes.CFUNCTYPE(c_bool, c_void_p, c_long, POINTER(c_double), POINTER(c_double),

@@ -417,8 +417,9 @@ static const struct ct_work_precision_point *find_nearest(const struct ct_accura
     return nearest;
 }
 
-static void print_summary(const struct ct_accuracy *a, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_accuracy *a = object;
     char wanted[CT_NUMBER_SIZE];
     const struct ct_work_precision_point *nearest = find_nearest(a);
     fprintf(out, "reference     %s", a->source);
@@ -441,9 +442,10 @@ static void print_summary(const struct ct_accuracy *a, FILE *out)
 
 void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out)
 {
-    if (!a || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(a, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, a);
+}
+
+char *ct_accuracy_summary(const struct ct_accuracy *a)
+{
+    return ct_print_text(print_summary, a);
 }

@@ -217,8 +217,9 @@ bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const ch
     return s && ct_enter(ctx, write_curve, &o);
 }
 
-static void print_summary(const struct ct_buckling *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_buckling *s = object;
     const struct ct_buckling_list *list = &s->list;
     size_t exact = 0;
     ct_configuration_print(&s->at, out);
@@ -244,9 +245,10 @@ static void print_summary(const struct ct_buckling *s, FILE *out)
 
 void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_buckling_summary(const struct ct_buckling *s)
+{
+    return ct_print_text(print_summary, s);
 }

@@ -186,8 +186,9 @@ bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q, co
     return q && ct_enter(ctx, write_row, &o);
 }
 
-static void print_summary(const struct ct_equilibrium *q, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_equilibrium *q = object;
     ct_configuration_print(&q->at, out);
     fprintf(out, "balance       the last step moved coordinates by %.2g\n",
             q->at.equilibrium.last_step);
@@ -216,9 +217,10 @@ static void print_summary(const struct ct_equilibrium *q, FILE *out)
 
 void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out)
 {
-    if (!q || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(q, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, q);
+}
+
+char *ct_equilibrium_summary(const struct ct_equilibrium *q)
+{
+    return ct_print_text(print_summary, q);
 }

@@ -491,8 +491,9 @@ static void print_names(FILE *out, const char *title, const char *const *name, s
     fputc('\n', out);
 }
 
-static void print_summary(const struct ct_linearization *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_linearization *s = object;
     ct_configuration_print(&s->at, out);
     print_names(out, "states", s->state, s->nstate);
     print_names(out, "inputs", s->input, s->ninput);
@@ -501,9 +502,10 @@ static void print_summary(const struct ct_linearization *s, FILE *out)
 
 void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_linearization_summary(const struct ct_linearization *s)
+{
+    return ct_print_text(print_summary, s);
 }

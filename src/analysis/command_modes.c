@@ -255,8 +255,9 @@ bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char
     return modes && ct_enter(ctx, write_modes, &o);
 }
 
-static void print_summary(const struct ct_modes *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_modes *s = object;
     ct_configuration_print(&s->at, out);
     fprintf(out, "%-14s%d, %s eigenvalue problem; %zu of %zu modes\n",
             s->at.l->nfree ? "freedoms" : "speeds",
@@ -266,11 +267,12 @@ static void print_summary(const struct ct_modes *s, FILE *out)
 
 void ct_modes_print_summary(const struct ct_modes *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_modes_summary(const struct ct_modes *s)
+{
+    return ct_print_text(print_summary, s);
 }
 
 // ---- the picture ---------------------------------------------------------------------------
@@ -290,21 +292,21 @@ static void view_directions(struct ct_build *b, ct_ex3 *right, ct_ex3 *up)
 {
     static const double side[3] = {-0.5, 0.8660254037844386, 0};
     static const double rise[3] = {-0.4330127018922193, -0.25, 0.8660254037844386};
-    *right = b->is_planar ? b->plane[0] : ct_ex3_const(b->x, side);
-    *up = b->is_planar ? b->plane[1] : ct_ex3_const(b->x, rise);
+    *right = b->topology->is_planar ? b->topology->plane[0] : ct_ex3_const(b->x, side);
+    *up = b->topology->is_planar ? b->topology->plane[1] : ct_ex3_const(b->x, rise);
 }
 
 static void add_bones(struct skeleton *k, const struct ct_build *b)
 {
-    for (size_t i = 0; i < b->nedge; i++) {
-        const enum ct_edge_kind kind = b->edge[i].kind;
-        const struct ct_bone bone = {.from = b->wiring[i].tail,
-                                     .to = b->wiring[i].head,
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const enum ct_edge_kind kind = b->topology->edge[i].kind;
+        const struct ct_bone bone = {.from = b->topology->wiring[i].tail,
+                                     .to = b->topology->wiring[i].head,
                                      .kind = kind == CT_EDGE_ARM   ? CT_BONE_BODY
                                            : kind == CT_EDGE_FORCE ? CT_BONE_FORCE
                                                                    : CT_BONE_JOINT};
         const bool hangs = kind == CT_EDGE_FORCE && bone.from == 0; // a load, not a spring
-        if (kind != CT_EDGE_BODY && !hangs && !b->edge[i].flexible)
+        if (kind != CT_EDGE_BODY && !hangs && b->topology->edge[i].beam < 0)
             CT_PUSH(k->s->own.model, k->bone, k->nbone, k->bone_cap, bone);
     }
 }
@@ -338,15 +340,15 @@ static void skeleton_create(struct skeleton *k, struct ct_modes *s)
     struct ct_build *b = s->at.e->build;
     struct ct_arena *a = s->own.model;
     ct_ex3 right, up;
-    *k = (struct skeleton){.s = s, .n = b->nnode};
+    *k = (struct skeleton){.s = s, .n = b->topology->nnode};
     for (size_t i = 0; i < b->nflexible; i++)
         k->n += (size_t)points_of_beam(&b->flexible[i]);
     ct_ex *place = CT_NEWN(a, ct_ex, 2 * k->n + 1);
     ct_ex3 *r = CT_NEWN(a, ct_ex3, k->n + 1);
     view_directions(b, &right, &up);
-    for (size_t i = 0; i < b->nnode; i++)
+    for (size_t i = 0; i < b->topology->nnode; i++)
         r[i] = ct_node_position(b, (int)i);
-    int at = (int)b->nnode;
+    int at = (int)b->topology->nnode;
     for (size_t i = 0; i < b->nflexible; at += points_of_beam(&b->flexible[i++]))
         add_axis(k, b, &b->flexible[i], at, r);
     for (size_t i = 0; i < k->n; i++) {

@@ -17,7 +17,7 @@ static const char **branches(struct ct_arena *a, const struct ct_equations *e,
     const char **name = CT_NEWN(a, const char *, e->graph->nedge + 1);
     *n = 0;
     for (int i = 0; i < e->graph->nedge; i++)
-        if (t->is_branch[i] && strcmp(e->edge_kind[i], "arm") != 0)
+        if (t->is_branch[i] && !ct_edge_is_rigid_arm(&e->build->topology->edge[i]))
             name[(*n)++] = e->edge_name[i];
     return name;
 }

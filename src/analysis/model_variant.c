@@ -110,11 +110,11 @@ static int find_component(struct ct_ctx *own, const struct ct_model *m, const ch
         return -1;
     *component = (int)(axis - axes);
     const char *vector = ct_arena_strndup(own->model, name, n - 2);
-    static const char *const properties[] = {"force", "torque"};
-    for (size_t i = 0; i < COUNT(properties); i++) {
-        const char *owner = owner_of(own->model, vector, properties[i]);
+    static const enum ct_applied_load loads[] = {CT_APPLIED_FORCE, CT_APPLIED_TORQUE};
+    for (size_t i = 0; i < COUNT(loads); i++) {
+        const char *owner = owner_of(own->model, vector, ct_applied_load_name(loads[i]));
         const int force = owner ? ct_model_find_force(m, owner) : -1;
-        if (force >= 0 && strcmp(m->force[force].cls->name, properties[i]) == 0)
+        if (force >= 0 && m->force[force].cls->applied == loads[i])
             return force;
     }
     return -1;
@@ -160,8 +160,8 @@ static struct names list_inputs(struct ct_arena *a, const struct ct_model *m, bo
                 push(&l, effort_name(a, joint, k));
     }
     for (size_t i = 0; i < m->nforce; i++) {
-        const char *what = m->force[i].cls->name;
-        for (int k = 0; k < 3 && (!strcmp(what, "force") || !strcmp(what, "torque")); k++)
+        const char *what = ct_applied_load_name(m->force[i].cls->applied);
+        for (int k = 0; k < 3 && what; k++)
             push(&l, ct_arena_printf(a, "%s.%s.%c", m->force[i].name, what, axes[k]));
     }
     return l;
@@ -239,7 +239,7 @@ static bool no_load(struct ct_ctx *own, const struct ct_model *m, const char *na
     struct names l = {.a = own->model};
     push(&l, "gravity");
     for (size_t i = 0; i < m->nforce; i++)
-        if (!strcmp(m->force[i].cls->name, "force") || !strcmp(m->force[i].cls->name, "torque"))
+        if (m->force[i].cls->applied)
             push(&l, m->force[i].name);
     for (size_t i = 0; i < m->njoint; i++)
         if (m->joint[i].cls->motion && ct_instance_value(&m->joint[i], "effort")->given)
@@ -271,9 +271,8 @@ bool ct_variant_load(struct ct_ctx *own, struct ct_model *v, const char *name,
 {
     *parameter = v->nparameter;
     const int force = ct_model_find_force(v, name), joint = ct_model_find_joint(v, name);
-    const char *what = force >= 0 ? v->force[force].cls->name : "";
     foreshorten(own, v);
-    if (!strcmp(what, "force") || !strcmp(what, "torque")) {
+    if (force >= 0 && v->force[force].cls->applied) {
         const ct_ex factor = add_parameter(own, v, "load factor", 1);
         scale(v, own_value(own, &v->force[force], "value", 3), factor);
         return true;

@@ -47,7 +47,10 @@ static struct chunk *chunk_create(size_t size)
         return NULL;
     const bool is_pages = size >= least_page_chunk;
     struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
-    const size_t ready = c && is_pages ? ct_pages_extend(c, size, 0, sizeof *c) : 0;
+    // a block of its own may be a table most of whose pages are never touched
+    const size_t ready = !c || !is_pages      ? 0
+                       : size > largest_chunk ? size
+                                              : ct_pages_extend(c, size, 0, sizeof *c);
     if (c)
         *c = (struct chunk){.size = size - sizeof *c,
                             .zeroed_from = is_pages ? 0 : size - sizeof *c,

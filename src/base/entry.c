@@ -30,10 +30,19 @@ void ct_ctx_destroy(struct ct_ctx *ctx)
     free(ctx);
 }
 
+static void print_diagnostics(const void *ctx, FILE *out)
+{
+    ct_ctx_print(ctx, out);
+}
+
 void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out)
 {
-    if (ctx && out)
-        ct_ctx_print(ctx, out);
+    ct_print_to(out, print_diagnostics, ctx);
+}
+
+char *ct_ctx_diagnostics(const struct ct_ctx *ctx)
+{
+    return ct_print_text(print_diagnostics, ctx);
 }
 
 // ---- diagnostics one by one ---------------------------------------------------------------------------------
@@ -208,6 +217,33 @@ char *ct_text_of(struct ct_ctx *ctx, bool (*print)(void *task, FILE *out), void 
         return text;
     free(text);
     return NULL;
+}
+
+void ct_print_to(FILE *out, ct_printer *print, const void *object)
+{
+    if (!object || !out)
+        return;
+    const locale_t before = ct_locale_enter();
+    print(object, out);
+    ct_locale_leave(before);
+}
+
+struct print {
+    ct_printer *print;
+    const void *object;
+};
+
+static bool print_object(void *task, FILE *out)
+{
+    const struct print *p = task;
+    ct_print_to(out, p->print, p->object);
+    return true;
+}
+
+char *ct_print_text(ct_printer *print, const void *object)
+{
+    struct print p = {print, object};
+    return object ? ct_text_of(NULL, print_object, &p) : NULL;
 }
 
 void ct_options_take(void *to, const void *from, size_t size)

@@ -14,6 +14,10 @@ locale_t ct_locale_enter(void);
 void ct_locale_leave(locale_t before);
 /// What print writes to a stream, as a text for ct_free; NULL where it fails or there is no memory, which ctx, unless NULL, notes.
 char *ct_text_of(struct ct_ctx *ctx, bool (*print)(void *task, FILE *out), void *task);
+/// What print writes of an object, which it knows, in the locale "C": to a stream, or as such a text. Of NULL, and to NULL, nothing.
+typedef void ct_printer(const void *object, FILE *out);
+void ct_print_to(FILE *out, ct_printer *print, const void *object);
+char *ct_print_text(ct_printer *print, const void *object);
 /// Copy a caller's options of `size` bytes, whose first member is the size they had there (0: as here), into `to`.
 void ct_options_take(void *to, const void *from, size_t size);
 

@@ -85,7 +85,7 @@ static bool find_start(const struct ct_build *r, double *start)
         start[i] = e->q[i].quaternion == 0;
     for (size_t i = 0; i < r->ncoordinate; i++) {
         const struct ct_coordinate *c = &r->coordinate[i];
-        const struct ct_edge_info *edge = &r->edge[c->edge];
+        const struct ct_edge_info *edge = &r->topology->edge[c->edge];
         if (edge->kind != CT_EDGE_JOINT)
             continue;
         const struct ct_initial *at = &edge->self->initial;

@@ -9,10 +9,11 @@
 #include <sys/stat.h>
 
 const struct cli_command *const cli_commands[]
-    = {&cli_simulate,   &cli_equations,  &cli_graph,       &cli_draw,       &cli_accuracy,
-       &cli_sweep,      &cli_check,      &cli_equilibrium, &cli_modes,      &cli_linearize,
-       &cli_buckling,   &cli_kinematics, &cli_inverse,     &cli_export,     &cli_import,
-       &cli_components, &cli_methods,    &cli_schema,      &cli_completion, NULL};
+    = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
+       &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
+       &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
+       &cli_export,   &cli_import,     &cli_components, &cli_methods,   &cli_schema,     &cli_completion,
+       NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 
@@ -27,8 +28,8 @@ const struct cli_option cli_options[] = {
     {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_SIMULATE, true,
      "with --input: a row counts from its t on"},
     {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
-     "auto, joints, absolute, or a YAML FILE with the keys\n"
-     "translation and rotation: lists of branches",
+     "auto, joints, absolute, a number of 'graph --trees', or\n"
+     "a YAML FILE: lists of branches translation and rotation",
      "auto joints absolute"},
     {"keep-all", 0, NULL, CLI_FLAG, FIELD(keep_all), CLI_MODELS, true,
      "leave nothing out: keep the spatial rows of planar models"},
@@ -39,14 +40,14 @@ const struct cli_option cli_options[] = {
      "auto dop853 dopri5 rk4 radau5 generalized-alpha generalized-alpha-index3 hht newmark"},
     {"step", 0, "H", CLI_NUMBER, FIELD(step), CLI_STEPS, true,
      "fixed step in seconds, without step control"},
-    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES | CLI_DRAW, true,
+    {"until", 0, "T", CLI_NUMBER, FIELD(until), CLI_TIMES | CLI_DRAW | CLI_REPORT, true,
      "end time in seconds; the spacing of samples is kept"},
-    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES | CLI_DRAW, true,
+    {"samples", 0, "N", CLI_INTEGER, FIELD(samples), CLI_TIMES | CLI_DRAW | CLI_REPORT, true,
      "number of samples, both ends included"},
     {"backend", 0, "CHOICE", CLI_TEXT, FIELD(backend), CLI_STEPS, true,
      "what evaluates the equations: auto, native or tape", "auto native tape"},
-    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver), CLI_SIMULATE | CLI_ACCURACY | CLI_CHECK,
-     false,
+    {"solver", 0, "CHOICE", CLI_TEXT, FIELD(solver),
+     CLI_SIMULATE | CLI_REPORT | CLI_ACCURACY | CLI_CHECK, false,
      "what finds the accelerations of closed loops: auto,\n"
      "unrolled, one-system, sparse or dense",
      "auto unrolled one-system sparse dense"},
@@ -64,20 +65,27 @@ const struct cli_option cli_options[] = {
      "number of rows, the lowest ones; 10"},
     {"hold-drivers", 0, NULL, CLI_FLAG, FIELD(hold_drivers), CLI_STATIC, false,
      "equilibrium: motions stand still, even steady ones"},
-    {"vary", 0, "NAME=FROM:TO:N", CLI_LIST, FIELD(vary), CLI_SWEEP, false,
+    {"vary", 0, "NAME=FROM:TO:N", CLI_LIST, FIELD(vary), CLI_VARIES, false,
      "N values of a parameter, both ends included;\n"
      "may be repeated"},
-    {"sample", 0, "K", CLI_COUNT_OF, FIELD(sample), CLI_SWEEP, false,
+    {"sample", 0, "K", CLI_COUNT_OF, FIELD(sample), CLI_VARIES, false,
      "K random members instead of a grid"},
-    {"seed", 0, "S", CLI_SEED, FIELD(seed), CLI_SWEEP, false,
+    {"seed", 0, "S", CLI_SEED, FIELD(seed), CLI_VARIES, false,
      "of the random numbers; 0. Same seed, same members"},
+    {"members", 0, "FILE.csv", CLI_TEXT, FIELD(members), CLI_VARIES, false,
+     "a member a row, its columns are parameters"},
+    {"shard", 0, "I/N", CLI_SHARD, FIELD(shard), CLI_SWEEP, false,
+     "every N-th member from the I-th on: one of N parts"},
+    {"take", 0, "NAME=F(EXPR)", CLI_LIST, FIELD(take), CLI_SWEEP, false,
+     "a column of what EXPR does over the run, F being max, min,\n"
+     "mean, rms, final or time (first rise through zero)"},
     {"resume", 0, NULL, CLI_FLAG, FIELD(resume), CLI_SWEEP, false,
      "go on with the rows in FILE.partial"},
     {"threads", 0, "N", CLI_COUNT_OF, FIELD(threads), CLI_SWEEP, false,
      "at most so many; all cores"},
     {"lanes", 0, "N", CLI_COUNT_OF, FIELD(lanes), CLI_SWEEP | CLI_EXPORT, false,
      "1, 4 or 8 side by side: members in a core, inputs of programs"},
-    {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE, false,
+    {"verify", 0, NULL, CLI_FLAG, FIELD(verify), CLI_SIMULATE | CLI_REPORT, false,
      "a second run; the difference tells the global error"},
     {"error", 0, "E", CLI_NUMBER, FIELD(error), CLI_ACCURACY, false,
      "the error that the cheapest setting must meet; 1e-6"},
@@ -106,6 +114,8 @@ const struct cli_option cli_options[] = {
      "the motion is followed to this time in seconds first"},
     {"trace", 0, NULL, CLI_FLAG, FIELD(trace), CLI_DRAW, false,
      "with paths of points and beams' ends over the run"},
+    {"trees", 0, NULL, CLI_FLAG, FIELD(trees), CLI_GRAPH, false,
+     "the cheapest pairs of trees instead, for --tree"},
     {"show", 0, "STAGES", CLI_TEXT, FIELD(show), CLI_EQUATIONS, false,
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced",
@@ -183,6 +193,18 @@ static bool parse_seed(const char *text, unsigned long long *v)
     return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
 }
 
+// I/N; whether I is one of N the library says.
+static bool parse_shard(const char *text, long *shard, long *shards)
+{
+    const size_t n = strcspn(text, "/");
+    char first[32];
+    if (!text[n] || n >= sizeof first)
+        return false;
+    snprintf(first, sizeof first, "%.*s", (int)n, text);
+    return parse_integer(first, 1, shard) && parse_integer(text + n + 1, 1, shards)
+        && *shard <= *shards;
+}
+
 static bool wrong_value(const struct cli_command *c, const struct cli_option *o,
                         const char *value, const char *wanted)
 {
@@ -215,6 +237,9 @@ static bool store(const struct cli_command *c, const struct cli_option *o, const
     case CLI_SEED:
         return parse_seed(value, field)
             || wrong_value(c, o, value, "an integer from 0 to 18446744073709551615");
+    case CLI_SHARD:
+        return parse_shard(value, field, &args->shards)
+            || wrong_value(c, o, value, "I/N with I from 1 to N");
     case CLI_COUNT_OF:
         return parse_integer(value, 1, field)
             || wrong_value(c, o, value, "an integer from 1 to 1000000000");
@@ -230,6 +255,7 @@ struct parser {
     int argc, at;
     char **argv;
     const struct cli_command *command;
+    const struct cli_option *option; // the last one
     struct cli_args *args;
 };
 
@@ -274,6 +300,7 @@ static bool unknown_option(const struct parser *p, const char *name)
 
 static bool give(struct parser *p, const struct cli_option *o, const char *value)
 {
+    p->option = o;
     if (o->kind == CLI_FLAG) {
         if (value)
             return cli_complain(p->command, "--%s takes no value", o->name), false;
@@ -359,6 +386,10 @@ static bool parse_plain(struct parser *p, const char *text)
         return parse_command(p, text);
     if (p->command->words)
         return parse_word(p, text);
+    if (p->command->files) {
+        p->args->files.text[p->args->files.n++] = text;
+        return true;
+    }
     if (!p->command->takes_model && !p->command->takes_file)
         return cli_complain(p->command, "'%s' takes no model: '%s'", p->command->name, text),
                false;
@@ -370,11 +401,25 @@ static bool parse_plain(struct parser *p, const char *text)
     return true;
 }
 
+// The words of an option, from number `first` on, as they were written: of all that decide about results.
+static void keep_option(struct parser *p, int first)
+{
+    static const char *const other[] = {"output", "summary", "quiet", "help", "version"};
+    struct cli_list *list = &p->args->given;
+    for (size_t i = 0; i < CLI_COUNT(other); i++)
+        if (strcmp(p->option->name, other[i]) == 0)
+            return;
+    for (int i = first; i <= p->at; i++)
+        list->text[list->n++] = p->argv[i];
+}
+
 static bool parse_all(struct parser *p)
 {
     bool options_end = false;
     for (p->at = 1; p->at < p->argc; p->at++) {
         const char *text = p->argv[p->at];
+        const int first = p->at;
+        p->option = NULL;
         bool ok;
         if (options_end || text[0] != '-' || !text[1])
             ok = parse_plain(p, text);
@@ -384,6 +429,8 @@ static bool parse_all(struct parser *p)
             ok = text[1] == '-' ? parse_long(p, text + 2) : parse_short(p, text);
         if (!ok)
             return false;
+        if (p->option)
+            keep_option(p, first);
     }
     return true;
 }
@@ -427,7 +474,7 @@ static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
     const char *const file[] = {args->output, args->summary,   args->plot, args->curve,
-                                args->model,  args->reference, args->tree};
+                                args->model,  args->reference, args->tree, args->members};
     enum { WRITTEN = 4 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)
@@ -443,10 +490,15 @@ static bool check_files(const struct parser *p)
 
 bool cli_parse(int argc, char **argv, const struct cli_command **command, struct cli_args *args)
 {
-    *args = (struct cli_args){.set.text = calloc((size_t)argc + 1, sizeof(char *)),
-                              .vary.text = calloc((size_t)argc + 1, sizeof(char *))};
+    const size_t n = (size_t)argc + 1;
+    *args = (struct cli_args){.set.text = calloc(n, sizeof(char *)),
+                              .vary.text = calloc(n, sizeof(char *)),
+                              .take.text = calloc(n, sizeof(char *)),
+                              .files.text = calloc(n, sizeof(char *)),
+                              .given.text = calloc(n, sizeof(char *))};
     struct parser p = {.argc = argc, .argv = argv, .args = args};
-    const bool has_room = args->set.text && args->vary.text;
+    const bool has_room = args->set.text && args->vary.text && args->take.text
+                       && args->files.text && args->given.text;
     bool ok = has_room || (fputs("cotree: error: out of memory [E001]\n", stderr), false);
     args->no_memory = !has_room;
     ok = ok && parse_all(&p);
@@ -458,6 +510,10 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
     if (p.command->words && !args->word)
         return cli_complain(p.command, "'%s' needs a word: %s", p.command->name,
                             p.command->examples[0]),
+               false;
+    if (p.command->files && !args->files.n)
+        return cli_complain(p.command, "'%s' needs files: %s", p.command->name,
+                            p.command->files),
                false;
     if (p.command->takes_model && !args->model)
         return cli_complain(p.command, "'%s' needs a model: cotree %s MODEL.yaml",
@@ -474,6 +530,9 @@ void cli_args_finish(struct cli_args *args)
 {
     free(args->set.text);
     free(args->vary.text);
+    free(args->take.text);
+    free(args->files.text);
+    free(args->given.text);
 }
 
 // ---- help -----------------------------------------------------------------------------------------------------
@@ -522,11 +581,12 @@ void cli_print_help(FILE *out, const struct cli_command *command)
         return;
     }
     fprintf(out, "usage: cotree %s%s%s [options]\n\n%s\n%s\n", command->name,
-            command->takes_file ? " " : "",
-            command->takes_file    ? command->takes_file
-            : command->takes_model ? " MODEL.yaml"
-            : command->words       ? " SHELL"
-                                   : "",
+            command->files || command->takes_file ? " " : "",
+            command->takes_model  ? " MODEL.yaml"
+            : command->takes_file ? command->takes_file
+            : command->words      ? " SHELL"
+            : command->files      ? command->files
+                                  : "",
             command->summary, command->more);
     for (size_t i = 0; i < cli_noption; i++)
         if (cli_options[i].use & command->use)

@@ -17,7 +17,8 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
         return cli_complain(&cli_buckling,
                             "--load is wanted: a force, a torque, a joint with an "
                             "effort, or gravity");
-    struct ct_system *sys = cli_load_for_analysis(ctx, args, CT_COLUMNS_OF_MODEL);
+    const struct ct_system_options system = cli_analysis_options(args, CT_COLUMNS_OF_MODEL);
+    struct ct_system *sys = ct_system_load(ctx, args->model, &system);
     const struct ct_buckling_options options
         = {.load = args->load, .count = args->count, .hold_drivers = args->hold_drivers};
     struct ct_buckling *s = ct_buckling_create(ctx, sys, &options);

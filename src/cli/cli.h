@@ -20,16 +20,18 @@ struct cli_args {
     const char *word; // what a command takes in place of a model
     const char *output, *summary, *format, *show, *tree, *method, *backend, *solver, *reference,
         *plot, *columns, *view, *about, *inputs, *input, *load, *curve, *elements,
-        *formulations;
+        *formulations, *members;
     struct cli_list { // what is given several times
         const char **text;
         size_t n;
-    } set, vary;
+    } set, vary, take,
+        files, // what a command takes in place of a model
+        given; // options as they were written, but for those of files that are written and of what is shown
     double tolerance, step, until, error, time;
-    long samples, count, sample, threads, lanes, per_decade;
+    long samples, count, sample, threads, lanes, per_decade, shard, shards;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool trace, hold, hold_drivers, keep_all, resume, verify, quiet, help, version,
+    bool trace, trees, hold, hold_drivers, keep_all, resume, verify, quiet, help, version,
         no_memory; // while it was read
 };
 
@@ -53,17 +55,20 @@ enum cli_use {
     CLI_SWEEP = 32768,
     CLI_COMPLETION = 65536,
     CLI_DRAW = 131072,
-    CLI_IMPORT = 262144,
+    CLI_MERGE = 262144,
+    CLI_REPORT = 524288,
+    CLI_IMPORT = 1048576,
     CLI_LISTS = CLI_COMPLETION | CLI_COMPONENTS | CLI_METHODS | CLI_SCHEMA,
     CLI_DRIVEN = CLI_KINEMATICS | CLI_INVERSE,
     CLI_ABOUT = CLI_MODES | CLI_LINEARIZE, // a configuration
     CLI_STATIC = CLI_ABOUT | CLI_EQUILIBRIUM | CLI_BUCKLING,
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
-    CLI_STEPS = CLI_RUNS | CLI_DRAW, // that may integrate
+    CLI_STEPS = CLI_RUNS | CLI_DRAW | CLI_REPORT, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
     CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
-    CLI_MODELS
-    = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_CHECK | CLI_EXPORT
+    CLI_VARIES = CLI_SWEEP | CLI_MODES | CLI_EQUILIBRIUM | CLI_DRIVEN,
+    CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT
+               | CLI_CHECK | CLI_EXPORT
 };
 
 struct cli_command {
@@ -72,15 +77,16 @@ struct cli_command {
     bool takes_model;
     const char *takes_file;   // the name of another kind of file in its place; or NULL
     const char *const *words; // what it takes in place of a model, NULL at the end; or NULL
+    const char *files;        // the same where it takes files; or NULL
     const char *more;         // paragraph for its own help
     const char *examples[2];  // to try
     int (*run)(struct ct_ctx *ctx, const struct cli_args *args);
 };
 
-extern const struct cli_command cli_simulate, cli_equations, cli_graph, cli_draw, cli_accuracy,
-    cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics, cli_inverse,
-    cli_buckling, cli_sweep, cli_export, cli_import, cli_components, cli_methods, cli_schema,
-    cli_completion;
+extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
+    cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
+    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_import, cli_components, cli_methods,
+    cli_schema, cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 
@@ -97,7 +103,8 @@ struct cli_option {
         CLI_TIME,
         CLI_INTEGER,
         CLI_COUNT_OF,
-        CLI_SEED
+        CLI_SEED,
+        CLI_SHARD
     } kind;
     size_t field;
     unsigned use;      // commands it means something to
@@ -123,11 +130,11 @@ int cli_complain(const struct cli_command *command, const char *fmt, ...)
 
 /// What the arguments say about systems.
 struct ct_system_options cli_system_options(const struct cli_args *args);
+/// The same for analyses at a place, with further columns.
+struct ct_system_options cli_analysis_options(const struct cli_args *args,
+                                              enum ct_columns_more columns);
 /// The system that the arguments ask for, or NULL.
 struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args);
-/// The same for analyses at a place.
-struct ct_system *cli_load_for_analysis(struct ct_ctx *ctx, const struct cli_args *args,
-                                        enum ct_columns_more columns);
 /// The same with further columns.
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
                                 enum ct_columns_more columns);
@@ -135,6 +142,12 @@ struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,
 struct ct_sim_options cli_sim_options(const struct cli_args *args);
 /// A run with the options of the arguments, or NULL.
 struct ct_sim *cli_sim(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
+
+/// Does the analysis vary? Then the whole of it, and its exit status in *status. Without -o the table goes to the model's
+/// name with `suffix`; NULL: to standard output.
+bool cli_vary(struct ct_ctx *ctx, const struct cli_command *command,
+              const struct cli_args *args, const struct ct_system_options *system,
+              const struct ct_vary_options *analysis, const char *suffix, int *status);
 
 /// The file of --summary, if one is asked for, of a command that runs nothing: what the system is.
 bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);

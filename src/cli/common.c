@@ -19,13 +19,13 @@ struct ct_system *cli_load(struct ct_ctx *ctx, const struct cli_args *args)
     return cli_load_with(ctx, args, CT_COLUMNS_OF_MODEL);
 }
 
-struct ct_system *cli_load_for_analysis(struct ct_ctx *ctx, const struct cli_args *args,
-                                        enum ct_columns_more columns)
+struct ct_system_options cli_analysis_options(const struct cli_args *args,
+                                              enum ct_columns_more columns)
 {
     struct ct_system_options options = cli_system_options(args);
     options.columns = columns;
     options.for_analysis = true;
-    return ct_system_load(ctx, args->model, &options);
+    return options;
 }
 
 struct ct_system *cli_load_with(struct ct_ctx *ctx, const struct cli_args *args,

@@ -3,9 +3,14 @@
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    struct ct_system *sys = cli_load_for_analysis(ctx, args, CT_COLUMNS_COORDINATES);
-    const struct ct_equilibrium_options options = {.hold_drivers = args->hold_drivers};
-    struct ct_equilibrium *q = ct_equilibrium_create(ctx, sys, &options);
+    const struct ct_system_options system = cli_analysis_options(args, CT_COLUMNS_COORDINATES);
+    const struct ct_vary_options vary = {.analysis = CT_VARY_EQUILIBRIUM,
+                                         .equilibrium = {.hold_drivers = args->hold_drivers}};
+    int status;
+    if (cli_vary(ctx, &cli_equilibrium, args, &system, &vary, NULL, &status))
+        return status;
+    struct ct_system *sys = ct_system_load(ctx, args->model, &system);
+    struct ct_equilibrium *q = ct_equilibrium_create(ctx, sys, &vary.equilibrium);
     const bool ok
         = q && ct_equilibrium_write(ctx, q, args->output) && cli_summarize(ctx, sys, args);
     if (ok && !args->quiet)
@@ -25,7 +30,8 @@ const struct cli_command cli_equilibrium = {
       "Prints one row of outputs. From the assembled start the forces are followed down to "
       "the\n"
       "nearest equilibrium. Motions with a constant rate go on, so that a system on a turning\n"
-      "shaft finds its place in the turning frame; other motions are held.\n",
+      "shaft finds its place in the turning frame; other motions are held. With --vary: a row\n"
+      "for each value, with run and the parameters before the outputs.\n",
     .examples
     = {"cotree equilibrium governor.yaml", "cotree equilibrium governor.yaml -o rest.json"},
     .run = run,

@@ -26,9 +26,9 @@ const struct cli_command cli_export = {
     .takes_model = true,
     .more
     = "\n"
-      "The folder gets NAME.h, NAME.c and NAME_test.c: C99 that needs libm alone. The last "
-      "one\n"
-      "compares with values computed here.\n",
+      "The folder gets NAME.h, NAME.c, NAME_test.c and NAME.json: C99 that needs libm alone, "
+      "what\n"
+      "compares it with values and a motion computed here, and where each number stands.\n",
     .examples = {"cotree export puma560.yaml --format c -o arm",
                  "cotree export four_bar.yaml --tree absolute -o bars"},
     .run = run,

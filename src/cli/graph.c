@@ -107,9 +107,10 @@ static bool draw(struct ct_ctx *ctx, struct ct_system *sys, FILE *out, const cha
 }
 
 static bool print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
-                        FILE *out)
+                        bool with_trees, FILE *out)
 {
-    return strcmp(format, "svg") == 0 ? draw(ctx, sys, out, "-Tsvg")
+    return with_trees                 ? ct_system_print_trees(ctx, sys, format, out)
+         : strcmp(format, "svg") == 0 ? draw(ctx, sys, out, "-Tsvg")
          : strcmp(format, "png") == 0 ? draw(ctx, sys, out, "-Tpng")
                                       : ct_system_print_graph(ctx, sys, format, out);
 }
@@ -127,9 +128,11 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     if (!is_known)
         return cli_complain(&cli_graph,
                             "--format is '%s'; there are text, svg, png, dot and json", format);
+    if (args->trees && strcmp(format, "text") != 0 && strcmp(format, "json") != 0)
+        return cli_complain(&cli_graph, "--trees prints text or json, not %s", format);
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_output *o = sys ? ct_output_open(ctx, args->output) : NULL;
-    const bool ok = o && print_graph(ctx, sys, format, ct_output_stream(o));
+    const bool ok = o && print_graph(ctx, sys, format, args->trees, ct_output_stream(o));
     int status = ct_output_close(ctx, o, ok) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;
@@ -146,6 +149,7 @@ const struct cli_command cli_graph = {
             "Text lists nodes, edges, the incidence matrix, cutsets and circuits. The format "
             "follows\n"
             "the suffix of -o when --format is not given.\n",
-    .examples = {"cotree graph four_bar.yaml", "cotree graph four_bar.yaml -o four_bar.svg"},
+    .examples
+    = {"cotree graph four_bar.yaml -o four_bar.svg", "cotree graph four_bar.yaml --trees"},
     .run = run,
 };

@@ -5,7 +5,10 @@
 
 static bool sweep(struct ct_ctx *ctx, struct ct_study *s, const struct cli_args *args)
 {
-    char *standard = args->output ? NULL : cli_standard_path(args->model, ".sweep.csv");
+    char suffix[64] = ".sweep.csv";
+    if (args->shards)
+        snprintf(suffix, sizeof suffix, ".sweep.%ld-of-%ld.csv", args->shard, args->shards);
+    char *standard = args->output ? NULL : cli_standard_path(args->model, suffix);
     const char *path = args->output ? args->output : standard;
     const struct ct_study_results results = {
         .path = path ? path : "-", .resume = args->resume, .bar = args->quiet ? NULL : stderr};
@@ -32,7 +35,12 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                                              .sample = args->sample,
                                              .seed = args->seed,
                                              .threads = args->threads,
-                                             .lanes = args->lanes};
+                                             .lanes = args->lanes,
+                                             .members = args->members,
+                                             .take = args->take.text,
+                                             .ntake = args->take.n,
+                                             .shard = args->shard,
+                                             .shards = args->shards};
     const struct ct_system_options system = cli_system_options(args);
     struct ct_study *s = ct_study_create(ctx, args->model, &system, &options);
     const bool ok = s && sweep(ctx, s, args);

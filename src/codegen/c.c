@@ -63,12 +63,11 @@ static void __attribute__((format(printf, 2, 3))) putf(struct writer *w, const c
     va_end(ap);
 }
 
-// A comment may not end early.
-static const char *comment_text(struct ct_arena *a, const char *s)
+const char *ct_c_comment(struct ct_arena *a, const char *s)
 {
     char *copy = ct_arena_strdup(a, s);
-    for (char *c = copy; *c; c++)
-        if (*c == '*' || *c == '\n' || *c == '\\')
+    for (char *c = copy; *c; c++) // `?` begins trigraphs, one of which is a backslash
+        if (*c == '*' || *c == '\\' || *c == '?' || (unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';
     return copy;
 }
@@ -214,7 +213,7 @@ static void put_statement(struct writer *w, uint32_t k)
     else
         putf(w, "    w[%u] = %s;", w->crossing[v], text);
     if (has_label(w, v))
-        putf(w, " /* %s */", comment_text(w->arena, w->l->x->label[w->l->node[v]]));
+        putf(w, " /* %s */", ct_c_comment(w->arena, w->l->x->label[w->l->node[v]]));
     put(w, "\n");
     if (has_name && w->crossing[v] != none)
         putf(w, "    w[%u] = t%u;\n", w->crossing[v], k);
@@ -324,9 +323,10 @@ static void put_functions(struct writer *w)
         call[part] = ct_arena_printf(w->arena, "    %s_%zu(%s);\n", w->o.name, part,
                                      arguments(w, &r, false));
     }
-    if (w->o.lanes == 1)
+    if (w->o.lanes == 1 && !w->o.is_static)
         putf(w, "void %s(const double *in, double *out);\n\n", w->o.name);
-    putf(w, w->o.lanes == 1 ? "void %s" : "static void %s_lane", w->o.name);
+    putf(w, "%svoid %s%s", w->o.lanes > 1 || w->o.is_static ? "static " : "", w->o.name,
+         w->o.lanes > 1 ? "_lane" : "");
     put(w, "(const double *in, double *out)\n{\n    (void)in;\n    (void)out;\n");
     if (npart == 1)
         put_body(w, &r, read);
@@ -443,7 +443,7 @@ static void put_head(struct writer *w)
 {
     put(w, "/* ");
     if (w->o.title)
-        putf(w, "%s: ", comment_text(w->arena, w->o.title));
+        putf(w, "%s: ", ct_c_comment(w->arena, w->o.title));
     putf(w, "%u operations. Compile with -ffp-contract=off to keep the bits. */\n",
          w->nstatement);
     put(w, "#include <math.h>\n\n");

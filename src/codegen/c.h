@@ -20,6 +20,7 @@ struct ct_c_options {
     const char *name;  // of the function; NULL: "evaluate". Helpers start with it
     const char *title; // for the comment at the top; NULL: none
     size_t split;      // statements in one function; 0: 800
+    bool is_static;    // the function is local to its file
     unsigned lanes; // sets of inputs side by side, in[lanes * slot + lane], out likewise; 0: 1
     /// The text of a symbol behind its input, a C identifier; NULL: ct_c_name of its name. Inputs
     /// are called i<slot>_<text>, so texts need not differ.
@@ -36,5 +37,8 @@ const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
 const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
                           size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
                           const struct ct_c_options *options);
+
+/// s without what would end a comment, or its line, early.
+const char *ct_c_comment(struct ct_arena *a, const char *s);
 
 #endif

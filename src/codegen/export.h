@@ -1,27 +1,57 @@
-// The equations of motion of a model as C source that stands alone.
+// A model as C source that stands alone.
 //
-//     NAME.h  NAME.c     motion and constraint programs, their layout, accelerations; C99 and libm
-//     NAME_test.c        compares with recorded values or integrates from the start; shows the calls
+//     NAME.h  NAME.c     programs, their layout, accelerations, projection, steps; C99 and libm     export.c, export_runtime.c
+//     NAME_test.c        compares with recorded values and a recorded motion; shows the calls       export_test.c
 //
-// What always holds: the same equations give the same text; no globals but constant tables;
-// compiles without warnings; functions are short enough for compilers (c.h).
+// What always holds: the same equations give the same text; no globals but constant tables, no memory but what the caller
+// gives and automatic arrays; compiles without warnings; functions are short enough for compilers (c.h).
 #ifndef CT_CODEGEN_EXPORT_H
 #define CT_CODEGEN_EXPORT_H
 
 #include "expr/listing.h"
 #include "formulate/equations.h"
 
-/// Values to compare with: inputs, outputs of both programs, accelerations (nu).
+/// A number of `in` or `out` by name.
+struct ct_export_item {
+    const char *name, *unit; // SI; NULL: not known
+    size_t index;            // in its array
+    double value;            // at the start
+    bool is_derived;         // parameters: from others, by NAME_parameters
+    bool is_fixed;           // parameters: it has decided about the equations
+    bool is_open;            // reactions: the model leaves it open
+};
+
+struct ct_export_items {
+    struct ct_export_item *item;
+    size_t n;
+};
+
+/// Values to compare with at one input.
 struct ct_export_state {
-    const double *input, *motion, *constraint, *a;
+    const double *input;
+    const double *motion, *constraint, *a, *lam; // programs; u' (nu), multipliers (nrow)
+    const double *output, *root, *reaction;
+    const double *raw,
+        *parameter; // values of parameters, and all of them where derived ones follow from these
+};
+
+/// A motion from the start: q, u and the sides of switches at even times.
+struct ct_export_motion {
+    double duration;
+    long nstep;       // of NAME_step between two samples
+    size_t nsample;   // 0: none was found
+    double *y;        // (nsample x (nq + nu))
+    double tolerance; // of each number against the largest of its coordinate or speed
 };
 
 struct ct_export {
     const char *name;  // C identifier, prefix of all that is public
     const char *title; // of the model
     const struct ct_equations *e;
-    // outputs: M, Q, J, gam, q' and phi, v, J; inputs in one layout
-    const struct ct_listing *motion, *constraint;
+    // motion: M, Q, J, gam, q'; constraint: phi, v, J; parameter: all of them; root: g of each switch; memory: next values;
+    // power: of what is put in, or none; jump: place and rate of each driver, then dT/du, then T. Inputs in one layout
+    const struct ct_listing *motion, *constraint, *parameter, *output, *root, *memory, *power,
+        *jump, *reaction;
     // u', q', nfree pivots that must be positive and npivot pivots with |pivot| scale > weakest.
     // Where this fails, accelerations are found from the motion program. NULL: everywhere
     const struct ct_listing *solved;
@@ -29,15 +59,33 @@ struct ct_export {
     const double *scale;
     double weakest;
     size_t rank; // of the constraints
-    size_t at_q, at_u, at_switch, at_memory, ninput;
+    size_t at_q, at_u, at_a, at_lam, at_switch, at_memory, at_work, ninput;
+    struct ct_export_items parameters, inputs, coordinates, speeds, states, outputs, reactions;
+    bool needs_a, needs_lam; // outputs do
+    bool power_needs_lam;    // the power does
+    const bool *left_out;    // of inexact data: rows that take no part; NULL: none
+    const double *open;      // of inexact data: what rows leave open at the start
+    const double *knot;      // times where linear tables have kinks, ascending
+    size_t nknot;
     const struct ct_export_state *state; // the first one is the start
     size_t nstate;
-    unsigned lanes; // > 1: both programs for so many inputs side by side, too
+    struct ct_export_motion run;
+    double closed;  // what is left of constraints where they are met
+    unsigned lanes; // > 1: motion and constraint for so many inputs side by side, too
 };
+
+/// Doubles of work that the functions need.
+size_t ct_export_work(const struct ct_export *x);
 
 /// The texts of the files; they live in a.
 const char *ct_export_header(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_source(struct ct_arena *a, const struct ct_export *x);
 const char *ct_export_test(struct ct_arena *a, const struct ct_export *x);
+
+/// Does a parameter follow from others?
+bool ct_export_has_derived(const struct ct_export *x);
+struct ct_export_text;
+/// What does not depend on the model but for sizes: solving, projecting, stepping.
+void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x);
 
 #endif

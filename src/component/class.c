@@ -38,6 +38,12 @@ const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, 
     return word;
 }
 
+const char *ct_applied_load_name(enum ct_applied_load applied)
+{
+    static const char *const name[] = {NULL, "force", "torque"};
+    return name[applied];
+}
+
 const struct ct_value *ct_instance_value(const struct ct_instance *self, const char *key)
 {
     int nfamily;

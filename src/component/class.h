@@ -151,6 +151,8 @@ const struct ct_value *ct_instance_value(const struct ct_instance *self, const c
 
 /// What the key `value` of a force is: a vector on the frame `to`.
 enum ct_applied_load { CT_APPLIED_NONE, CT_APPLIED_FORCE, CT_APPLIED_TORQUE };
+/// Name of that vector as a signal: "force", "torque"; NULL of CT_APPLIED_NONE.
+const char *ct_applied_load_name(enum ct_applied_load applied);
 
 struct ct_component_class {
     const char *name, *summary;
@@ -164,6 +166,7 @@ struct ct_component_class {
     bool
         is_moment_free; // joints and forces: transmits no moment, but for springs, dampers and efforts of joints
     enum ct_applied_load applied; // forces
+    bool is_standard; // the class of a component without `type`; one in a family at most
     /// Joints with motion: fill `m` from the instance. NULL for distance and gear.
     void (*motion)(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m);
     /// Forces, distance and gear: add loads or rows through formulate/load.h and constraint_row.h.
@@ -205,5 +208,7 @@ const struct ct_key *ct_family_keys(enum ct_family family, int *nkey);
 extern const struct ct_component_class *const ct_component_classes[];
 extern const int ct_ncomponent_class;
 const struct ct_component_class *ct_component_find(enum ct_family family, const char *name);
+/// The class of a component without `type`; NULL if this family needs one.
+const struct ct_component_class *ct_component_standard(enum ct_family family);
 
 #endif

@@ -93,8 +93,9 @@ struct ct_model {
     struct ct_exs *x;
     const char *file; // as given on the command line
     const char *name, *description;
-    ct_ex time;     // the symbol t
-    ct_ex3 gravity; // [m/s^2]
+    ct_ex time;                  // the symbol t
+    ct_ex3 gravity;              // [m/s^2]
+    struct ct_mark gravity_mark; // of its key; no file where it is not given
     struct ct_parameter *parameter;
     size_t nparameter, parameter_cap;
     struct ct_state *state;
@@ -121,8 +122,9 @@ struct ct_set {
     const char *text;
     enum ct_set_kind {
         CT_SET_VALUE,
-        CT_SET_INPUTS,     // linear between its rows
-        CT_SET_INPUTS_HELD // a row counts from its time on
+        CT_SET_INPUTS,      // linear between its rows
+        CT_SET_INPUTS_HELD, // a row counts from its time on
+        CT_SET_OUTPUT       // an output NAME=EXPRESSION behind those of the file
     } kind;
 };
 

@@ -118,10 +118,13 @@ static void read_top(struct ct_reader *r)
 
 static void read_gravity(struct ct_reader *r)
 {
-    const struct ct_node *node = ct_node_get(r->root, "gravity");
+    const struct ct_node_pair *p = ct_node_find(r->root, "gravity");
     r->m->gravity = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
-    if (node)
-        ct_read_vec3(r, node, 0, "m/s^2", &r->m->gravity, NULL);
+    r->m->gravity_mark = (struct ct_mark){0};
+    if (!p)
+        return;
+    r->m->gravity_mark = p->mark;
+    ct_read_vec3(r, p->value, 0, "m/s^2", &r->m->gravity, NULL);
 }
 
 static void mark_reached(const struct ct_model *m, const struct ct_instance *self,
@@ -153,7 +156,8 @@ static void warn_of_lone_bodies(struct ct_reader *r)
 static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
                        const struct ct_set *set, size_t nset, struct ct_model *m)
 {
-    struct ct_reader r = {.ctx = ctx, .a = ctx->model, .m = m, .root = root};
+    struct ct_reader r
+        = {.ctx = ctx, .a = ctx->model, .m = m, .root = root, .set = set, .nset = nset};
     *m = (struct ct_model){.file = file};
     m->x = CT_NEW(ctx->model, struct ct_exs);
     ct_exs_init(m->x, ctx->model);

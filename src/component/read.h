@@ -21,6 +21,8 @@ struct ct_reader {
     struct ct_arena *a; // of the model
     struct ct_model *m;
     const struct ct_node *root;
+    const struct ct_set *set; // besides the file  (nset)
+    size_t nset;
     bool parameters_ok; // all have values; else checks that need a missing one are left out
     const char **known; // names for suggestions: t and the parameters
     size_t nknown, known_cap;
@@ -120,10 +122,9 @@ extern const double ct_read_full_turn;
 
 // ---- components --------------------------------------------------------------------------------
 
-/// The class named by `type`; NULL after an error. standard: when there is no `type`, or NULL.
+/// The class named by `type`, or the standard class of the family without it; NULL after an error.
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_node_pair *p, const char *sort,
-                                               const char *standard);
+                                               const struct ct_node_pair *p, const char *sort);
 /// Allocate the values of all keys, none given.
 void ct_read_alloc_values(struct ct_reader *r, struct ct_instance *self);
 /// Unknown keys of a component are errors, missing required ones too. use_family: the family's

@@ -210,7 +210,7 @@ static bool read_body(struct ct_reader *r, struct ct_body *b, const struct ct_no
 {
     struct ct_instance *self = &b->instance;
     const struct ct_node_pair p = {self->name, self->mark, node};
-    self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body", "rigid");
+    self->cls = ct_read_class(r, CT_FAMILY_BODY, &p, "body");
     if (!self->cls)
         return false;
     ct_read_alloc_values(r, self);

@@ -34,14 +34,13 @@ bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p, c
 }
 
 const struct ct_component_class *ct_read_class(struct ct_reader *r, enum ct_family family,
-                                               const struct ct_node_pair *p, const char *sort,
-                                               const char *standard)
+                                               const struct ct_node_pair *p, const char *sort)
 {
     if (!ct_read_shape(r, p->value, CT_NODE_MAP, "a map of keys"))
         return NULL;
     const struct ct_node *type = ct_node_get(p->value, "type");
-    if (!type && standard)
-        return ct_component_find(family, standard);
+    if (!type && ct_component_standard(family))
+        return ct_component_standard(family);
     if (!type) {
         ct_error(r->ctx, p->mark, CT_E_KEY_MISSING, "%s '%s' needs a 'type'", sort, p->key);
         return NULL;

@@ -402,7 +402,7 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
                        const struct ct_node *node)
 {
     const struct ct_node_pair p = {self->name, self->mark, node};
-    self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint", NULL);
+    self->cls = ct_read_class(r, CT_FAMILY_JOINT, &p, "joint");
     if (!self->cls)
         return false;
     ct_read_alloc_values(r, self);

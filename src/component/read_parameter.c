@@ -289,7 +289,7 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
         if (w.node[i]->kind == CT_NODE_SCALAR)
             r->m->parameter[i].unit = ct_parse_unit(w.node[i]->text);
     for (size_t k = 0; k < nset; k++)
-        if (set[k].kind != CT_SET_VALUE)
+        if (set[k].kind == CT_SET_INPUTS || set[k].kind == CT_SET_INPUTS_HELD)
             ok &= ct_read_played_inputs(r, set[k].text, set[k].kind == CT_SET_INPUTS_HELD);
     for (size_t i = 0; i < w.n; i++) {
         w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);

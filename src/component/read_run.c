@@ -75,10 +75,29 @@ static bool read_named(struct ct_reader *r, const struct ct_node *node, struct c
     return ct_read_expr(r, value, CT_KEY_STATE, NULL, &o->value) && ok;
 }
 
-void ct_read_outputs(struct ct_reader *r)
+// Besides those of the file.
+static void read_more(struct ct_reader *r, const char *text, struct ct_names *names)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text) {
+        ct_error(r->ctx, (struct ct_mark){0}, CT_E_USAGE,
+                 "the output '%s': NAME=EXPRESSION is wanted", text);
+        return;
+    }
+    const struct ct_node value
+        = {.kind = CT_NODE_SCALAR, .text = ct_arena_strdup(r->a, equals + 1), .is_plain = true};
+    struct ct_output o = {.name = ct_arena_strndup(r->a, text, (size_t)(equals - text))};
+    const size_t first = r->ctx->ndiagnostic;
+    if (!ct_read_expr(r, &value, CT_KEY_STATE, NULL, &o.value) || !add_output(r, o, names))
+        for (size_t i = first; i < r->ctx->ndiagnostic; i++)
+            if (r->ctx->diagnostic[i].severity == CT_SEVERITY_ERROR)
+                r->ctx->diagnostic[i].text = ct_arena_printf(r->a, "the output '%s': %s", text,
+                                                             r->ctx->diagnostic[i].text);
+}
+
+static void read_list(struct ct_reader *r, struct ct_names *names)
 {
     const struct ct_node *node = ct_node_get(r->root, "outputs");
-    struct ct_names names = {0};
     if (!node || ct_node_is_null(node)
         || !ct_read_shape(r, node, CT_NODE_LIST, "a list of outputs"))
         return;
@@ -86,8 +105,17 @@ void ct_read_outputs(struct ct_reader *r)
         struct ct_output o = {0};
         const struct ct_node *item = node->item[i];
         if (item->kind == CT_NODE_MAP ? read_named(r, item, &o) : read_signal(r, item, &o))
-            add_output(r, o, &names);
+            add_output(r, o, names);
     }
+}
+
+void ct_read_outputs(struct ct_reader *r)
+{
+    struct ct_names names = {0};
+    read_list(r, &names);
+    for (size_t i = 0; i < r->nset; i++)
+        if (r->set[i].kind == CT_SET_OUTPUT)
+            read_more(r, r->set[i].text, &names);
 }
 
 // ---- simulation --------------------------------------------------------------------------------

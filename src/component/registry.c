@@ -23,3 +23,11 @@ const struct ct_component_class *ct_component_find(enum ct_family family, const 
             return ct_component_classes[i];
     return NULL;
 }
+
+const struct ct_component_class *ct_component_standard(enum ct_family family)
+{
+    for (int i = 0; i < ct_ncomponent_class; i++)
+        if (ct_component_classes[i]->family == family && ct_component_classes[i]->is_standard)
+            return ct_component_classes[i];
+    return NULL;
+}

@@ -47,12 +47,12 @@ static const char *unit_of_coordinate(const struct ct_build *b, int joint, const
     while (k < COUNT(kinds)
            && (strlen(kinds[k]) != letters || strncmp(property, kinds[k], letters) != 0))
         k++;
-    if (k == COUNT(kinds) || b->edge_of_joint[joint] < 0)
+    if (k == COUNT(kinds) || b->topology->edge_of_joint[joint] < 0)
         return NULL;
     for (const char *p = property + letters; *p && place < 100; p++)
         place = 10 * place + (size_t)(*p - '0');
     place -= place > 0;
-    const struct ct_motion *m = &b->edge[b->edge_of_joint[joint]].trial;
+    const struct ct_motion *m = &b->topology->edge[b->topology->edge_of_joint[joint]].trial;
     if (m->quaternion >= 0 && place >= (size_t)m->quaternion)
         return k == 0 ? "" : of_angle[k];
     if (place >= (size_t)m->nmeasure)

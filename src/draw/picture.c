@@ -198,21 +198,26 @@ static void draw_all(struct ct_sketch *d)
     draw_strip(d);
 }
 
-bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
-                      const char *path)
+void ct_picture_print(FILE *out, struct ct_arena *a, const struct ct_picture *p)
 {
     struct ct_sketch d
         = {.a = a, .picture = p, .s = p->scene, .value = p->value, .view = p->view};
-    struct ct_outfile file;
     double width, height;
     ct_sketch_fit(&d, &width, &height);
-    if (!ct_outfile_open(ctx, &file, path))
-        return false;
-    ct_canvas_begin(&d.canvas, a, file.stream, width, height, p->title);
+    ct_canvas_begin(&d.canvas, a, out, width, height, p->title);
     d.pen = (struct ct_pen){&d.canvas, &d.view, ct_sketch_symbol_size(&d)};
     ct_sketch_find_blocks(&d);
     ct_sketch_find_outlines(&d);
     draw_all(&d);
     ct_canvas_end(&d.canvas);
+}
+
+bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
+                      const char *path)
+{
+    struct ct_outfile file;
+    if (!ct_outfile_open(ctx, &file, path))
+        return false;
+    ct_picture_print(file.stream, a, p);
     return ct_outfile_close(ctx, &file);
 }

@@ -17,7 +17,9 @@ struct ct_picture {
     const int *path_body; // whose point it is, for its colour
 };
 
-/// Write it as SVG. a: for the time of the call. Errors: E002. Raises the guard.
+/// Print it as SVG, <svg> ... </svg>. a: for the time of the call. Raises the guard.
+void ct_picture_print(FILE *out, struct ct_arena *a, const struct ct_picture *p);
+/// Write it as a file. a: for the time of the call. Errors: E002. Raises the guard.
 bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
                       const char *path);
 

@@ -67,7 +67,7 @@ static void create_joint(struct ct_build *b, size_t i, struct ct_scene_joint *j)
         j->symbol = CT_SYMBOL_ROD;
         return;
     }
-    const struct ct_motion *m = &b->edge[b->edge_of_joint[i]].trial;
+    const struct ct_motion *m = &b->topology->edge[b->topology->edge_of_joint[i]].trial;
     const int nlength = count_lengths(m);
     j->symbol = symbol_of(m, nlength);
     find_axes(b->model, m, j);
@@ -148,7 +148,7 @@ static void push3(struct values *v, ct_ex3 e)
 static void push_frame(struct ct_build *b, struct values *v, int node)
 {
     push3(v, ct_node_position(b, node));
-    const bool is_turned = !b->node[node].is_particle;
+    const bool is_turned = !b->topology->node[node].is_particle;
     const ct_ex33 R = is_turned ? ct_node_rotation(b, node) : (ct_ex33){{CT_EX_ZERO}};
     for (int i = 0; i < 9; i++)
         push(v, is_turned ? R.e[i] : i % 4 == 0 ? CT_EX_ONE : CT_EX_ZERO);
@@ -178,11 +178,11 @@ static void push_beam(struct ct_build *b, struct values *v, const struct ct_flex
 static void push_load(struct ct_build *b, struct values *v, struct ct_scene_force *force)
 {
     force->first = SIZE_MAX;
-    for (size_t i = 0; i < b->nload && force->from < 0; i++)
-        if (b->load[i].self == force->self) {
+    for (size_t i = 0; i < b->dynamics.nload && force->from < 0; i++)
+        if (b->dynamics.load[i].self == force->self) {
             force->first = v->n;
-            push3(v, b->load[i].force);
-            push3(v, b->load[i].torque);
+            push3(v, b->dynamics.load[i].force);
+            push3(v, b->dynamics.load[i].torque);
             return;
         }
 }
@@ -204,10 +204,11 @@ void ct_scene_create(struct ct_system *sys, struct ct_scene *s)
     struct ct_arena *a = sys->own.model;
     const struct ct_model *m = &sys->model;
     struct values v = {.a = a};
-    *s = (struct ct_scene){.model = m, .is_planar = b->keeps_plane, .nbeam = b->nflexible};
+    *s = (struct ct_scene){
+        .model = m, .is_planar = b->topology->keeps_plane, .nbeam = b->nflexible};
     number3(m, m->gravity, s->gravity);
     if (s->is_planar)
-        number3(m, b->normal, s->normal);
+        number3(m, b->topology->normal, s->normal);
     s->joint = CT_NEWN(a, struct ct_scene_joint, m->njoint + 1);
     s->force = CT_NEWN(a, struct ct_scene_force, m->nforce + 1);
     s->beam = CT_NEWN(a, struct ct_scene_beam, s->nbeam + 1);
@@ -217,7 +218,7 @@ void ct_scene_create(struct ct_system *sys, struct ct_scene *s)
         create_force(&m->force[i], &s->force[i]);
     create_bodies(a, s);
     for (size_t f = 0; f < m->nframe; f++)
-        push_frame(b, &v, b->node_of_frame[f]);
+        push_frame(b, &v, b->topology->node_of_frame[f]);
     for (size_t i = 0; i < s->nbeam; i++) {
         push_beam(b, &v, &b->flexible[i], &s->beam[i]);
         s->body[b->flexible[i].body].beam = (int)i;

@@ -5,19 +5,6 @@
 
 #include <string.h>
 
-// p0^2 = 1 - p1^2 - p2^2 - p3^2: p0 is expanded as the square root of that.
-static void add_quaternion(struct ct_collector *c, const ct_ex p[4])
-{
-    struct ct_poly *square = CT_NEW(c->arena, struct ct_poly);
-    *square = ct_poly_term(&c->ps, 1, 0);
-    for (int i = 1; i < 4; i++) {
-        const uint32_t mono = ct_mono_atom(&c->ps, ct_collector_atom(c, p[i]), 2);
-        *square = ct_poly_add(&c->ps, *square, -1, ct_poly_term(&c->ps, 1, mono));
-    }
-    c->atom[ct_collector_atom(c, p[0])].square = square;
-    c->has_roots = true;
-}
-
 static struct ct_arena *scratch_of(const struct ct_exs *x,
                                    const struct ct_collect_options *options)
 {
@@ -31,7 +18,7 @@ static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_opti
     struct ct_collector *c = CT_NEW(arena, struct ct_collector);
     ct_collector_init(c, x, arena, options && options->limit ? options->limit : 2000, early);
     for (size_t k = 0; options && k < options->nquaternion; k++)
-        add_quaternion(c, options->quaternion[k]);
+        ct_collector_add_quaternion(c, options->quaternion[k]);
     return c;
 }
 

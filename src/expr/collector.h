@@ -43,6 +43,8 @@ void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena
                        size_t limit, bool early);
 /// The atom of a node that is not a sine or cosine.
 uint32_t ct_collector_atom(struct ct_collector *c, ct_ex e);
+/// p0^2 = 1 - p1^2 - p2^2 - p3^2: p0 is expanded as the square root of that.
+void ct_collector_add_quaternion(struct ct_collector *c, const ct_ex p[4]);
 /// CT_OP_SIN or CT_OP_COS of a polynomial: a number, an atom or minus an atom.
 struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op,
                                  struct ct_poly argument);

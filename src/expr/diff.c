@@ -240,13 +240,13 @@ static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex
                                        : ct_ex_fun2(x, (enum ct_op)n->op, a, b);
 }
 
-static ct_ex rebuild_mapped(struct ct_exs *x, const struct ct_exnode *n, const ct_ex *image)
+ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image)
 {
-    const uint32_t arg[3] = {n->a, n->b, n->c};
+    const uint32_t arg[3] = {n.a, n.b, n.c};
     ct_ex m[3] = {{0}, {0}, {0}};
-    for (int i = 0; i < ct_op_info[n->op].narg; i++)
+    for (int i = 0; i < ct_op_info[n.op].narg; i++)
         m[i] = image[arg[i]];
-    return rebuild(x, n, m[0], m[1], m[2]);
+    return rebuild(x, &n, m[0], m[1], m[2]);
 }
 
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
@@ -269,7 +269,7 @@ void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, 
                 if (from[i].id == list[k])
                     image[list[k]] = to[i];
         } else if (ct_op_info[node.op].narg) {
-            image[list[k]] = rebuild_mapped(x, &node, image);
+            image[list[k]] = ct_ex_rebuild(x, node, image);
         }
     }
     for (size_t k = 0; k < na; k++)

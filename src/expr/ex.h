@@ -235,6 +235,8 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t n);
+/// A node that has operands, made in x from image[id] of each operand.
+ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
 typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
                                ct_ex s);

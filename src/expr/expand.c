@@ -54,6 +54,18 @@ uint32_t ct_collector_atom(struct ct_collector *c, ct_ex e)
     return c->atom_of[e.id] - 1;
 }
 
+void ct_collector_add_quaternion(struct ct_collector *c, const ct_ex p[4])
+{
+    struct ct_poly *square = CT_NEW(c->arena, struct ct_poly);
+    *square = ct_poly_term(&c->ps, 1, 0);
+    for (int i = 1; i < 4; i++) {
+        const uint32_t mono = ct_mono_atom(&c->ps, ct_collector_atom(c, p[i]), 2);
+        *square = ct_poly_add(&c->ps, *square, -1, ct_poly_term(&c->ps, 1, mono));
+    }
+    c->atom[ct_collector_atom(c, p[0])].square = square;
+    c->has_roots = true;
+}
+
 static struct ct_poly number(struct ct_collector *c, double v)
 {
     return ct_poly_term(&c->ps, v, 0);

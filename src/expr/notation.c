@@ -50,12 +50,23 @@ static bool is_greek(const char *s, size_t n)
 
 const char *ct_latex_quoted(struct ct_arena *a, const char *name)
 {
-    char *quoted = ct_arena_alloc(a, 2 * strlen(name) + 1), *q = quoted;
+    static const char *const sign[][2]
+        = {{"\\", "\\backslash "}, {"^", "\\wedge "}, {"~", "\\sim "}};
+    char *quoted = ct_arena_alloc(a, 11 * strlen(name) + 1), *q = quoted;
     for (; *name; name++) {
+        size_t k = 0;
+        while (k < COUNT(sign) && *name != *sign[k][0])
+            k++;
+        if (k < COUNT(sign)) {
+            memcpy(q, sign[k][1], strlen(sign[k][1]));
+            q += strlen(sign[k][1]);
+            continue;
+        }
         if (strchr("_#$%&{}", *name))
             *q++ = '\\';
         *q++ = *name;
     }
+    *q = '\0';
     return quoted;
 }
 

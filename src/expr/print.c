@@ -127,10 +127,10 @@ static const char *without_group(struct ct_arena *a, const char *s, const struct
 }
 
 // Too wide for a line that is indented.
-static bool is_wide(const char *s)
+static bool is_wide(const struct ct_printer *pr, const char *s)
 {
-    const size_t indent = 40;
-    return ct_latex_width(s, strlen(s)) + indent > CT_LATEX_LINE;
+    const size_t indent = 40, line = pr->p.line ? pr->p.line : CT_LATEX_LINE;
+    return ct_latex_width(s, strlen(s)) + indent > line;
 }
 
 // A fraction in LaTeX. One with a part wider than a line is printed as a product, which can be
@@ -141,8 +141,8 @@ static void emit_fraction(struct ct_printer *pr, const struct ct_term *t)
     const char *above = take_factors(pr, t->number, t->pi, &t->above),
                *below = without_group(
                    pr->arena, take_factors(pr, t->divisor, -t->pi, &t->below), &t->below);
-    const bool is_wide_below = is_wide(below);
-    if (!is_wide_below && !is_wide(above)) {
+    const bool is_wide_below = is_wide(pr, below);
+    if (!is_wide_below && !is_wide(pr, above)) {
         above = without_group(pr->arena, above, &t->above);
         put(pr, ct_arena_printf(pr->arena, "\\frac{%s}{%s}", above, below));
     } else if (is_wide_below) {
@@ -172,19 +172,20 @@ static void emit_term(struct ct_printer *pr, const struct ct_term *t)
     }
 }
 
+static void emit_signed(struct ct_printer *pr, const struct ct_term *t, bool is_first)
+{
+    put(pr, is_first ? t->negative ? "-" : "" : t->negative ? " - " : " + ");
+    emit_term(pr, t);
+}
+
 static void emit_sum(struct ct_printer *pr, ct_ex e, enum level level)
 {
     const struct ct_terms t = ct_terms_of_sum(pr, e);
     const bool group
         = (t.n > 1 || t.at[0].negative) ? level >= LEVEL_FACTOR : level >= LEVEL_BASE;
     open_group(pr, group);
-    for (size_t k = 0; k < t.n; k++) {
-        if (k == 0)
-            put(pr, t.at[k].negative ? "-" : "");
-        else
-            put(pr, t.at[k].negative ? " - " : " + ");
-        emit_term(pr, &t.at[k]);
-    }
+    for (size_t k = 0; k < t.n; k++)
+        emit_signed(pr, &t.at[k], k == 0);
     close_group(pr, group);
 }
 
@@ -222,7 +223,7 @@ static const char *table_name(const struct ct_printer *pr, const struct ct_exnod
     char *s = column ? ct_arena_strdup(pr->arena, column)
                      : ct_arena_printf(pr->arena, "table%u", n->b + 1);
     if (is_latex(pr))
-        s = ct_arena_printf(pr->arena, "\\mathrm{%s}", s);
+        s = ct_arena_printf(pr->arena, "\\mathrm{%s}", ct_latex_quoted(pr->arena, s));
     for (uint32_t k = 0; k < n->c; k++)
         s = ct_arena_printf(pr->arena, "%s'", s);
     return s;
@@ -278,10 +279,19 @@ static void emit_cases(struct ct_printer *pr, const struct ct_exnode *n)
     const char *s = ct_arena_printf(
         pr->arena, "\\begin{cases} %s & %s%s \\\\ %s & \\text{otherwise} \\end{cases}", then,
         is_true, comparison ? "" : " \\neq 0", otherwise);
-    put(pr, !is_wide(s) ? s
-                        : ct_arena_printf(
-                            pr->arena, "\\operatorname{if}\\left(%s%s,\\; %s,\\; %s\\right)",
-                            is_true, comparison ? "" : " \\neq 0", then, otherwise));
+    put(pr,
+        !is_wide(pr, s)
+            ? s
+            : ct_arena_printf(pr->arena, "\\operatorname{if}\\left(%s%s,\\; %s,\\; %s\\right)",
+                              is_true, comparison ? "" : " \\neq 0", then, otherwise));
+}
+
+// A root cannot be broken: one wider than a line is written as a power.
+static void emit_root(struct ct_printer *pr, uint32_t id)
+{
+    const char *s = take(pr, id);
+    put(pr, ct_arena_printf(pr->arena,
+                            is_wide(pr, s) ? "\\left(%s\\right)^{1/2}" : "\\sqrt{%s}", s));
 }
 
 static void emit_function(struct ct_printer *pr, const struct ct_exnode *n)
@@ -292,7 +302,7 @@ static void emit_function(struct ct_printer *pr, const struct ct_exnode *n)
     } else if (!is_latex(pr)) {
         emit_call(pr, name, n);
     } else if (n->op == CT_OP_SQRT) {
-        emit_wrapped(pr, "\\sqrt{", n->a, "}");
+        emit_root(pr, n->a);
     } else if (n->op == CT_OP_ABS) {
         emit_wrapped(pr, "\\left|", n->a, "\\right|");
     } else if (n->op == CT_OP_IF) {
@@ -383,6 +393,15 @@ static const char *symbol_text(const struct ct_printer *pr, const struct ct_sym 
 // Parentheses within parentheses: far beyond reading, well within the stack.
 enum { DEEPEST = 500 };
 
+// Is e printed as a sum of products, of one too?
+static bool has_terms(const struct ct_printer *pr, ct_ex e)
+{
+    const struct ct_exnode *n = ct_ex_node(pr->x, e);
+    return n->op == CT_OP_ADD || n->op == CT_OP_SUB || n->op == CT_OP_NEG || n->op == CT_OP_MUL
+        || n->op == CT_OP_DIV
+        || (n->op == CT_OP_POW && ct_whole_exponent(pr->x, (ct_ex){n->b}));
+}
+
 static void emit(struct ct_printer *pr, ct_ex e, enum level level)
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, e);
@@ -402,9 +421,7 @@ static void emit(struct ct_printer *pr, ct_ex e, enum level level)
         emit_const(pr, v, level);
     else if (n->op == CT_OP_SYM)
         put(pr, symbol_text(pr, &pr->x->sym[n->a]));
-    else if (n->op == CT_OP_ADD || n->op == CT_OP_SUB || n->op == CT_OP_NEG
-             || n->op == CT_OP_MUL || n->op == CT_OP_DIV
-             || (n->op == CT_OP_POW && ct_whole_exponent(pr->x, (ct_ex){n->b})))
+    else if (has_terms(pr, e))
         emit_sum(pr, e, level);
     else if (n->op == CT_OP_POW)
         emit_power(pr, n, level);
@@ -446,13 +463,20 @@ static const char *c_text(struct ct_printer *pr, ct_ex e, bool operand)
 
 // ---- entries ----------------------------------------------------------------------------------
 
-static const char *print(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
-                         const struct ct_print *p, uint32_t body)
+static struct ct_printer create(struct ct_arena *a, const struct ct_exs *x,
+                                const struct ct_print *p, uint32_t body)
 {
     struct ct_printer pr = {.arena = a, .x = x, .body = body};
     if (p)
         pr.p = *p;
     pr.left = pr.p.limit ? pr.p.limit : 20000;
+    return pr;
+}
+
+static const char *print(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
+                         const struct ct_print *p, uint32_t body)
+{
+    struct ct_printer pr = create(a, x, p, body);
     if (pr.p.style == CT_PRINT_C)
         return c_text(&pr, e, false);
     emit(&pr, e, LEVEL_ANY);
@@ -470,4 +494,26 @@ const char *ct_ex_text_body(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                             const struct ct_print *p)
 {
     return print(a, x, e, p, e.id);
+}
+
+size_t ct_ex_terms(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
+                   const struct ct_print *p, struct ct_print_term **term)
+{
+    struct ct_printer pr = create(a, x, p, UINT32_MAX);
+    if (ct_printer_name(&pr, e) || ct_ex_is_const(x, e, NULL) || !has_terms(&pr, e)) {
+        *term = CT_NEW(a, struct ct_print_term);
+        **term = (struct ct_print_term){e, false, ct_ex_text(a, x, e, p)};
+        return 1;
+    }
+    pr.left--; // e itself
+    pr.depth++;
+    const struct ct_terms t = ct_terms_of_sum(&pr, e);
+    *term = CT_NEWN(a, struct ct_print_term, t.n);
+    for (size_t k = 0; k < t.n; k++) {
+        pr.n = 0;
+        emit_signed(&pr, &t.at[k], k == 0);
+        (*term)[k] = (struct ct_print_term){t.at[k].e, t.at[k].is_subtracted,
+                                            ct_arena_strndup(a, pr.s, pr.n)};
+    }
+    return t.n;
 }

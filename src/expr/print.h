@@ -40,6 +40,8 @@ struct ct_print {
     bool fractions;
     /// No number comes from data: halves are fractions in every term.
     bool no_data;
+    /// Width of a line of LaTeX [pt]; 0: CT_LATEX_LINE.
+    size_t line;
 };
 
 /// e as text; p may be NULL. The text and all work space live in a.
@@ -48,6 +50,17 @@ const char *ct_ex_text(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
 /// The same without asking p->node for e itself: the right side of a definition of e.
 const char *ct_ex_text_body(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                             const struct ct_print *p);
+
+/// A term of a sum.
+struct ct_print_term {
+    ct_ex value;        ///< an operand of the sum
+    bool is_subtracted; ///< the term is -value
+    const char *text;   ///< with its sign: " + m*g", " - m*g", the first one "m*g" or "-m*g"
+};
+/// The terms of e in the order in which ct_ex_text prints them; their texts joined are its text. One that is no sum
+/// is one term. Returns their number. The list lives in a. Text and LaTeX.
+size_t ct_ex_terms(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
+                   const struct ct_print *p, struct ct_print_term **term);
 
 /// The shortest decimal that reads back to the same bits.
 const char *ct_number_text(struct ct_arena *a, double v);

@@ -226,7 +226,8 @@ static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
 
 static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
 {
-    struct ct_term t = {.negative = negative, .number = 1, .divisor = 1};
+    struct ct_term t
+        = {.e = e, .is_subtracted = negative, .negative = negative, .number = 1, .divisor = 1};
     flatten_product(pr, &t, e, 1);
     if (pr->p.fractions) {
         t.number = ct_fraction_tidy(t.number);
@@ -289,7 +290,7 @@ static void flatten_sum(struct ct_printer *pr, struct ct_terms *t, ct_ex e)
         const bool is_sum = node->op == CT_OP_ADD || node->op == CT_OP_SUB;
         pr->left -= !is_whole;
         if (is_whole || !(is_sum || node->op == CT_OP_NEG)) {
-            const struct ct_term one = make_term(pr, s.e, s.negative);
+            struct ct_term one = make_term(pr, s.e, s.negative);
             CT_PUSH(pr->arena, t->at, t->n, t->cap, one);
             continue;
         }

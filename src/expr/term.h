@@ -59,6 +59,8 @@ enum ct_term_class {
 
 /// number * above / (divisor * below)
 struct ct_term {
+    ct_ex e;            ///< the operand of the sum
+    bool is_subtracted; ///< the term is -e
     bool negative;
     double number, divisor;
     int pi; ///< its exponent

@@ -5,9 +5,9 @@
 
 ct_ex3 ct_build_in_plane(struct ct_build *b, ct_ex3 v)
 {
-    if (!b->is_planar)
+    if (!b->topology->is_planar)
         return v;
-    const ct_ex3 n = b->plane[2];
+    const ct_ex3 n = b->topology->plane[2];
     return ct_ex3_sub(b->x, v, ct_ex3_scale(b->x, ct_ex3_dot(b->x, n, v), n));
 }
 

@@ -1,4 +1,11 @@
-// Equations under construction: linear graph, clusters, links, and what is derived from them.
+// Equations under construction, stage by stage; each struct is const for the stages below it.
+//
+//     struct ct_build_options   what is asked for
+//     struct ct_topology        linear graph, plane of a planar mechanism      topology/
+//     struct ct_kinematics      clusters, axes, anchors, places of nodes       kinematics/
+//     struct ct_row_wrenches    what multipliers of constraint rows do         kinematics/
+//     struct ct_dynamics        loads, lumped masses, sweeps of forces         dynamics/
+//     struct ct_equations       the result (equations.h)
 //
 //   rotation    ground cluster --axis, angle--> cluster --> ...     a cluster is a set of frames that
 //                                                                   turn together (arms, welds)
@@ -11,6 +18,7 @@
 #ifndef CT_FORMULATE_BUILD_H
 #define CT_FORMULATE_BUILD_H
 
+#include "base/pairs.h"
 #include "component/model.h"
 #include "formulate/equations.h"
 #include "graph/graph.h"
@@ -45,21 +53,52 @@ struct ct_edge_info {
     struct ct_mark mark;
     int index;                      // of the body, joint or force in the model; arms: frame
     const struct ct_instance *self; // joints, forces
-    ct_ex3 at;                      // arms: place in axes of the tail
-    ct_ex33 S; // arms: rotation of the head out of the tail's axes; bodies in a
-               // plane: that of the body before its angle
-    struct ct_motion trial,
-        motion;        // bodies, joints, closures: with LOCAL symbols; with coordinates
-    bool has_rotation; // false where a particle is reached
+    ct_ex3 at;                      // arms: place in axes of the tail [m]
+    ct_ex33 S;              // arms: rotation of the head out of the tail's axes; bodies in a
+                            // plane: that of the body before its angle
+    struct ct_motion trial; // bodies, joints, closures: with LOCAL symbols as coordinates
+    bool has_rotation;      // false where a particle is reached
     bool must_be_branch, never_branch;
     int weight_t, weight_r;            // freedoms in the translational and rotational graph
     int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
-    struct ct_flexible *flexible;      // arms of beams: the beam, with the section at `along`
-    ct_ex along;                       // [m]
-    const struct ct_station *station;  // once the beam's coordinates are chosen
-    ct_ex3 *foreshortened; // slides that forces act along, where they differ; else NULL
-    ct_ex3 *translation, *rotation; // of the station, by elastic coordinate
+    int beam; // arms of beams: number in build->flexible, with the section at `along`; else -1
+    ct_ex along; // [m]
 };
+
+/// The linear graph of a model and the plane it keeps to: written by formulate/topology, const for
+/// all that follows. Lengths of the lists are nnode and nedge unless a comment says otherwise.
+struct ct_topology {
+    struct ct_graph graph;
+    struct ct_node_info *node;
+    struct ct_edge_info *edge;
+    struct ct_edge *wiring; // of graph
+    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
+    int *node_of_frame, *node_of_com; // by frame, by body
+    int *edge_of_joint, *edge_of_body;
+
+    // planar mechanisms: common normal and a basis of the plane (ground components)
+    bool is_planar;
+    bool keeps_plane;          // is_planar, or would be if something were left out
+    bool is_spatial_for_beams; // for that alone the mechanism is not planar
+    ct_ex3 normal;             // to that plane
+    ct_ex3 plane[3];           // e1, e2, n
+    ct_ex *layer;              // by node: its place along n [m]
+    // by node: its axes -> ground's, joints at rest; identity where both see the normal alike
+    ct_ex33 *upright;
+};
+
+/// What an edge does in coordinates of the chosen trees, by edge.
+struct ct_edge_kinematics {
+    struct ct_motion motion; // bodies, joints, closures; arms: d, and turns of sections
+    const struct ct_station *station; // arms of beams: once the beam's coordinates are chosen
+    ct_ex3 *translation, *rotation;   // of the station, by elastic coordinate
+    ct_ex3 *foreshortened; // translations that forces act along, where they differ; else NULL
+};
+
+static inline bool ct_edge_is_rigid_arm(const struct ct_edge_info *e)
+{
+    return e->kind == CT_EDGE_ARM && e->beam < 0;
+}
 
 /// coef times a speed: of an unknown (speed >= 0) or of a driver (driver >= 0).
 struct ct_term {
@@ -91,9 +130,7 @@ struct ct_cluster {
     ct_ex own_angle; // against its parent, where it is one turn
     ct_ex33 S;       // else its axes -> its parent's
     ct_ex omega;     // planar: w = omega * normal
-    ct_ex3 w, al[2]; // angular velocity, acceleration: [0] with u' = 0, [1] with symbols u'
-    bool has_al[2];
-    ct_ex33 L; // augmented inertia, local (augmented_body.c)
+    ct_ex3 w;        // angular velocity [rad/s]
 };
 
 /// Sliding of a link along p (local) at the speed of an unknown or a driver.
@@ -115,10 +152,6 @@ struct ct_anchor {
     ct_ex3 drift,
         drift_bias; // local: rate of `local`, and its second derivative with all u' = 0
     bool moves;     // has slides or a drift
-    ct_ex mass;     // of everything outboard [kg]
-    ct_ex3 d;       // R_cluster local
-    ct_ex3 v, a[2];
-    bool has_d, has_v, has_a[2];
 };
 
 /// Where a node is: at an anchor plus R_cluster local; its axes: R_frame S.
@@ -127,6 +160,46 @@ struct ct_node_placement {
     ct_ex3 local;
     int frame; // cluster the node's axes belong to
     ct_ex33 S; // rotation of the node's axes in it, constant
+};
+
+/// Where frames are and how they move, in coordinates of the chosen trees: written by ct_unknowns_choose,
+/// ct_rotation_derive and ct_translation_derive (kinematics/), const for all that follows.
+struct ct_kinematics {
+    struct ct_edge_kinematics *edge; // by edge
+    struct ct_cluster *cluster;
+    struct ct_rotation_axis *rotation_axis;
+    struct ct_anchor *anchor;
+    struct ct_node_placement *placement; // by node
+    size_t ncluster, cluster_cap, nrotation_axis, rotation_axis_cap, nanchor, anchor_cap;
+};
+
+/// What functions of kinematics/ have been asked for so far, and their workspace.
+struct ct_kinematics_cache {
+    // [0] with u' = 0, [1] with symbols u'
+    struct ct_cluster_cache {
+        ct_ex3 al[2]; // angular acceleration [rad/s^2]
+        bool has_al[2];
+    } * cluster; // by cluster
+    struct ct_anchor_cache {
+        ct_ex3 d;       // R_cluster local [m]
+        ct_ex3 p;       // [m]
+        ct_ex3 v, a[2]; // [m/s], [m/s^2]
+        bool has_d, has_p, has_v, has_a[2];
+    } * anchor;             // by anchor
+    struct ct_piece *piece; // of the path sought last (nanchor + 2)
+    bool *marked;           // clusters that matter to it (ncluster)
+    ct_ex *coefficient;     // of the speeds, in the row in hand (nu)
+};
+
+/// Masses that move alike, lumped (dynamics/augmented_body.c, mass_sums.h).
+struct ct_lumped_masses {
+    bool is_lumped;
+    struct ct_augmented_body *augmented_body;
+    size_t naugmented_body, augmented_body_cap;
+    struct ct_pairs of; // number of the augmented body of (anchor, cluster)
+    int *child;         // anchors, augmented body by augmented body
+    ct_ex33 *inertia;   // by cluster: augmented inertia, local [kg m^2]
+    ct_ex *mass;        // by anchor: of everything outboard [kg]
 };
 
 /// A load: force F at the head, torque T on the head, the opposite on the tail along the same line.
@@ -171,94 +244,97 @@ struct ct_sweep;
 struct ct_multiplier_wrench; // constraint_row.h
 struct ct_coupling;
 
+/// What is asked of the equations; const from the start.
+struct ct_build_options {
+    const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
+    const struct ct_equations *like; // whose beams are formulated alike; NULL: none
+    bool keep_all;                   // leave nothing out
+    // beams do what their sections allow, whether the scene excites it or not
+    bool keeps_all_deformations;
+    bool drivers_are_held; // drivers stand still: time does not go on
+    bool has_offsets;      // loops need not be closed (constraint_offset.h)
+    bool is_rigid; // beams keep their shape: for assembly, where they are not deformed yet
+};
+
+/// What the multipliers of constraint rows do: written by ct_rows_derive (constraint_row.h).
+struct ct_row_wrenches {
+    struct ct_multiplier_wrench *multiplier_wrench;
+    size_t nmultiplier_wrench, multiplier_wrench_cap;
+    struct ct_coupling *coupling;
+    size_t ncoupling, coupling_cap;
+};
+
+/// Loads and what dynamics/ sums of them: loads by ct_loads_derive, the rest when it is first asked for.
+struct ct_dynamics {
+    struct ct_load *load;
+    size_t nload, load_cap;
+    struct ct_lumped_masses masses;
+    struct ct_speed_axis { // a rotation axis or an anchor's translation axis that a speed moves
+        bool is_translation;
+        size_t at, next; // next: its number plus one, 0 at the end
+        int k;           // term or translation
+    } * speed_axis;
+    size_t nspeed_axis, speed_axis_cap;
+    size_t *first_speed_axis;        // by speed, numbers plus one; NULL: not listed yet
+    const struct ct_sweep *sweep[2]; // by level, once asked for
+    ct_ex *effort;                   // of joints along their unknown coordinates (nu)
+};
+
+/// Equations under construction. Each stage fills its part, which later stages only read (stage.h).
 struct ct_build {
     struct ct_ctx *ctx;
     struct ct_arena *arena;
     const struct ct_model *model;
     struct ct_exs *x;
     const double *value; // of all symbols at the start, by symbol index (parameters and t = 0)
-    struct ct_equations *eqs;
-
+    const struct ct_build_options *options;
     bool is_derived; // by T and R, with the dynamics, when they were chosen
 
-    // planar mechanisms: common normal and a basis of the plane (ground components)
-    bool is_planar;
-    bool keeps_plane;      // is_planar, or would be if something were left out
-    ct_ex3 normal;         // to that plane
-    const bool *is_linear; // by body: beams left to the program that are; NULL: not known yet
-    const struct ct_equations *like; // whose beams are formulated alike; NULL: none
-    bool keep_all;                   // leave nothing out
-    bool
-        keeps_all_deformations; // beams do what their sections allow, whether the scene excites it or not
-    bool is_spatial_for_beams; // for that alone the mechanism is not planar
-    bool drivers_are_held;     // drivers stand still: time does not go on
-    bool has_offsets;          // loops need not be closed (constraint_offset.h)
-    struct ct_build *rigid; // the scene with rigid beams, once asked for (beam_error_coupled.h)
-    bool has_no_rigid;      // that is of no use
-    bool is_rigid;   // beams keep their shape: for assembly, where they are not deformed yet
-    ct_ex3 plane[3]; // e1, e2, n
-    ct_ex *layer;    // by node: its place along n [m]
-    ct_ex33 *
-        upright; // by node: its axes -> ground's, joints at rest; none where both see the normal alike
-
-    struct ct_graph graph;
-    struct ct_node_info *node;
-    struct ct_edge_info *edge;
-    struct ct_edge *wiring; // graph.edge, writable
-    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
-    int *node_of_frame, *node_of_com; // by frame, by body
-    int *edge_of_joint, *edge_of_body;
-    struct ct_tree T, R;
-
-    struct ct_coordinate *coordinate;
+    // topology/: graph, coordinates without values, beams with what deforms; then the trees
+    const struct ct_topology *topology;
+    struct ct_coordinate *coordinate; // kinematics/ gives those of T and R their unknowns
     size_t ncoordinate, coordinate_cap;
-
-    struct ct_cluster *cluster;
-    size_t ncluster, cluster_cap;
-    struct ct_rotation_axis *rotation_axis;
-    size_t nrotation_axis, rotation_axis_cap;
-    struct ct_anchor *anchor;
-    size_t nanchor, anchor_cap;
-    struct ct_node_placement *placement; // by node
-    struct ct_piece *piece;              // of the path sought last (nanchor + 2)
-    bool *marked;                        // clusters that matter to it (ncluster)
-    ct_ex *coefficient;                  // of the speeds, in the row in hand (nu)
-    struct ct_speed_axis {               // a spin or an anchor's slide that a speed moves
-        bool is_translation;
-        size_t at, next; // next: its number plus one, 0 at the end
-        int k;           // term or slide
-    } * speed_axis;
-    size_t nspeed_axis, speed_axis_cap,
-        *first_speed_axis; // first_user by speed, numbers plus one; NULL: not listed yet
-
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;
+    struct ct_tree T, R;
 
-    struct ct_augmented_body *augmented_body;
-    size_t naugmented_body, augmented_body_cap;
-    bool is_lumped; // augmented bodies are made
-    int *child;     // anchors, augmented body by augmented body
+    // kinematics/: positions, velocities and accelerations; rows and their multipliers
+    const struct ct_kinematics *kinematics;
+    struct ct_kinematics_cache cache;
+    struct ct_row_wrenches rows;
 
-    struct ct_load *load;
-    size_t nload, load_cap;
-    struct ct_multiplier_wrench *multiplier_wrench;
-    size_t nmultiplier_wrench, multiplier_wrench_cap;
-    struct ct_coupling *coupling; // constraint_row.h
-    size_t ncoupling, coupling_cap;
-    const struct ct_sweep *sweep[2]; // by level, once asked for
-    ct_ex *effort;                   // of joints along their unknown coordinates (nu)
+    // dynamics/: loads, mass matrix, forces
+    struct ct_dynamics dynamics;
+
+    // signals/, outputs/
     struct ct_signal_state signals;
+
+    struct ct_equations *eqs; // the result: every stage adds to it
+
+    // the scene with rigid beams, once asked for (beam_error_coupled.h)
+    struct ct_build *rigid;
+    bool has_no_rigid; // that is of no use
 };
 
+static inline const struct ct_edge_kinematics *ct_edge_kinematics(const struct ct_build *b,
+                                                                  const struct ct_edge_info *e)
+{
+    return &b->kinematics->edge[e - b->topology->edge];
+}
+static inline const struct ct_motion *ct_edge_motion(const struct ct_build *b,
+                                                     const struct ct_edge_info *e)
+{
+    return &ct_edge_kinematics(b, e)->motion;
+}
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
 {
-    return b->cluster[inner].enter <= b->cluster[outer].enter
-        && b->cluster[outer].leave <= b->cluster[inner].leave;
+    return b->kinematics->cluster[inner].enter <= b->kinematics->cluster[outer].enter
+        && b->kinematics->cluster[outer].leave <= b->kinematics->cluster[inner].leave;
 }
 static inline bool ct_anchor_is_outboard(const struct ct_build *b, int inner, int outer)
 {
-    return b->anchor[inner].enter <= b->anchor[outer].enter
-        && b->anchor[outer].leave <= b->anchor[inner].leave;
+    return b->kinematics->anchor[inner].enter <= b->kinematics->anchor[outer].enter
+        && b->kinematics->anchor[outer].leave <= b->kinematics->anchor[inner].leave;
 }
 
 /// Planar: v less its part along the normal; otherwise v.

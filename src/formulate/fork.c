@@ -55,39 +55,31 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_build *b = copy(a, from, 1, sizeof *b);
     b->ctx = ctx;
     b->arena = a;
-    COPY(a, b->edge, b->nedge);
     COPY(a, b->coordinate, b->ncoordinate);
-    COPY(a, b->cluster, b->ncluster);
-    COPY(a, b->rotation_axis, b->nrotation_axis);
-    COPY(a, b->anchor, b->nanchor);
+    COPY(a, b->cache.cluster, b->kinematics->ncluster);
+    COPY(a, b->cache.anchor, b->kinematics->nanchor);
     if (b->flexible)
         COPY(a, b->flexible, b->nflexible);
     for (size_t i = 0; i < b->nflexible; i++)
         fork_flexible(a, &b->flexible[i]);
-    for (size_t i = 0; i < b->nedge; i++)
-        if (b->edge[i].flexible)
-            b->edge[i].flexible = b->flexible + (b->edge[i].flexible - from->flexible);
-    b->edge_cap = b->nedge;
     b->coordinate_cap = b->ncoordinate;
-    b->cluster_cap = b->ncluster;
-    b->rotation_axis_cap = b->nrotation_axis;
-    b->anchor_cap = b->nanchor;
-    COPY(a, b->augmented_body, b->naugmented_body);
-    b->augmented_body_cap = b->naugmented_body;
-    COPY(a, b->load, b->nload);
-    b->load_cap = b->nload;
-    b->multiplier_wrench_cap = b->nmultiplier_wrench;
-    b->coupling_cap = b->ncoupling;
-    b->speed_axis_cap = b->nspeed_axis;
+    COPY(a, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body);
+    b->dynamics.masses.augmented_body_cap = b->dynamics.masses.naugmented_body;
+    b->dynamics.masses.of = (struct ct_pairs){0}; // listed anew when one is added
+    COPY(a, b->dynamics.load, b->dynamics.nload);
+    b->dynamics.load_cap = b->dynamics.nload;
+    b->rows.multiplier_wrench_cap = b->rows.nmultiplier_wrench;
+    b->rows.coupling_cap = b->rows.ncoupling;
+    b->dynamics.speed_axis_cap = b->dynamics.nspeed_axis;
     if (b->signals.quaternion)
-        COPY(a, b->signals.quaternion, b->nnode);
+        COPY(a, b->signals.quaternion, b->topology->nnode);
     // workspace
-    if (b->piece)
-        COPY(a, b->piece, b->nanchor + 2);
-    if (b->marked)
-        COPY(a, b->marked, b->ncluster);
-    if (b->coefficient)
-        COPY(a, b->coefficient, b->eqs->nu);
+    if (b->cache.piece)
+        COPY(a, b->cache.piece, b->kinematics->nanchor + 2);
+    if (b->cache.marked)
+        COPY(a, b->cache.marked, b->kinematics->ncluster);
+    if (b->cache.coefficient)
+        COPY(a, b->cache.coefficient, b->eqs->nu);
     return b;
 }
 

@@ -18,30 +18,31 @@
 
 static const char *kind_name(const struct ct_build *b, size_t i)
 {
-    const struct ct_edge_info *e = &b->edge[i];
+    const struct ct_edge_info *e = &b->topology->edge[i];
     static const char *const plain[] = {"body", "arm", "joint", "closure", "force"};
-    return e->self                            ? e->self->cls->name
-         : b->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
-         : b->edge[i].flexible                ? "flexible arm"
-                                              : plain[e->kind];
+    return e->self                                      ? e->self->cls->name
+         : b->topology->edge[i].kind == CT_EDGE_CLOSURE ? "weld"
+         : b->topology->edge[i].beam >= 0               ? "flexible arm"
+                                                        : plain[e->kind];
 }
 
 static void describe_graph(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
-    const char **node = CT_NEWN(b->arena, const char *, b->nnode);
-    const char **edge = CT_NEWN(b->arena, const char *, b->nedge + 1);
-    const char **kind = CT_NEWN(b->arena, const char *, b->nedge + 1);
-    int *wt = CT_NEWN(b->arena, int, b->nedge + 1), *wr = CT_NEWN(b->arena, int, b->nedge + 1);
-    for (size_t i = 0; i < b->nnode; i++)
-        node[i] = b->node[i].name;
-    for (size_t i = 0; i < b->nedge; i++) {
-        edge[i] = b->edge[i].name;
+    const char **node = CT_NEWN(b->arena, const char *, b->topology->nnode);
+    const char **edge = CT_NEWN(b->arena, const char *, b->topology->nedge + 1);
+    const char **kind = CT_NEWN(b->arena, const char *, b->topology->nedge + 1);
+    int *wt = CT_NEWN(b->arena, int, b->topology->nedge + 1),
+        *wr = CT_NEWN(b->arena, int, b->topology->nedge + 1);
+    for (size_t i = 0; i < b->topology->nnode; i++)
+        node[i] = b->topology->node[i].name;
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        edge[i] = b->topology->edge[i].name;
         kind[i] = kind_name(b, i);
-        wt[i] = b->edge[i].weight_t;
-        wr[i] = b->edge[i].weight_r;
+        wt[i] = b->topology->edge[i].weight_t;
+        wr[i] = b->topology->edge[i].weight_r;
     }
-    e->graph = &b->graph;
+    e->graph = &b->topology->graph;
     e->T = &b->T;
     e->R = &b->R;
     e->node_name = node;
@@ -57,7 +58,7 @@ static void measure_all(struct ct_build *b, const struct ct_equations *needed_by
     for (size_t i = 0; i < b->ncoordinate; i++) {
         const struct ct_coordinate *c = &b->coordinate[i];
         struct ct_result q = {c->name, CT_EX_ZERO, false}, u = q;
-        if (!needed_by || b->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
+        if (!needed_by || b->topology->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
             || needed_by->coordinate[i].q >= 0) {
             q.value = ct_coordinate_value(b, (int)i);
             u.value = ct_coordinate_speed(b, (int)i);

@@ -16,6 +16,7 @@ struct ct_formulate_options {
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
     const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
+    int pick; // AUTO: that candidate of the search, from 1, whatever it costs; 0: the cheapest
     bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
     bool with_energy;  // kinetic and potential energy and the power are wanted
     bool with_outputs; // the outputs of the model are wanted
@@ -50,10 +51,22 @@ enum { CT_SMALL_SYSTEM = 24 };
 enum { CT_MOST_FULL = 3000 }; // speeds; full matrices of larger systems would take hours
 enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices
 
+/// A pair of trees that the search has weighed.
+struct ct_tree_candidate {
+    const bool *trans, *rot; // branches, by edge
+    size_t nu, nrow;         // unknown speeds, constraint rows
+    double cost;             // operations of an evaluation, in multiplications
+};
+
+enum { CT_MOST_CANDIDATES = 10 };
+
 /// What tree selection found, for the report.
 struct ct_tree_report {
     const char *how; // "exhaustive search of 441 pairs", "given", ...
     double cost, cost_least_weight;
+    // the cheapest pairs of the search, by cost, then by unknowns, then as they were met; none where nothing was searched
+    struct ct_tree_candidate candidate[CT_MOST_CANDIDATES];
+    int ncandidate;
 };
 
 /// Equations of the model for the trees that the options ask for. Everything lives in a.

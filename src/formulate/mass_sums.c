@@ -3,12 +3,17 @@
 
 struct ct_augmented_body *ct_augmented_body_of(struct ct_build *b, int anchor, int cluster)
 {
-    for (size_t i = 0; i < b->naugmented_body; i++)
-        if (b->augmented_body[i].anchor == anchor && b->augmented_body[i].cluster == cluster)
-            return &b->augmented_body[i];
-    const struct ct_augmented_body s = {.anchor = anchor, .cluster = cluster};
-    CT_PUSH(b->arena, b->augmented_body, b->naugmented_body, b->augmented_body_cap, s);
-    return &b->augmented_body[b->naugmented_body - 1];
+    struct ct_lumped_masses *s = &b->dynamics.masses;
+    for (size_t i = s->of.n; i < s->naugmented_body; i++)
+        ct_pairs_put(b->arena, &s->of, s->augmented_body[i].anchor,
+                     s->augmented_body[i].cluster, (int)i);
+    const int found = ct_pairs_get(&s->of, anchor, cluster);
+    if (found >= 0)
+        return &s->augmented_body[found];
+    const struct ct_augmented_body one = {.anchor = anchor, .cluster = cluster};
+    ct_pairs_put(b->arena, &s->of, anchor, cluster, (int)s->naugmented_body);
+    CT_PUSH(b->arena, s->augmented_body, s->naugmented_body, s->augmented_body_cap, one);
+    return &s->augmented_body[s->naugmented_body - 1];
 }
 
 void ct_inertia_add_point(struct ct_build *b, ct_ex33 *L, ct_ex m, ct_ex3 v)
@@ -31,18 +36,18 @@ void ct_augmented_bodies_add_point(struct ct_build *b, int anchor, int cluster, 
     struct ct_augmented_body *s = ct_augmented_body_of(b, anchor, cluster);
     const ct_ex3 v = ct_build_in_plane(b, local);
     s->moment = ct_ex3_add(b->x, s->moment, ct_ex3_scale(b->x, m, v));
-    ct_inertia_add_point(b, &b->cluster[cluster].L, m, v);
+    ct_inertia_add_point(b, &b->dynamics.masses.inertia[cluster], m, v);
 }
 
 void ct_augmented_bodies_add(struct ct_build *b, int anchor, int cluster, ct_ex m,
                              ct_ex3 moment, const ct_ex33 *inertia)
 {
     struct ct_augmented_body *s = ct_augmented_body_of(b, anchor, cluster);
-    ct_ex33 *L = &b->cluster[cluster].L;
+    ct_ex33 *L = &b->dynamics.masses.inertia[cluster];
     s->moment = ct_ex3_add(b->x, s->moment, ct_build_in_plane(b, moment));
     for (int i = 0; i < 9; i++)
         L->e[i] = ct_ex_add(b->x, L->e[i], inertia->e[i]);
-    b->anchor[anchor].mass = ct_ex_add(b->x, b->anchor[anchor].mass, m);
+    b->dynamics.masses.mass[anchor] = ct_ex_add(b->x, b->dynamics.masses.mass[anchor], m);
 }
 
 void ct_mass_add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)

@@ -11,7 +11,8 @@ struct ct_augmented_body {
     int anchor, cluster;
     ct_ex3
         moment; // local: sum of mass * vector, of masses at it and of what hangs on its links [kg m]
-    int first_child, nchild; // in b->child: anchors whose link belongs to the augmented body
+    int first_child,
+        nchild; // in b->dynamics.masses.child: anchors whose link belongs to the augmented body
 };
 
 /// The augmented body of an anchor and a cluster, made when first asked for.

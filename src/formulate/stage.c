@@ -34,18 +34,17 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
                                  const bool *is_linear)
 {
     struct ct_build *b = CT_NEW(a, struct ct_build);
-    *b = (struct ct_build){
-        .ctx = ctx,
-        .arena = a,
-        .model = m,
+    struct ct_build_options *options = CT_NEW(a, struct ct_build_options);
+    *options = (struct ct_build_options){
         .is_rigid = o->rigid || (o->measure_all && !o->deformed && !starts_deformed(m)),
         .keep_all = o->keep_all,
         .keeps_all_deformations
-        = o->frees_beams || (o->like && o->like->build->keeps_all_deformations),
+        = o->frees_beams || (o->like && o->like->build->options->keeps_all_deformations),
         .drivers_are_held = o->held,
         .has_offsets = o->gaps,
         .like = o->like,
         .is_linear = is_linear};
+    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .options = options};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -73,7 +72,6 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
     b->x = b->eqs->x = ct_exs_clone(a, from->x);
     const size_t ndecided = b->x->ndecided;
     b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
-    b->edge = copy(a, from->edge, b->nedge, b->edge_cap, sizeof *b->edge);
     b->coordinate
         = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
     return b;
@@ -82,10 +80,12 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
 bool ct_build_derive(struct ct_build *b, bool with_dynamics)
 {
     const size_t before = b->ctx->nerror;
-    ct_unknowns_choose(b);
+    struct ct_kinematics *kinematics = CT_NEW(b->arena, struct ct_kinematics);
+    b->kinematics = kinematics;
+    ct_unknowns_choose(b, kinematics);
     b->eqs->Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    ct_rotation_derive(b);
-    ct_translation_derive(b);
+    ct_rotation_derive(b, kinematics);
+    ct_translation_derive(b, kinematics);
     ct_rows_derive(b);
     if (with_dynamics)
         ct_loads_derive(b);
@@ -104,6 +104,8 @@ struct trials {
     bool stays_open;     // pairs with rows are not wanted
     struct ct_tree T, R; // of the first pair
     double cost;         // its cost; 0: not counted yet
+    size_t nu, nrow;     // of the pair that was derived last
+    struct ct_tree_report *report;
     struct ct_build *
         first; // its equations, in an arena of their own, where they may become those of the stage; else NULL
 };
@@ -125,14 +127,16 @@ static bool has_chain(const struct ct_build *b)
 }
 
 // The exact count of a trial; INFINITY where it fails or is not wanted.
-static double derive_and_count(const struct trials *s, struct ct_build *b,
-                               const struct ct_tree *T, const struct ct_tree *R)
+static double derive_and_count(struct trials *s, struct ct_build *b, const struct ct_tree *T,
+                               const struct ct_tree *R)
 {
     b->T = *T;
     b->R = *R;
     if (!ct_build_derive(b, true) || (s->stays_open && b->eqs->nrow))
         return INFINITY;
     ct_dynamics_derive(b);
+    s->nu = b->eqs->nu;
+    s->nrow = b->eqs->nrow;
     const double cost = ct_equations_cost(b->ctx->scratch, b->eqs);
     return has_chain(b) ? ct_open_cost(b, cost) : cost;
 }
@@ -175,18 +179,48 @@ static double kept_cost(struct trials *s, const struct ct_tree *T, const struct 
     return cost;
 }
 
+// The list of the cheapest pairs, in its order. A pair that is looked at again is there already.
+static void list_pair(struct trials *s, const struct ct_tree *T, const struct ct_tree *R,
+                      double cost)
+{
+    struct ct_tree_report *r = s->report;
+    const size_t size = (size_t)T->nedge * sizeof(bool);
+    int at = r->ncandidate;
+    for (int i = 0; i < r->ncandidate; i++)
+        if (!memcmp(r->candidate[i].trans, T->is_branch, size)
+            && !memcmp(r->candidate[i].rot, R->is_branch, size))
+            return;
+    while (at > 0
+           && (cost < r->candidate[at - 1].cost
+               || (cost == r->candidate[at - 1].cost && s->nu < r->candidate[at - 1].nu)))
+        at--;
+    if (at == CT_MOST_CANDIDATES || !isfinite(cost))
+        return;
+    r->ncandidate += r->ncandidate < CT_MOST_CANDIDATES;
+    for (int i = r->ncandidate - 1; i > at; i--)
+        r->candidate[i] = r->candidate[i - 1];
+    struct ct_arena *a = s->open->arena;
+    r->candidate[at] = (struct ct_tree_candidate){copy(a, T->is_branch, size, size + 1, 1),
+                                                  copy(a, R->is_branch, size, size + 1, 1),
+                                                  s->nu, s->nrow, cost};
+}
+
 static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tree *R)
 {
     struct trials *s = data;
-    if (!s->T.is_branch) {
-        s->T = *T;
-        s->R = *R;
-        return s->cost
-             = may_keep(s->open, s->options) ? kept_cost(s, T, R) : passing_cost(s, T, R);
-    }
     if (s->cost > 0 && is_same(&s->T, T) && is_same(&s->R, R))
         return s->cost;
-    return passing_cost(s, T, R);
+    const bool is_first = !s->T.is_branch;
+    if (is_first) {
+        s->T = *T;
+        s->R = *R;
+    }
+    const double cost = is_first && may_keep(s->open, s->options) ? kept_cost(s, T, R)
+                                                                  : passing_cost(s, T, R);
+    if (is_first)
+        s->cost = cost;
+    list_pair(s, T, R, cost);
+    return cost;
 }
 
 // If the first pair was chosen, its equations take the place of *b; else they go.
@@ -210,7 +244,7 @@ static void take_first(struct trials *s, struct ct_build **b)
 bool ct_build_choose_trees(struct ct_build **b, const struct ct_formulate_options *o,
                            struct ct_tree_report *report)
 {
-    struct trials s = {.ctx = (*b)->ctx, .open = *b, .options = o};
+    struct trials s = {.ctx = (*b)->ctx, .open = *b, .options = o, .report = report};
     const struct ct_pair_trials trials = {&s, begin, pair_cost};
     const bool ok = ct_tree_selection_run(*b, o, &trials, report);
     if (s.arena)

@@ -1,9 +1,9 @@
 // Equations of a model on one pair of trees, in stages. formulate.c tells what follows;
 // beam_error makes equations of its own.
 //
-//     ct_build_create         model -> linear graph, its coordinates
-//     ct_build_choose_trees   trees of translation and rotation
-//     ct_build_derive         kinematics: Phi, J, gam; then loads
+//     ct_build_create         model -> b->topology and the list of coordinates
+//     ct_build_choose_trees   b->T and b->R, trees of translation and rotation
+//     ct_build_derive         b->kinematics, then Phi, J, gam (b->rows), then loads (b->dynamics)
 #ifndef CT_FORMULATE_STAGE_H
 #define CT_FORMULATE_STAGE_H
 

@@ -265,11 +265,19 @@ static const struct ct_tableau tableau = {.stages = STAGES,
                                           .B3 = B3,
                                           .nerror = STAGES - 1};
 
+static const struct ct_dense_tableau dense_tableau = {.stages = ALL_STAGES,
+                                                      .corrections = CORRECTIONS,
+                                                      .stride = ALL_STAGES,
+                                                      .C = C + STAGES,
+                                                      .A = &A[STAGES][0],
+                                                      .D = &D[0][0]};
+
 const struct ct_method ct_method_dop853 = {
     .name = "dop853",
     .summary = "Dormand-Prince 8(5,3), explicit, for smooth motions and tight tolerances",
     .source = "hairer1993",
     .tableau = &tableau,
+    .dense_tableau = &dense_tableau,
     .order = 8,
     .error_order = 7,
     // the two results of the estimate may cross by accident: a long step after a short one is not to be trusted

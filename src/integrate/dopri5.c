@@ -149,11 +149,56 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
 static const struct ct_tableau tableau
     = {.stages = STAGES, .stride = STAGES, .C = C, .A = &A[0][0], .E = E, .nerror = STAGES};
 
+// The quintic as a table: stages 7 and 8 are f at the points of the quartic at 1/2 and 1/5. With b the last row of A,
+//
+//     point   t^2 (3 - 2 t) b + t (1 - t)^2 e_0 - t^2 (1 - t) e_6 + t^2 (1 - t)^2 D
+//     miss    k_point - 6 t (1 - t) b - (1 - t) (1 - 3 t) e_0 - t (3 t - 2) e_6
+//     F_1     16 miss(1/2),  F_0 = (125 miss(1/5) - 8 F_1) / 24
+#define POINT(t, b, d) (t) * (t) * (3 - 2 * (t)) * (b) + (t) * (t) * (1 - (t)) * (1 - (t)) * (d)
+#define MISS(t, b) (-6 * (t) * (1 - (t)) * (b))
+#define F1(b) (16 * MISS(0.5, b))
+#define F0(b) ((125 * MISS(0.2, b) - 8 * F1(b)) / 24)
+enum { DENSE_STAGES = STAGES + 2 };
+
+static const double dense_C[] = {1. / 2, 1. / 5};
+
+#define B0 (35. / 384)
+#define B2 (500. / 1113)
+#define B3 (125. / 192)
+#define B4 (-2187. / 6784)
+#define B5 (11. / 84)
+
+static const double dense_A[][DENSE_STAGES] = {
+    {POINT(0.5, B0, -12715105075. / 11282082432) + 0.125, 0,
+     POINT(0.5, B2, 87487479700. / 32700410799), POINT(0.5, B3, -10690763975. / 1880347072),
+     POINT(0.5, B4, 701980252875. / 199316789632), POINT(0.5, B5, -1453857185. / 822651844),
+     POINT(0.5, 0, 69997945. / 29380423) - 0.125},
+    {POINT(0.2, B0, -12715105075. / 11282082432) + 0.128, 0,
+     POINT(0.2, B2, 87487479700. / 32700410799), POINT(0.2, B3, -10690763975. / 1880347072),
+     POINT(0.2, B4, 701980252875. / 199316789632), POINT(0.2, B5, -1453857185. / 822651844),
+     POINT(0.2, 0, 69997945. / 29380423) - 0.032},
+};
+
+// Of e_0: -(1 - t) (1 - 3 t) is 1/4 at 1/2 and -0.32 at 1/5; of e_6: -t (3 t - 2) is 1/4 and 0.28.
+static const double dense_D[][DENSE_STAGES] = {
+    {F0(B0) + (125 * -0.32 - 8 * 4) / 24, 0, F0(B2), F0(B3), F0(B4), F0(B5),
+     (125 * 0.28 - 8 * 4) / 24, -8. * 16 / 24, 125. / 24},
+    {F1(B0) + 4, 0, F1(B2), F1(B3), F1(B4), F1(B5), 4, 16, 0},
+};
+
+static const struct ct_dense_tableau dense_tableau = {.stages = DENSE_STAGES,
+                                                      .corrections = 2,
+                                                      .stride = DENSE_STAGES,
+                                                      .C = dense_C,
+                                                      .A = &dense_A[0][0],
+                                                      .D = &dense_D[0][0]};
+
 const struct ct_method ct_method_dopri5 = {
     .name = "dopri5",
     .summary = "Dormand-Prince 5(4), explicit, for smooth motions without stiff parts",
     .source = "dormand1980",
     .tableau = &tableau,
+    .dense_tableau = &dense_tableau,
     .order = 5,
     .error_order = 4,
     .create = create,

@@ -167,10 +167,10 @@ static bool has_moved(struct ct_driver *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
-// Steps of fixed length end on samples: where there are no roots to find none of them is interpolated.
+// Steps of fixed length end on samples: where there are no roots to find and nobody looks into steps none is interpolated.
 static bool is_never_interpolated(const struct ct_driver *r)
 {
-    return r->o->step > 0 && r->p->nroot == 0;
+    return r->o->step > 0 && r->p->nroot == 0 && !r->o->over_step;
 }
 
 // end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
@@ -321,13 +321,14 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *
 
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_planned_step *s)
 {
-    if (!(r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1))
+    const bool has_sample = ct_driver_has_sample(r, s);
+    if (!has_sample && !r->o->over_step)
         return CT_EVAL_OK;
     const enum ct_eval e = interpolate(r, s);
     if (e != CT_EVAL_OK)
         return e;
     s->is_damping = ct_driver_is_damping(r, s);
-    return s->is_damping ? CT_EVAL_OK : look_at_sample(r, s);
+    return s->is_damping || !has_sample ? CT_EVAL_OK : look_at_sample(r, s);
 }
 
 // Step again, to the event that the interpolant shows at t + h; then correct h for the difference
@@ -624,6 +625,9 @@ static bool advance(struct ct_driver *r)
         return false;
     const bool is_time = r->is_stop_time && s.reaches_stop;
     const bool is_event = s.is_event || is_time;
+    const struct ct_step_view view = {r->t, s.t1, r, &s};
+    if (r->o->over_step && !r->o->over_step(r->p->user, &view))
+        return false;
     if (!ct_driver_give_samples_before(r, &s,
                                        s.t1 - ct_driver_event_margin(is_event, s.t1, s.h)))
         return false;

@@ -116,6 +116,8 @@ bool ct_driver_is_roundoff(struct ct_driver *r, double h, double error);
 /// A step h was accepted; the same question.
 void ct_driver_note_step(struct ct_driver *r, double h, double error);
 
+/// Is there a sample inside the step?
+bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s);
 /// Does the step, ready to be interpolated, damp a motion that it does not follow, so that its interpolant does not hold?
 bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s);
 /// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.

@@ -68,14 +68,19 @@ static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
     return fast > r->method->resolved_limit && fast > much_faster * change_over_step(r);
 }
 
-// Does the interpolant err in the next sample, by so much of what steps may? A step from the start of this one to there tells. Each
+bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s)
+{
+    return r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
+}
+
+// Does the interpolant err in the next sample, or else in the middle of the step, by so much of what steps may? A step from the start of this one to there tells. Each
 // time it does not, more steps to come are not asked; where it does, as many as ever are taken to err as well.
 static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
 {
     enum { MOST_UNASKED = 31 };
     const double much = 0.01;
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
-    const double h = r->o->sample[r->sample] - r->t;
+    const double h = ct_driver_has_sample(r, s) ? r->o->sample[r->sample] - r->t : s->h / 2;
     double unused;
     if (r->unchecked > 0) {
         r->unchecked--;
@@ -117,6 +122,20 @@ static bool find_state(struct ct_driver *r, const struct ct_planned_step *s, dou
     return e != CT_EVAL_FATAL
         && ct_error(r->ctx, nowhere, CT_E_STATE_REFUSED,
                     "the equations of motion cannot be evaluated at t = %.9g", t);
+}
+
+bool ct_step_state(const struct ct_step_view *step, double t, double *y,
+                   struct ct_gap_interpolation *gap)
+{
+    struct ct_driver *r = step->driver;
+    const struct ct_planned_step *s = step->step;
+    *gap = (struct ct_gap_interpolation){0};
+    if (ct_driver_is_in_gap(r, s, t))
+        *gap = ct_crossing_interpolation(s->work, r->t, s->h, (t - r->t) / s->h);
+    if (t > r->t && t < s->t1)
+        return find_state(r, s, t, y);
+    ct_stepper_copy(y, t > r->t ? r->end : r->y, r->p->ny);
+    return true;
 }
 
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_planned_step *s,

@@ -197,6 +197,13 @@ struct ct_gap_interpolation {
     const double *y;          // (ny x n)
 };
 
+/// An accepted step as it is handed on.
+struct ct_step_view {
+    double t0, t1;
+    void *driver;
+    const void *step;
+};
+
 struct ct_integrate_options {
     double t0, t1;
     double rtol, atol;    // tolerance of the states; see ct_integrate
@@ -212,6 +219,9 @@ struct ct_integrate_options {
     /// The same for samples in singular configurations or close to them. NULL: at_sample.
     bool (*at_singular_sample)(void *user, double t, const double *y,
                                const struct ct_gap_interpolation *b);
+    /// Called after each accepted step, before the samples in it; ct_step_state gives the states. Return false to stop (a
+    /// diagnostic is there). NULL: nobody looks into steps.
+    bool (*over_step)(void *user, const struct ct_step_view *step);
     /// Called once if the end is foreseen to be more than so many steps away, with their present size. May be NULL.
     void (*forecast)(void *user, double t, const double *y, double step, double to_come);
     double many_steps;
@@ -238,12 +248,25 @@ struct ct_tableau {
     int nerror;                   // length of E and B3
 };
 
+/// What an explicit method's interpolant is made of: with y1 and f there as the last stage of the step, more stages C, A as
+/// those of its tableau, then F_j = h sum_i D_ji k_i and, t = theta, s = 1 - theta,
+///
+///     y(t + theta h) = Hermite(theta) + t^2 s^2 (F_0 + t (F_1 + s (F_2 + t F_3)))
+///
+/// A and D have rows of `stride` numbers; D has `corrections` of them, the other F are zero.
+struct ct_dense_tableau {
+    int stages, corrections, stride; // stages: those of the step and these
+    const double *C, *A, *D;
+};
+enum { CT_MOST_DENSE_STAGES = 16, CT_DENSE_CORRECTIONS = 4 };
+
 /// One integration method: a constant table in a file of its own.
 struct ct_method {
-    const char *name;                 // as in `simulation.method`
-    const char *summary;              // one line for `cotree methods`
-    const char *source;               // key into docs/references.bib
-    const struct ct_tableau *tableau; // NULL: it is more than its numbers
+    const char *name;                             // as in `simulation.method`
+    const char *summary;                          // one line for `cotree methods`
+    const char *source;                           // key into docs/references.bib
+    const struct ct_tableau *tableau;             // NULL: it is more than its numbers
+    const struct ct_dense_tableau *dense_tableau; // of those that have a tableau
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
     /// Needs problem.dae, and meets the constraints by itself: the driver does not project its steps.
@@ -318,5 +341,10 @@ const struct ct_method *ct_method_find(const char *name);
 bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
                   const struct ct_problem *p, const struct ct_integrate_options *options,
                   double *y, struct ct_integrate_stats *stats);
+
+/// For over_step: y (ny, out) at t, t0 <= t <= t1, as samples have it but for the projection. gap (out): in the gap of a crossing,
+/// where f cannot be computed, what is interpolated there; else its n is 0. False with a diagnostic.
+bool ct_step_state(const struct ct_step_view *step, double t, double *y,
+                   struct ct_gap_interpolation *gap);
 
 #endif

@@ -233,21 +233,6 @@ struct setting {
     const char *name; // of one; NULL: all
 };
 
-// Parameters whose values have decided about the equations; reading them asks for no store to change.
-static bool has_decided(const struct ct_system *s, size_t i)
-{
-    const struct ct_model *m = &s->model;
-    const uint32_t symbol = ct_ex_node(m->x, m->parameter[i].symbol)->a;
-    const unsigned char *const decided[]
-        = {m->decided, s->equations.x->decided, s->start_equations.x->decided,
-           s->held_equations.x ? s->held_equations.x->decided : NULL,
-           s->moving_equations.x ? s->moving_equations.x->decided : NULL};
-    for (size_t k = 0; k < COUNT(decided); k++)
-        if (decided[k] && decided[k][symbol])
-            return true;
-    return false;
-}
-
 static bool take_parameter(struct setting *s, size_t i, double value)
 {
     struct ct_model *m = &s->d->sim.system->model;
@@ -257,7 +242,7 @@ static bool take_parameter(struct setting *s, size_t i, double value)
     if (!isfinite(value))
         return ct_error(s->ctx, none, CT_E_VALUE,
                         "the parameter '%s' would be no finite number", p->name);
-    if (has_decided(s->d->origin, i))
+    if (ct_item_has_decided(s->d->origin, i))
         return ct_error(s->ctx, none, CT_E_DECIDES,
                         "the value of '%s' has decided about the equations; load the system "
                         "anew with '%s' set",

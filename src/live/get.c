@@ -232,7 +232,7 @@ static void compile_frames(struct ct_data *d)
     const size_t n = d->sim.system->model.nframe;
     ct_ex *out = CT_NEWN(d->sim.own.scratch, ct_ex, 12 * n + 1);
     for (size_t i = 0; i < n; i++) {
-        const int node = b->node_of_frame[i];
+        const int node = b->topology->node_of_frame[i];
         const ct_ex33 R = ct_node_rotation(b, node);
         const ct_ex3 p = ct_node_position(b, node);
         for (int k = 0; k < 9; k++)

@@ -16,6 +16,21 @@ size_t ct_item_parameter(const struct ct_model *m, enum ct_kind kind, size_t i)
     return m->nparameter;
 }
 
+// Reading the marks asks for no store to change.
+bool ct_item_has_decided(const struct ct_system *s, size_t i)
+{
+    const struct ct_model *m = &s->model;
+    const uint32_t symbol = ct_ex_node(m->x, m->parameter[i].symbol)->a;
+    const unsigned char *const decided[]
+        = {m->decided, s->equations.x->decided, s->start_equations.x->decided,
+           s->held_equations.x ? s->held_equations.x->decided : NULL,
+           s->moving_equations.x ? s->moving_equations.x->decided : NULL};
+    for (size_t k = 0; k < COUNT(decided); k++)
+        if (decided[k] && decided[k][symbol])
+            return true;
+    return false;
+}
+
 static size_t count_parameters(const struct ct_model *m, bool inputs)
 {
     size_t n = 0;
@@ -179,7 +194,6 @@ static void describe_coordinate(const struct ct_system *sys, size_t i, struct ct
     item->name = e->q[i].name;
     item->unit = e->q[i].quaternion >= 0 ? "" : "m";
     item->meaning = e->q[i].quaternion >= 0 ? "number of a unit quaternion" : "displacement";
-    item->value = start_of(sys, i);
     for (size_t k = 0; k < e->nu; k++)
         if (e->u[k].q == (int)i) {
             item->unit = e->u[k].kind == CT_ELASTIC_MODE ? ""
@@ -202,7 +216,6 @@ static void describe_speed(const struct ct_system *sys, size_t i, struct ct_item
                : u->is_rotation || u->q < 0 ? "rad/s"
                                             : "m/s";
     item->meaning = u->q < 0 ? "component of an angular velocity" : "rate of a coordinate";
-    item->value = start_of(sys, e->nq + i);
     place(item, u->joint >= 0 ? sys->model.joint[u->joint].mark
                               : sys->model.body[u->body].instance.mark);
 }
@@ -230,7 +243,6 @@ static void describe_output(const struct ct_system *sys, size_t i, struct ct_ite
     else if (symbol && symbol->kind == CT_SYM_U && ct_speed_is_state(e, symbol->index))
         item->unit = si_unit(m->state[symbol->index - e->nmotion].unit);
     item->meaning = "output";
-    item->value = start_of(sys, e->nq + e->nu + i);
     for (size_t k = 0; k < m->noutput; k++) // a vector's columns begin with its name
         if (strncmp(m->output[k].name, item->name, strlen(m->output[k].name)) == 0)
             place(item, m->output[k].mark);
@@ -248,8 +260,8 @@ static void describe_component(const struct ct_system *sys, size_t i, struct ct_
     place(item, self->mark);
 }
 
-bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
-                    struct ct_item *item)
+bool ct_item_describe(const struct ct_system *sys, enum ct_kind kind, size_t i,
+                      struct ct_item *item)
 {
     if (!item || i >= ct_system_count(sys, kind))
         return false;
@@ -300,6 +312,20 @@ bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
         return true;
     }
     return false;
+}
+
+bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
+                    struct ct_item *item)
+{
+    if (!ct_item_describe(sys, kind, i, item))
+        return false;
+    const struct ct_equations *e = &sys->equations;
+    if (kind == CT_COORDINATE || kind == CT_SPEED || kind == CT_OUTPUT)
+        item->value = start_of(sys, i
+                                        + (kind == CT_SPEED    ? e->nq
+                                           : kind == CT_OUTPUT ? e->nq + e->nu
+                                                               : 0));
+    return true;
 }
 
 static const char *name_of(const struct ct_system *sys, enum ct_kind kind, size_t i)

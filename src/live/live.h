@@ -55,6 +55,11 @@ bool ct_data_accelerate(struct ct_data *d);
 void ct_data_constrain(struct ct_data *d);
 bool ct_data_find_outputs(struct ct_data *d);
 
+/// ct_system_item without the values of coordinates, speeds and outputs, which need a start.
+bool ct_item_describe(const struct ct_system *sys, enum ct_kind kind, size_t i,
+                      struct ct_item *item);
+/// Has the value of parameter i of the model decided about the equations?
+bool ct_item_has_decided(const struct ct_system *sys, size_t i);
 /// Parameters of the model that are inputs, or those that are not, in order: number i of them; nparameter: there is none.
 size_t ct_item_parameter(const struct ct_model *m, enum ct_kind kind, size_t i);
 

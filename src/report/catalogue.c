@@ -1,4 +1,5 @@
 // Lists of what there is: component types and methods.
+#include "base/entry.h"
 #include "component/class.h"
 #include "integrate/problem.h"
 
@@ -41,8 +42,9 @@ static void print_class(FILE *out, const struct ct_component_class *c)
     print_keys(out, c->key, c->nkey);
 }
 
-void ct_components_print(FILE *out)
+static void print_components(const void *all, FILE *out)
 {
+    (void)all;
     for (int f = 0; f < (int)COUNT(family_names); f++) {
         int nfamily;
         const struct ct_key *keys = ct_family_keys((enum ct_family)f, &nfamily);
@@ -57,12 +59,33 @@ void ct_components_print(FILE *out)
     }
 }
 
-void ct_methods_print(FILE *out)
+void ct_components_print(FILE *out)
 {
+    ct_print_to(out, print_components, "");
+}
+
+char *ct_components_text(void)
+{
+    return ct_print_text(print_components, "");
+}
+
+static void print_methods(const void *all, FILE *out)
+{
+    (void)all;
     fprintf(
         out, "%-24s %s\n", "auto",
         "dop853, or dopri5 for loose tolerances and fixed steps; radau5 where it turns stiff");
     for (int i = 0; i < ct_nmethod; i++)
         fprintf(out, "%-24s %s (order %d, %s)\n", ct_methods[i]->name, ct_methods[i]->summary,
                 ct_methods[i]->order, ct_methods[i]->is_implicit ? "implicit" : "explicit");
+}
+
+void ct_methods_print(FILE *out)
+{
+    ct_print_to(out, print_methods, "");
+}
+
+char *ct_methods_text(void)
+{
+    return ct_print_text(print_methods, "");
 }

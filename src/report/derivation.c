@@ -51,7 +51,7 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
 {
     const struct ct_derivation *d = data;
     const char *name = plain_name(d, s);
-    if (d->page.look != CT_LOOK_LATEX)
+    if (!ct_derivation_is_latex(d))
         return name;
     if (s->kind == CT_SYM_LOCAL && !is_coordinate_name(name)) {
         const char *definition = latex_definition(a, name);
@@ -96,11 +96,12 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
 {
     *d = (struct ct_derivation){.a = a, .e = e, .m = m, .page = {.arena = a, .look = look}};
     d->print = (struct ct_print){
-        .style = look == CT_LOOK_LATEX ? CT_PRINT_LATEX : CT_PRINT_TEXT,
+        .style = look == CT_LOOK_TEXT ? CT_PRINT_TEXT : CT_PRINT_LATEX,
         .symbol = symbol,
         .rank = rank,
         .data = d,
         .fractions = true,
+        .line = look == CT_LOOK_HTML ? CT_PAGE_PHONE : 0,
     };
     d->nrank = e->x->nsym;
     d->rank = rank_parameters(d);
@@ -188,7 +189,10 @@ void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
 {
     if (!list->n)
         return;
-    ct_page_heading(&d->page, heading);
+    ct_page_folded_heading(&d->page, d->page.look == CT_LOOK_HTML ? ct_arena_printf(
+                                         d->a, "%s %zu named expression%s", heading, list->n,
+                                         list->n == 1 ? "" : "s")
+                                                                  : heading);
     ct_page_equations(&d->page);
     for (size_t i = 0; i < list->n; i++)
         ct_page_equation(&d->page, NULL, ct_derivation_text(d, list->at[i].symbol),
@@ -201,7 +205,7 @@ const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct
 {
     const struct ct_build *b = d->e->build;
     const char *mass = ct_derivation_text(d, body->mass);
-    const char *com = b->node[b->node_of_com[body - d->m->body]].name;
+    const char *com = b->topology->node[b->topology->node_of_com[body - d->m->body]].name;
     if (ct_ex_is_zero(body->mass))
         return NULL;
     if (strchr(mass, ' '))

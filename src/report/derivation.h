@@ -2,6 +2,7 @@
 #ifndef CT_REPORT_DERIVATION_H
 #define CT_REPORT_DERIVATION_H
 
+#include "graph/graph.h"
 #include "report/page.h"
 #include "report/reduced.h"
 
@@ -48,13 +49,17 @@ void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
 const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body);
 const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct ct_body *body);
 
+/// Is mathematics of the page LaTeX, which HTML takes too?
 static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 {
-    return d->page.look == CT_LOOK_LATEX;
+    return d->page.look != CT_LOOK_TEXT;
 }
 
 /// The reduced equations as a reader wants them: collected, or with names where they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
+
+/// The mass matrix and the Jacobian of the constraints; of more than a page it is said how large they are.
+void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r);
 
 /// Circuits with the terminal equations put in: places of the bodies that are chords, and constraint rows, by their
 /// definitions where they are long.
@@ -66,6 +71,13 @@ struct ct_substituted {
     struct ct_definitions definitions;
 };
 void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
+
+/// F(own) + F(...) - ..., zero, for row i of a cutset matrix (rows: its transpose), that of the branch `own`.
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
+                                 int i, int own, const char *letter);
+/// What d or S of a chord is, from the branches on the way from its tail to its head.
+const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
+                                  bool of_rotation);
 
 void ct_stage_terminal(struct ct_derivation *d);
 void ct_stage_graph(struct ct_derivation *d);

@@ -7,6 +7,7 @@
 #include "formulate/build.h"
 #include "report/equations.h"
 #include "report/json.h"
+#include "report/provenance.h"
 
 #include <string.h>
 
@@ -115,17 +116,17 @@ static void put_terminal(struct writer *w)
     const struct ct_build *b = w->d->e->build;
     ct_stage_terminal(w->d); // the page of this writer is never printed
     ct_json_array(&w->j, "terminal");
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         put_component(w, e->name, w->d->e->edge_kind[i],
-                      e->self       ? e->self->cls->across
-                      : e->flexible ? "d = r, S: place and turn of the section"
-                                    : "d, S constant",
+                      e->self        ? e->self->cls->across
+                      : e->beam >= 0 ? "d = r, S: place and turn of the section"
+                                     : "d, S constant",
                       e->self ? e->self->cls->through : "F, T are reactions");
     }
     for (size_t j = 0; j < w->d->m->njoint; j++) { // gears
         const struct ct_instance *self = &w->d->m->joint[j];
-        if (b->edge_of_joint[j] < 0)
+        if (b->topology->edge_of_joint[j] < 0)
             put_component(w, self->name, self->cls->name, self->cls->across,
                           self->cls->through);
     }
@@ -344,6 +345,33 @@ static void put_known(struct writer *w, const struct ct_reduced *r)
     ct_json_end(&w->j);
 }
 
+// Terms of the equations, and what they come from.
+static void put_terms(struct writer *w, const struct ct_reduced *r)
+{
+    static const char *const kind[] = {"motion", "position", "acceleration", "effort"};
+    struct ct_provenance p;
+    ct_provenance_derive(w->d, r, &p);
+    ct_json_array(&w->j, "terms");
+    for (size_t i = 0; i < p.nterm; i++) {
+        const struct ct_equation_term *t = &p.term[i];
+        ct_json_object(&w->j, NULL);
+        ct_json_text(&w->j, "equation", ct_provenance_equation(w->d->e, t));
+        ct_json_text(&w->j, "kind", kind[t->kind]);
+        ct_json_text(&w->j, "side", t->is_right ? "right" : "left");
+        ct_json_text(&w->j, "expression", text(w, t->e));
+        ct_json_array(&w->j, "components");
+        for (size_t k = 0; k < t->norigin; k++)
+            ct_json_text(&w->j, NULL, p.origin[t->origin[k]].name);
+        ct_json_end(&w->j);
+        ct_json_array(&w->j, "lines");
+        for (size_t k = 0; k < t->norigin; k++)
+            ct_json_integer(&w->j, NULL, p.origin[t->origin[k]].line);
+        ct_json_end(&w->j);
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
 static void put_reduced(struct writer *w)
 {
     const struct ct_equations *e = w->d->e;
@@ -360,6 +388,7 @@ static void put_reduced(struct writer *w)
     put_matrix(w, "J", e->J, r.J, e->nJ);
     put_vector(w, "phi", r.phi, e->nrow);
     put_vector(w, "gam", r.gam, e->nrow);
+    put_terms(w, &r);
 }
 
 void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages)

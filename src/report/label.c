@@ -33,18 +33,18 @@ static void label33(struct ct_build *b, const ct_ex33 *A, const char *letter, co
 // each anchor.
 static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
 {
-    for (size_t i = 0; i < b->nnode; i++) {
-        const struct ct_node_placement *p = &b->placement[i];
+    for (size_t i = 0; i < b->topology->nnode; i++) {
+        const struct ct_node_placement *p = &b->kinematics->placement[i];
         if (!cluster[p->frame])
-            cluster[p->frame] = b->node[i].name;
+            cluster[p->frame] = b->topology->node[i].name;
         if (!anchor[p->anchor] && ct_ex3_is_zero(p->local))
-            anchor[p->anchor] = b->node[i].name;
+            anchor[p->anchor] = b->topology->node[i].name;
     }
 }
 
 static void label_cluster(struct ct_build *b, int c, const char *name)
 {
-    const struct ct_cluster *self = &b->cluster[c];
+    const struct ct_cluster *self = &b->kinematics->cluster[c];
     if (self->has_angle) {
         label(b, self->angle, "phi", name, "");
         label(b, ct_ex_fun(b->x, CT_OP_SIN, self->angle), "s", name, "");
@@ -52,13 +52,13 @@ static void label_cluster(struct ct_build *b, int c, const char *name)
     }
     label33(b, &self->R, "R", name);
     label3(b, self->w, "w", name);
-    if (self->has_al[CT_BIAS])
-        label3(b, self->al[CT_BIAS], "al", name);
+    if (b->cache.cluster[c].has_al[CT_BIAS])
+        label3(b, b->cache.cluster[c].al[CT_BIAS], "al", name);
 }
 
 static void label_anchor(struct ct_build *b, int a, const char *name)
 {
-    const struct ct_anchor *self = &b->anchor[a];
+    const struct ct_anchor_cache *self = &b->cache.anchor[a];
     if (self->has_d)
         label3(b, self->d, "d", name);
     if (self->has_v)
@@ -70,20 +70,20 @@ static void label_anchor(struct ct_build *b, int a, const char *name)
 void ct_reduced_label(struct ct_equations *e)
 {
     struct ct_build *b = e->build;
-    const char **cluster = CT_NEWN(b->x->arena, const char *, b->ncluster + 1);
-    const char **anchor = CT_NEWN(b->x->arena, const char *, b->nanchor + 1);
+    const char **cluster = CT_NEWN(b->x->arena, const char *, b->kinematics->ncluster + 1);
+    const char **anchor = CT_NEWN(b->x->arena, const char *, b->kinematics->nanchor + 1);
     name_places(b, cluster, anchor);
-    for (size_t c = 1; c < b->ncluster; c++)
+    for (size_t c = 1; c < b->kinematics->ncluster; c++)
         if (cluster[c])
             label_cluster(b, (int)c, cluster[c]);
-    for (size_t a = 1; a < b->nanchor; a++)
+    for (size_t a = 1; a < b->kinematics->nanchor; a++)
         if (anchor[a])
             label_anchor(b, (int)a, anchor[a]);
-    const struct ct_sweep *s = b->sweep[CT_BIAS];
-    for (size_t a = 1; s && a < b->nanchor; a++)
+    const struct ct_sweep *s = b->dynamics.sweep[CT_BIAS];
+    for (size_t a = 1; s && a < b->kinematics->nanchor; a++)
         if (anchor[a])
             label3(b, s->force[a], "F", anchor[a]);
-    for (size_t c = 1; s && c < b->ncluster; c++)
+    for (size_t c = 1; s && c < b->kinematics->ncluster; c++)
         if (cluster[c])
             label3(b, s->torque[c], "T", cluster[c]);
 }

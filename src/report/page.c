@@ -20,6 +20,13 @@ void ct_page_heading(struct ct_page *p, const char *text)
     add_block(p, CT_PAGE_HEADING)->text = text;
 }
 
+void ct_page_folded_heading(struct ct_page *p, const char *text)
+{
+    struct ct_page_block *b = add_block(p, CT_PAGE_HEADING);
+    b->text = text;
+    b->is_folded = true;
+}
+
 void ct_page_sentence(struct ct_page *p, const char *fmt, ...)
 {
     va_list ap;
@@ -53,7 +60,7 @@ void ct_page_matrix(struct ct_page *p, size_t ncolumn)
 bool ct_page_matrix_end(struct ct_page *p)
 {
     const struct ct_page_block *b = &p->block[p->nblock - 1];
-    const bool fits = p->look == CT_LOOK_LATEX ? ct_page_latex_fits(b) : ct_page_text_fits(b);
+    const bool fits = p->look == CT_LOOK_TEXT ? ct_page_text_fits(b) : ct_page_latex_fits(b);
     p->nblock -= !fits;
     return fits;
 }
@@ -63,12 +70,14 @@ void ct_page_equations(struct ct_page *p)
     add_block(p, CT_PAGE_EQUATIONS);
 }
 
-void ct_page_equation(struct ct_page *p, const char *label, const char *left, const char *right,
-                      const char *note)
+struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
+                                          const char *left, const char *right, const char *note)
 {
     struct ct_page_block *b = &p->block[p->nblock - 1];
-    const struct ct_page_equation e = {label, left, right, note, p->about};
+    const struct ct_page_equation e
+        = {.label = label, .left = left, .right = right, .note = note, .about = p->about};
     CT_PUSH(p->arena, b->equation, b->nequation, b->equation_cap, e);
+    return &b->equation[b->nequation - 1];
 }
 
 size_t ct_text_width(const char *s)
@@ -84,11 +93,28 @@ static bool is_sign(const char *s)
     return s[0] == ' ' && (s[1] == '+' || s[1] == '-') && s[2] == ' ';
 }
 
+// Length of the group of braces that starts s: what it holds may be any text. 0: it does not end.
+static size_t group_length(const char *s)
+{
+    int depth = 0;
+    for (size_t i = 0; s[i]; i++) {
+        if (s[i] == '\\' && s[i + 1])
+            i++;
+        else
+            depth += (s[i] == '{') - (s[i] == '}');
+        if (depth == 0)
+            return i + 1;
+    }
+    return 0;
+}
+
 size_t ct_page_first_term(const char *s)
 {
     int depth = 0;
     for (size_t i = 0; s[i]; i++) {
-        if (strchr("([{", s[i]))
+        if (s[i] == '{' && group_length(s + i))
+            i += group_length(s + i) - 1;
+        else if (strchr("([{", s[i]))
             depth++;
         else if (strchr(")]}", s[i]))
             depth--;

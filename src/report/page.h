@@ -1,7 +1,8 @@
 // A page of headings, sentences, tables and equations, and its three looks: text, LaTeX, HTML.
 //
 // Who fills a page writes mathematics in the style of the look it is for (expr/print.h knows the
-// styles) and says where mathematics stands; the look adds layout, line breaks and quoting.
+// styles; HTML takes LaTeX, which mathml.h translates) and says where mathematics stands; the look adds layout, line
+// breaks and quoting.
 // What always holds: equations break between terms only; a line of text is at most CT_PAGE_WIDTH
 // columns unless a single term is wider.
 #ifndef CT_REPORT_PAGE_H
@@ -10,6 +11,9 @@
 #include "expr/print.h"
 
 enum { CT_PAGE_WIDTH = 100 };
+/// Width of a line of mathematics in HTML on a phone of 390 px [pt] in LaTeX of 10 pt, which is 1 em: 24 em of 16 px
+/// less margins of 1 em.
+enum { CT_PAGE_PHONE = 220 };
 
 enum ct_page_kind {
     CT_PAGE_TITLE,    // of a stage
@@ -27,11 +31,15 @@ struct ct_page_equation {
     const char *left, *right; // mathematics; right == NULL: left is all
     const char *note;         // plain words after it; NULL: none
     const char *about;        // the component whose terminal equation it is; NULL: none
+    const char *name;         // of the speed or row that it belongs to; NULL: none
+    // the components of each term, in their order on the page: names separated by blanks; NULL: not known
+    const char *const *left_components, *const *right_components;
 };
 
 struct ct_page_block {
     enum ct_page_kind kind;
     const char *text;  // TITLE, HEADING, SENTENCE
+    bool is_folded;    // HEADING: HTML folds the block that follows
     const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
     const char **
         cell; // TABLE: the first row is the head, plain; row by row. MATRIX: mathematics; the first row
@@ -52,6 +60,8 @@ struct ct_page {
 
 void ct_page_title(struct ct_page *p, const char *text);
 void ct_page_heading(struct ct_page *p, const char *text);
+/// A heading of a block that a reader may skip.
+void ct_page_folded_heading(struct ct_page *p, const char *text);
 void ct_page_sentence(struct ct_page *p, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 /// Starts a table; cells follow row by row, the head first.
@@ -67,8 +77,10 @@ void ct_page_matrix(struct ct_page *p, size_t ncolumn);
 bool ct_page_matrix_end(struct ct_page *p);
 /// Starts a group of equations.
 void ct_page_equations(struct ct_page *p);
-void ct_page_equation(struct ct_page *p, const char *label, const char *left, const char *right,
-                      const char *note);
+/// Adds one, and returns it for what else is known of it.
+struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
+                                          const char *left, const char *right,
+                                          const char *note);
 
 /// Does a matrix fit: lines of CT_PAGE_WIDTH columns; a page of LaTeX.
 bool ct_page_text_fits(const struct ct_page_block *b);
@@ -80,8 +92,12 @@ size_t ct_text_width(const char *s);
 void ct_page_print_text(FILE *out, const struct ct_page *p);
 /// A fragment for a document that uses amsmath and longtable; lines are as wide as those of article at 10 pt.
 void ct_page_print_latex(FILE *out, const struct ct_page *p);
-/// A whole document; mathematics is in the style of text and is set with sub- and superscripts.
+/// A whole document without scripts; mathematics is MathML.
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title);
+/// Its blocks without what is around them; they need ct_page_style and ct_mathml_style. Titles are headings of level
+/// `level`, 1 to 5, headings one below. Writes into p->arena.
+void ct_page_print_html_blocks(FILE *out, const struct ct_page *p, int level);
+extern const char ct_page_style[];
 
 /// Top-level terms of a sum in any style: the length of the first one, up to before the next sign
 /// " + " or " - " outside all brackets; strlen(s) if there is no other.

@@ -1,283 +1,195 @@
 // Pages as one HTML document without scripts; see page.h.
-//
-// Mathematics arrives in the style of text and is set by its words: a name becomes an italic letter
-// with subscripts, primes become dots, * a thin space, ^2 a superscript.
 #include "report/page.h"
+
+#include "report/mathml.h"
 
 #include <ctype.h>
 #include <stdint.h>
 #include <string.h>
 
-static void put_escaped(FILE *out, const char *s, size_t n)
+// What browsers would say: readable in print, in the dark, at 390 px; only tables and matrices scroll, and on their own.
+const char ct_page_style[]
+    = ".table { overflow-x: auto }\n"
+      "table { border-collapse: collapse }\n"
+      "td, th { padding: 0 1em 0 0; text-align: left; vertical-align: top }\n"
+      "th, td { white-space: nowrap }\n"
+      "th { font-weight: normal; opacity: .75 }\n"
+      "td.words { white-space: normal; min-width: 12em }\n"
+      "th.number, td.number { text-align: right }\n"
+      ".equations { margin: .5em 0 1em 0 }\n"
+      ".label, .note { opacity: .75 }\n"
+      ".equations > * { margin-top: .3em }\n"
+      ".labelled { margin-bottom: .6em }\n"
+      ".labelled > math.equation { margin-left: 1.2em }\n"
+      "mtext.note { margin-left: .3em }\n"
+      "summary { cursor: pointer }\n"
+      "@media print { details::details-content { content-visibility: visible; block-size: auto "
+      "} }\n";
+
+static void put_text(FILE *out, const char *s)
 {
-    for (size_t i = 0; i < n && s[i]; i++) {
-        if (s[i] == '<')
-            fputs("&lt;", out);
-        else if (s[i] == '>')
-            fputs("&gt;", out);
-        else if (s[i] == '&')
-            fputs("&amp;", out);
-        else if (s[i] == '"')
-            fputs("&quot;", out);
-        else
-            fputc(s[i], out);
+    ct_html_text(out, s, SIZE_MAX);
+}
+
+// ---- equations --------------------------------------------------------------------------------
+
+static struct ct_mathml_side split_terms(struct ct_arena *a, const char *s,
+                                         const char *const *components)
+{
+    struct ct_mathml_term *term = NULL;
+    size_t n = 0, cap = 0;
+    for (; s && *s; n++) {
+        const size_t length = ct_page_first_term(s);
+        const struct ct_mathml_term t = {.latex = ct_arena_strndup(a, s, length),
+                                         .components = components ? components[n] : NULL};
+        size_t count = n;
+        CT_PUSH(a, term, count, cap, t);
+        s += length;
     }
+    return (struct ct_mathml_side){term, n};
 }
 
-// ---- names ------------------------------------------------------------------------------------
-
-static bool is_word(const char *s, size_t n, const char *word)
+// Words of a note are items of the last side, so that they wrap with its terms.
+static struct ct_mathml_side add_note(struct ct_arena *a, struct ct_mathml_side side,
+                                      const char *note)
 {
-    return strlen(word) == n && !memcmp(s, word, n);
+    if (!note || !side.n)
+        return side;
+    struct ct_mathml_term *term = CT_NEWN(a, struct ct_mathml_term, side.n);
+    memcpy(term, side.term, side.n * sizeof *term);
+    term[side.n - 1].note = ct_arena_printf(a, "(%s)", note);
+    return (struct ct_mathml_side){term, side.n};
 }
 
-static bool is_function(const char *s, size_t n)
+static void put_equation(FILE *out, struct ct_arena *a, const struct ct_page_equation *e)
 {
-    static const char *const name[]
-        = {"sin",  "cos",  "tan", "asin", "acos",   "atan",  "atan2", "sinh",
-           "cosh", "tanh", "exp", "log",  "sqrt",   "abs",   "sign",  "min",
-           "max",  "if",   "Rot", "diag", "effort", "const", "int"};
-    for (size_t i = 0; i < COUNT(name); i++)
-        if (is_word(s, n, name[i]))
-            return true;
-    return false;
-}
-
-static bool is_vector(const char *s, size_t n)
-{
-    return (n == 1 && strchr("FTdSaIw", *s)) || is_word(s, n, "al");
-}
-
-// Greek letters by their names; the others as they are.
-static void put_letter(FILE *out, const char *s, size_t n)
-{
-    static const char *const greek[][2]
-        = {{"alpha", "&alpha;"}, {"al", "&alpha;"},      {"beta", "&beta;"},
-           {"gamma", "&gamma;"}, {"delta", "&delta;"},   {"epsilon", "&epsilon;"},
-           {"theta", "&theta;"}, {"lambda", "&lambda;"}, {"mu", "&mu;"},
-           {"rho", "&rho;"},     {"phi", "&phi;"},       {"psi", "&psi;"},
-           {"omega", "&omega;"}, {"w", "&omega;"},       {"tau", "&tau;"},
-           {"pi", "&pi;"},       {"xi", "&xi;"}};
-    for (size_t i = 0; i < COUNT(greek); i++)
-        if (is_word(s, n, greek[i][0])) {
-            fputs(greek[i][1], out);
-            return;
-        }
-    put_escaped(out, s, n);
-}
-
-static bool is_name_character(char c)
-{
-    return isalnum((unsigned char)c) || c == '_' || c == '.';
-}
-
-// crank.q3'' -> q with two dots and the subscripts 3, crank; c_rod -> c with subscript rod.
-static void put_name(FILE *out, const char *s, size_t n, size_t nprime)
-{
-    const char *dot = NULL, *bar = memchr(s, '_', n);
-    for (size_t i = 0; i < n; i++)
-        dot = s[i] == '.' ? s + i : dot;
-    // a part behind the last dot that is a quantity stands first: a coordinate of a joint or of a beam's node
-    const size_t behind = dot ? (size_t)(s + n - dot) - 2 : 0;
-    const bool is_quantity = dot
-                          && ((strchr("qua", dot[1]) && strspn(dot + 2, "0123456789") == behind)
-                              || (strchr("vw", dot[1]) && behind == 0)
-                              || (dot[1] == 'r' && behind == 1 && strchr("xyz", dot[2])));
-    const char *base = is_quantity ? dot + 1 : s;
-    const char *end = s + n;
-    size_t length = (size_t)(is_quantity ? end - base : bar && bar > s ? bar - s : (long)n);
-    size_t letters = length;
-    while (letters > 1 && isdigit((unsigned char)base[letters - 1]))
-        letters--;
-    fputs("<i>", out);
-    if (is_word(base, letters, "w") && !(bar && bar > s))
-        fputc('w', out); // a displacement; w_rod and w(rod) are angular velocities
-    else
-        put_letter(out, base, letters);
-    fputs(nprime == 1 ? "&#775;" : nprime >= 2 ? "&#776;" : "", out);
-    fputs("</i>", out);
-    const bool has_digits = letters < length, has_rest = is_quantity || (bar && bar > s);
-    if (!has_digits && !has_rest)
-        return;
-    fputs("<sub>", out);
-    put_escaped(out, base + letters, length - letters);
-    fputs(has_digits && has_rest ? "," : "", out);
-    if (is_quantity)
-        put_escaped(out, s, (size_t)(dot - s));
-    else if (has_rest)
-        put_escaped(out, bar + 1, (size_t)(end - bar - 1));
-    fputs("</sub>", out);
-}
-
-// A name with what belongs to it; returns the characters used.
-static size_t put_word(FILE *out, const char *s)
-{
-    size_t n = 0, nprime = 0;
-    while (is_name_character(s[n]))
-        n++;
-    while (s[n + nprime] == '\'')
-        nprime++;
-    const char *close = s[n] == '(' ? strchr(s + n, ')') : NULL;
-    if (close && (is_vector(s, n) || is_word(s, n, "lambda"))) {
-        const bool bold = is_vector(s, n);
-        fputs(bold ? "<b>" : "<i>", out);
-        put_letter(out, s, n);
-        fputs(bold ? "</b><sub>" : "</i><sub>", out);
-        put_escaped(out, s + n + 1, (size_t)(close - s) - n - 1);
-        fputs("</sub>", out);
-        return (size_t)(close - s) + 1;
+    struct ct_mathml_equation m = {.name = e->name,
+                                   .left = split_terms(a, e->left, e->left_components),
+                                   .right = split_terms(a, e->right, e->right_components)};
+    struct ct_mathml_side *last = m.right.n ? &m.right : &m.left;
+    *last = add_note(a, *last, e->note);
+    if (e->label) {
+        fputs("<div class=\"labelled\"><span class=\"label\">", out);
+        put_text(out, e->label);
+        fputs("</span>\n", out);
     }
-    if (is_function(s, n))
-        put_escaped(out, s, n);
-    else
-        put_name(out, s, n, nprime);
-    return n + nprime;
+    ct_mathml_equation(out, &m);
+    fputs(e->label ? "</div>\n" : "", out);
 }
 
-static size_t put_number(FILE *out, const char *s)
+// Signs of equality stand in a column where left sides leave room for the right ones, a third of a phone's line.
+static bool is_aligned(const struct ct_page_block *b)
 {
-    size_t n = strspn(s, "0123456789.");
-    put_escaped(out, s, n);
-    if (s[n] == 'e'
-        && (s[n + 1] == '-' || s[n + 1] == '+' || isdigit((unsigned char)s[n + 1]))) {
-        const size_t digits = 1 + (s[n + 1] == '-' || s[n + 1] == '+');
-        const size_t k = digits + strspn(s + n + digits, "0123456789");
-        fputs("&middot;10<sup>", out);
-        fputs(s[n + 1] == '-' ? "&minus;" : "", out);
-        put_escaped(out, s + n + digits, k - digits);
-        fputs("</sup>", out);
-        n += k;
-    }
-    return n;
-}
-
-// The x of a cross product stands between blanks and operands.
-static bool is_cross(const char *s, const char *start)
-{
-    return *s == 'x' && s > start + 1 && s[-1] == ' ' && !strchr("+-=,", s[-2]) && s[1] == ' '
-        && !strchr("+-=", s[2]);
-}
-
-static void put_math(FILE *out, const char *s)
-{
-    const char *const start = s;
-    while (*s) {
-        if (is_cross(s, start)) {
-            fputs("&times;", out);
-            s++;
-        } else if (isalpha((unsigned char)*s)) {
-            s += put_word(out, s);
-        } else if (isdigit((unsigned char)*s)) {
-            s += put_number(out, s);
-        } else if (*s == '^') {
-            size_t n = 1 + strspn(s + 1, "0123456789");
-            fputs("<sup>", out);
-            put_escaped(out, s + 1, n - 1);
-            fputs("</sup>", out);
-            s += n;
-        } else {
-            if (*s == '*')
-                fputs("&#8201;", out);
-            else if (*s == '-')
-                fputs("&minus;", out);
-            else
-                put_escaped(out, s, 1);
-            s++;
-        }
-    }
-}
-
-// ---- blocks -----------------------------------------------------------------------------------
-
-static void put_equations(FILE *out, const struct ct_page_block *b)
-{
-    fputs("<table class=\"equations\">\n", out);
     for (size_t i = 0; i < b->nequation; i++) {
         const struct ct_page_equation *e = &b->equation[i];
-        fputs("<tr><td class=\"label\">", out);
-        put_escaped(out, e->label ? e->label : "", SIZE_MAX);
-        fputs("</td><td class=\"left\">", out);
-        put_math(out, e->left);
-        fputs("</td><td>", out);
-        if (e->right) {
-            fputs("= ", out);
-            put_math(out, e->right);
-        }
-        if (e->note) {
-            fputs(" <span class=\"note\">", out);
-            put_escaped(out, e->note, SIZE_MAX);
-            fputs("</span>", out);
-        }
-        fputs("</td></tr>\n", out);
+        if (e->label || !e->right
+            || ct_latex_width(e->left, strlen(e->left)) > CT_PAGE_PHONE / 3)
+            return false;
     }
-    fputs("</table>\n", out);
+    return true;
 }
 
-static void put_table(FILE *out, const struct ct_page_block *b)
+static void put_equations(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
+{
+    fputs(is_aligned(b) ? "<div class=\"equations aligned\">\n" : "<div class=\"equations\">\n",
+          out);
+    for (size_t i = 0; i < b->nequation; i++)
+        put_equation(out, a, &b->equation[i]);
+    fputs("</div>\n", out);
+}
+
+// ---- tables and matrices ------------------------------------------------------------------------
+
+// Columns that hold more than a name or a number wrap.
+static bool *find_words(struct ct_arena *a, const struct ct_page_block *b, size_t n)
+{
+    enum { LONGEST_NAME = 24 };
+    bool *has_words = CT_NEWN(a, bool, n + 1);
+    for (size_t i = n; i < b->ncell; i++)
+        has_words[i % n] |= b->align[i % n] == 'l' && ct_text_width(b->cell[i]) > LONGEST_NAME;
+    return has_words;
+}
+
+static void put_table(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
 {
     const size_t n = strlen(b->align);
-    fputs("<table>\n", out);
+    const bool *has_words = find_words(a, b, n);
+    fputs("<div class=\"table\"><table>\n", out);
     for (size_t i = 0; i < b->ncell; i++) {
         const char letter = b->align[i % n];
         const char *tag = i < n ? "th" : "td";
         fputs(i % n ? "" : "<tr>", out);
         fprintf(out, "<%s%s>", tag,
-                tolower((unsigned char)letter) == 'r' ? " class=\"right\"" : "");
-        if (isupper((unsigned char)letter) && i >= n)
-            put_math(out, b->cell[i]);
+                tolower((unsigned char)letter) == 'r' ? " class=\"number\""
+                : i >= n && has_words[i % n]          ? " class=\"words\""
+                                                      : "");
+        if (isupper((unsigned char)letter) && i >= n && *b->cell[i])
+            ct_mathml_inline(out, b->cell[i]);
         else
-            put_escaped(out, b->cell[i], SIZE_MAX);
+            put_text(out, b->cell[i]);
         fprintf(out, "</%s>%s", tag, (i + 1) % n ? "" : "</tr>\n");
     }
-    fputs("</table>\n", out);
+    fputs("</table></div>\n", out);
 }
 
-static void put_matrix(FILE *out, const struct ct_page_block *b)
+// ---- blocks -----------------------------------------------------------------------------------
+
+static void put_heading(FILE *out, const struct ct_page_block *b, int level)
 {
-    fputs("<table class=\"matrix\">\n", out);
-    for (size_t i = 0; i < b->ncell; i++) {
-        const size_t k = i % b->ncolumn;
-        const bool is_name = i < b->ncolumn || k == 0;
-        fputs(k ? "" : "<tr>", out);
-        fputs(is_name ? "<th>" : "<td>", out);
-        if (is_name)
-            put_escaped(out, b->cell[i], SIZE_MAX);
-        else
-            put_math(out, b->cell[i]);
-        fprintf(out, "</%s>%s", is_name ? "th" : "td", k + 1 == b->ncolumn ? "</tr>\n" : "");
+    fprintf(out, "<h%d>", level);
+    put_text(out, b->text);
+    fprintf(out, "</h%d>", level);
+}
+
+void ct_page_print_html_blocks(FILE *out, const struct ct_page *p, int level)
+{
+    bool is_folded = false;
+    for (size_t i = 0; i < p->nblock; i++) {
+        const struct ct_page_block *b = &p->block[i];
+        const bool ends_fold = is_folded;
+        is_folded = b->kind == CT_PAGE_HEADING && b->is_folded;
+        switch (b->kind) {
+        case CT_PAGE_TITLE:
+        case CT_PAGE_HEADING:
+            fputs(is_folded ? "<details><summary>" : "", out);
+            put_heading(out, b, level + (b->kind == CT_PAGE_HEADING));
+            fputs(is_folded ? "</summary>\n" : "\n", out);
+            break;
+        case CT_PAGE_SENTENCE:
+            fputs("<p>", out);
+            put_text(out, b->text);
+            fputs("</p>\n", out);
+            break;
+        case CT_PAGE_TABLE:
+            put_table(out, p->arena, b);
+            break;
+        case CT_PAGE_EQUATIONS:
+            put_equations(out, p->arena, b);
+            break;
+        case CT_PAGE_MATRIX:
+            ct_mathml_matrix(out, b->cell, b->ncell / b->ncolumn, b->ncolumn, true);
+            break;
+        }
+        fputs(ends_fold ? "</details>\n" : "", out);
     }
-    fputs("</table>\n", out);
 }
 
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title)
 {
-    static const char *const tag[] = {"h1", "h2", "p"};
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>",
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>",
           out);
-    put_escaped(out, title, SIZE_MAX);
+    put_text(out, title);
     fputs("</title>\n<style>\n"
-          "body { font: 16px/1.5 serif; max-width: 70em; margin: 2em auto; padding: 0 1em }\n"
-          "h1 { font-size: 1.4em; border-bottom: 1px solid #888 }\nh2 { font-size: 1.1em }\n"
-          "td, th { padding: 0 1em 0 0; text-align: left; vertical-align: top }\n"
-          "th { font-weight: normal; color: #666 }\n"
-          ".right { text-align: right }\n.equations td { padding: .2em .6em .2em 0 }\n"
-          ".matrix td { text-align: center; border-left: 1px solid #ccc; padding: 0 .6em }\n"
-          ".left { white-space: nowrap }\n.label, .note { color: #666 }\n"
-          "</style>\n</head>\n<body>\n",
+          ":root { color-scheme: light dark }\n"
+          "body { font: 16px/1.5 serif; max-width: 70em; margin: 2em auto; padding: 0 1em; "
+          "overflow-wrap: break-word }\n"
+          "h1 { font-size: 1.4em; border-bottom: 1px solid }\n"
+          "h2 { font-size: 1.1em }\nsummary h2 { display: inline }\n",
           out);
-    for (size_t i = 0; i < p->nblock; i++) {
-        const struct ct_page_block *b = &p->block[i];
-        if (b->kind == CT_PAGE_TABLE) {
-            put_table(out, b);
-        } else if (b->kind == CT_PAGE_MATRIX) {
-            put_matrix(out, b);
-        } else if (b->kind == CT_PAGE_EQUATIONS) {
-            put_equations(out, b);
-        } else {
-            fprintf(out, "<%s>", tag[b->kind]);
-            put_escaped(out, b->text, SIZE_MAX);
-            fprintf(out, "</%s>\n", tag[b->kind]);
-        }
-    }
+    fputs(ct_page_style, out);
+    fputs(ct_mathml_style, out);
+    fputs("</style>\n</head>\n<body>\n", out);
+    ct_page_print_html_blocks(out, p, 1);
     fputs("</body>\n</html>\n", out);
 }

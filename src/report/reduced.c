@@ -190,24 +190,6 @@ static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r,
     return n;
 }
 
-static ct_ex rebuild(struct ct_exs *x, ct_ex e, const ct_ex *map)
-{
-    const struct ct_exnode n = *ct_ex_node(x, e);
-    switch (ct_op_info[n.op].narg) {
-    case 0:
-        return e;
-    case 1:
-        if (n.op == CT_OP_TABLE)
-            return ct_ex_table(x, n.b, n.c, map[n.a]);
-        return n.op == CT_OP_NEG ? ct_ex_neg(x, map[n.a])
-                                 : ct_ex_fun(x, (enum ct_op)n.op, map[n.a]);
-    case 2:
-        return ct_ex_fun2(x, (enum ct_op)n.op, map[n.a], map[n.b]);
-    default:
-        return ct_ex_if(x, map[n.a], map[n.b], map[n.c]);
-    }
-}
-
 // Bodies are short by now: like terms that the names have brought to light are collected.
 static ct_ex tidy(struct ct_equations *e, ct_ex v)
 {
@@ -236,11 +218,13 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e,
     for (size_t k = 0; k < n; k++) {
         const ct_ex old = {id[k]};
         const char *name = ct_share_name(share, old);
-        map[old.id] = rebuild(x, old, map);
+        const struct ct_exnode node = *ct_ex_node(x, old);
+        map[old.id] = ct_op_info[node.op].narg ? ct_ex_rebuild(x, node, map) : old;
         if (!name)
             continue;
         const uint32_t number = (uint32_t)list->n;
         struct ct_reduced_definition *d = &list->at[list->n++];
+        d->full = old;
         d->value = may_tidy ? tidy(e, map[old.id]) : map[old.id];
         d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
     }

@@ -11,6 +11,7 @@
 struct ct_reduced_definition {
     ct_ex symbol; // of kind LOCAL
     ct_ex value;  // may use symbols of earlier definitions
+    ct_ex full;   // the expression that it names, without definitions
 };
 
 struct ct_definitions {

@@ -2,6 +2,7 @@
 //
 // It checks shapes, keys, required keys and words. What a schema cannot know (units, names, expressions)
 // is left to the reader: a number or text stands for every scalar.
+#include "base/entry.h"
 #include "report/schema.h"
 
 #include "integrate/problem.h"
@@ -59,7 +60,7 @@ static void write_class(struct ct_json *j, const struct ct_component_class *c)
     ct_json_end(j);
 }
 
-// if type is NAME then the object is a NAME; a body without type is rigid
+// if type is NAME then the object is a NAME, as it is without type if NAME is the standard class of its family
 static void write_choice(struct ct_json *j, const struct ct_component_class *c)
 {
     char name[64];
@@ -71,7 +72,7 @@ static void write_choice(struct ct_json *j, const struct ct_component_class *c)
     ct_json_text(j, "const", c->name);
     ct_json_end(j);
     ct_json_end(j);
-    if (strcmp(c->name, "rigid") != 0) {
+    if (!c->is_standard) {
         ct_json_array(j, "required");
         ct_json_text(j, NULL, "type");
         ct_json_end(j);
@@ -505,8 +506,9 @@ static void write_sections(struct ct_json *j)
     ct_json_end(j);
 }
 
-void ct_schema_print(FILE *out)
+static void print_schema(const void *all, FILE *out)
 {
+    (void)all;
     struct ct_json j;
     ct_json_init(&j, out);
     ct_json_object(&j, NULL);
@@ -520,4 +522,14 @@ void ct_schema_print(FILE *out)
     ct_json_bool(&j, "additionalProperties", false);
     write_definitions(&j);
     ct_json_end(&j);
+}
+
+void ct_schema_print(FILE *out)
+{
+    ct_print_to(out, print_schema, "");
+}
+
+char *ct_schema_text(void)
+{
+    return ct_print_text(print_schema, "");
 }

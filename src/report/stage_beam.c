@@ -227,7 +227,7 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     bool has_rotary = false;
     for (int i = 0; i < 3; i++)
         has_rotary |= !ct_ex_is_zero(ct_flexible_rotary(f, i).value);
-    const char *frame = d->e->build->node[f->base].name;
+    const char *frame = d->e->build->topology->node[f->base].name;
     ct_page_heading(&d->page, ct_arena_printf(d->a, "beam %s", f->name));
     ct_page_sentence(&d->page, "%s", ct_beam_sentence(d->a, f));
     ct_page_equations(&d->page);
@@ -477,7 +477,7 @@ static const char *place_text(struct ct_derivation *d, const struct ct_edge_info
 {
     struct ct_exs *x = d->e->x;
     const struct ct_collect_options o = {.scratch = d->a};
-    ct_ex3 at = e->at;
+    ct_ex3 at = ct_edge_motion(d->e->build, e)->d;
     double size = 0;
     for (int k = 0; k < 3; k++)
         size += ct_reduced_size(x, at.e[k], LARGEST_ARM + 1);
@@ -506,9 +506,9 @@ void ct_beams_put_arms(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;
     bool any = false;
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
-        if (!e->flexible)
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
+        if (e->beam < 0)
             continue;
         if (!any) {
             ct_page_heading(&d->page,
@@ -518,9 +518,10 @@ void ct_beams_put_arms(struct ct_derivation *d)
         any = true;
         d->page.about = e->name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), place_text(d, e),
-                         ct_arena_printf(d->a, "axes of %s", b->node[b->wiring[i].tail].name));
+                         ct_arena_printf(d->a, "axes of %s",
+                                         b->topology->node[b->topology->wiring[i].tail].name));
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "S", e->name),
-                         turns_text(d, &e->motion), NULL);
+                         turns_text(d, ct_edge_motion(b, e)), NULL);
     }
 }
 
@@ -541,14 +542,14 @@ static const char *into_arms(struct ct_derivation *d, const struct ct_flexible *
 {
     const struct ct_build *b = d->e->build;
     const char *s = "";
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
-        if (e->flexible != f)
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
+        if (ct_flexible_of_edge(b, e) != f)
             continue;
-        if (!ct_ex3_is_zero(e->translation[k]))
+        if (!ct_ex3_is_zero(ct_edge_kinematics(b, e)->translation[k]))
             s = ct_arena_printf(d->a, "%s%s%s", s, *s ? " + " : "",
                                 partial(d, "d", e->name, "F"));
-        if (!ct_ex3_is_zero(e->rotation[k]))
+        if (!ct_ex3_is_zero(ct_edge_kinematics(b, e)->rotation[k]))
             s = ct_arena_printf(d->a, "%s%s%s", s, *s ? " + " : "",
                                 partial(d, "Y", e->name, "T"));
     }

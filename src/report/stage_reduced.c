@@ -3,7 +3,7 @@
 
 struct sides {
     ct_ex left, right;
-    const char *label;
+    const char *label, *name;
 };
 
 struct group {
@@ -11,10 +11,11 @@ struct group {
     size_t n, cap;
 };
 
-static void add(struct ct_derivation *d, struct group *g, const char *label, ct_ex left,
-                ct_ex right)
+// name: of the speed or row, NULL: of neither
+static void add(struct ct_derivation *d, struct group *g, const char *label, const char *name,
+                ct_ex left, ct_ex right)
 {
-    const struct sides s = {left, right, label};
+    const struct sides s = {left, right, label, name};
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
@@ -23,7 +24,9 @@ static void put_group(struct ct_derivation *d, const struct group *g)
     ct_page_equations(&d->page);
     for (size_t i = 0; i < g->n; i++)
         ct_page_equation(&d->page, g->at[i].label, ct_derivation_text(d, g->at[i].left),
-                         ct_derivation_text(d, g->at[i].right), NULL);
+                         ct_derivation_text(d, g->at[i].right), NULL)
+            ->name
+            = g->at[i].name;
 }
 
 static const char *speed_label(struct ct_derivation *d, size_t i)
@@ -52,18 +55,18 @@ static void fill(struct ct_derivation *d, const struct ct_reduced *r, struct gro
 {
     struct ct_equations *e = d->e;
     for (size_t i = 0; i < e->nu; i++)
-        add(d, &g[ct_speed_is_state(e, i) ? STATES : MOTION], speed_label(d, i),
+        add(d, &g[ct_speed_is_state(e, i) ? STATES : MOTION], speed_label(d, i), e->u[i].name,
             ct_reduced_left(e, r, i), ct_reduced_right(e, r, i));
     for (size_t i = 0; i < e->nrow; i++) {
-        add(d, &g[CLOSURE], e->row[i].name, r->phi[i], CT_EX_ZERO);
-        add(d, &g[CLOSURE_RATE], e->row[i].name, ct_reduced_row_left(e, r, i),
+        add(d, &g[CLOSURE], e->row[i].name, e->row[i].name, r->phi[i], CT_EX_ZERO);
+        add(d, &g[CLOSURE_RATE], e->row[i].name, e->row[i].name, ct_reduced_row_left(e, r, i),
             ct_ex_neg(e->x, r->gam[i]));
     }
     for (size_t i = 0; i < e->ndriver; i++)
-        add(d, &g[EFFORT], e->driver[i].name, r->effort[i], CT_EX_ZERO);
+        add(d, &g[EFFORT], e->driver[i].name, NULL, r->effort[i], CT_EX_ZERO);
     for (size_t i = 0; i < e->nq; i++)
         if (e->q[i].quaternion >= 0)
-            add(d, &g[KINEMATIC], NULL, e->q[i].symbol, r->rate[i]);
+            add(d, &g[KINEMATIC], NULL, NULL, e->q[i].symbol, r->rate[i]);
 }
 
 static void put_kinematic(struct ct_derivation *d, const struct group *g)
@@ -170,7 +173,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
-static void put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
+void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
     const char **row = CT_NEWN(d->a, const char *, e->nu + e->nrow + 1);
@@ -239,7 +242,7 @@ void ct_stage_reduced(struct ct_derivation *d)
         e->nstate ? count(d, e->nstate, "state", "states") : "",
         e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
     ct_derivation_put_definitions(d, "with", &r.definitions);
-    put_matrices(d, &r);
+    ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
         ct_page_heading(&d->page,
                         e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");

@@ -16,7 +16,8 @@ static const char *join(struct ct_derivation *d, const char *list, const char *i
 static bool is_first_of_class(const struct ct_build *b, size_t edge)
 {
     for (size_t i = 0; i < edge; i++)
-        if (b->edge[i].self && b->edge[i].self->cls == b->edge[edge].self->cls)
+        if (b->topology->edge[i].self
+            && b->topology->edge[i].self->cls == b->topology->edge[edge].self->cls)
             return false;
     return true;
 }
@@ -30,14 +31,14 @@ static void put_laws(struct ct_derivation *d)
     if (b->nflexible)
         CT_PAGE_ROW(&d->page, "flexible arm", "d = r, S: place and turn of the section",
                     "F, T are reactions; effort(q) takes d_q . F + Y_q . T");
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_instance *self = b->edge[i].self;
-        if (self && b->edge[i].kind != CT_EDGE_CLOSURE && is_first_of_class(b, i))
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_instance *self = b->topology->edge[i].self;
+        if (self && b->topology->edge[i].kind != CT_EDGE_CLOSURE && is_first_of_class(b, i))
             CT_PAGE_ROW(&d->page, self->cls->name, self->cls->across, self->cls->through);
     }
     for (size_t j = 0; j < d->m->njoint; j++) { // those without an edge, gears
         const struct ct_instance *self = &d->m->joint[j];
-        bool is_first = b->edge_of_joint[j] < 0;
+        bool is_first = b->topology->edge_of_joint[j] < 0;
         for (size_t k = 0; k < j; k++)
             is_first &= d->m->joint[k].cls != self->cls;
         if (is_first)
@@ -96,7 +97,8 @@ static void put_bodies(struct ct_derivation *d)
     for (size_t i = 1; i < m->nbody; i++) {
         const struct ct_body *body = &m->body[i];
         const char *name = body->instance.name;
-        const char *com = d->e->build->node[d->e->build->node_of_com[i]].name;
+        const char *com
+            = d->e->build->topology->node[d->e->build->topology->node_of_com[i]].name;
         if (body->beam)
             continue;
         d->page.about = name;
@@ -126,16 +128,16 @@ static void put_arms(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;
     bool any = false;
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
-        if (e->kind != CT_EDGE_ARM || e->flexible)
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
+        if (!ct_edge_is_rigid_arm(e))
             continue;
         if (!any) {
             ct_page_heading(&d->page, "arms: from the frame of a body to its points");
             ct_page_equations(&d->page);
         }
         any = true;
-        const char *body = b->node[b->wiring[i].tail].name;
+        const char *body = b->topology->node[b->topology->wiring[i].tail].name;
         d->page.about = e->name;
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name),
                          ct_derivation_vector(d, e->at),
@@ -243,8 +245,8 @@ static void put_joints(struct ct_derivation *d)
     for (size_t j = 0; j < d->m->njoint; j++) {
         const struct ct_instance *self = &d->m->joint[j];
         d->page.about = self->name;
-        if (b->edge_of_joint[j] >= 0) {
-            put_joint(d, &b->edge[b->edge_of_joint[j]]);
+        if (b->topology->edge_of_joint[j] >= 0) {
+            put_joint(d, &b->topology->edge[b->topology->edge_of_joint[j]]);
         } else {
             const struct ct_value *joints = ct_instance_value(self, "joints");
             const struct ct_value *ratio = ct_instance_value(self, "ratio");
@@ -292,7 +294,7 @@ static void put_force(struct ct_derivation *d, const struct ct_instance *self)
         const char *key = cls->key[k].name;
         const char *left
             = is_value
-                ? ct_derivation_of(d, !strcmp(cls->name, "torque") ? "T" : "F", self->name)
+                ? ct_derivation_of(d, cls->applied == CT_APPLIED_TORQUE ? "T" : "F", self->name)
             : ct_derivation_is_latex(d) ? ct_arena_printf(
                   d->a, "\\mathrm{%s}_{\\mathrm{%s}}", key, ct_latex_quoted(d->a, self->name))
                                         : ct_arena_printf(d->a, "%s(%s)", key, self->name);

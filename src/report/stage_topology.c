@@ -126,9 +126,8 @@ static void put_tree_matrices(struct ct_derivation *d, bool cutsets)
 
 // ---- cutsets --------------------------------------------------------------------------------------
 
-// F(own) + F(...) - ... = 0 for row i of a cutset matrix.
-static const char *cutset_text(struct ct_derivation *d, const struct ct_incidence *rows, int i,
-                               int own, const char *letter)
+const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
+                                 int i, int own, const char *letter)
 {
     const char *s = ct_derivation_of(d, letter, d->e->edge_name[own]);
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
@@ -147,7 +146,7 @@ static void put_more(struct ct_derivation *d, int n)
 // A particle takes no torque: no balance of torques is its own.
 static bool has_balance(const struct ct_derivation *d, int edge, bool of_rotation)
 {
-    return !of_rotation || d->e->build->edge[edge].has_rotation;
+    return !of_rotation || d->e->build->topology->edge[edge].has_rotation;
 }
 
 static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool of_rotation)
@@ -162,13 +161,13 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
     for (int arms = 0; arms < 2; arms++) // joints and bodies first: these give the motion
         for (int i = 0; i < Af.nrow; i++) {
             const int own = t->branch[i];
-            if ((b->edge[own].kind == CT_EDGE_ARM) != (arms == 1)
+            if ((b->topology->edge[own].kind == CT_EDGE_ARM) != (arms == 1)
                 || !has_balance(d, own, of_rotation))
                 continue;
             if (n++ < MOST_EQUATIONS)
-                ct_page_equation(&d->page, NULL,
-                                 cutset_text(d, &rows, i, own, of_rotation ? "T" : "F"), "0",
-                                 NULL);
+                ct_page_equation(
+                    &d->page, NULL,
+                    ct_derivation_cutset(d, &rows, i, own, of_rotation ? "T" : "F"), "0", NULL);
         }
     put_more(d, n);
 }
@@ -177,7 +176,7 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
 
 static const struct ct_body *body_of(const struct ct_derivation *d, int edge)
 {
-    const struct ct_edge_info *e = &d->e->build->edge[edge];
+    const struct ct_edge_info *e = &d->e->build->topology->edge[edge];
     return e->kind == CT_EDGE_BODY && !d->m->body[e->index].beam ? &d->m->body[e->index] : NULL;
 }
 
@@ -199,7 +198,7 @@ static const char *force_text(struct ct_derivation *d, int edge)
 static const char *torque_text(struct ct_derivation *d, int edge)
 {
     const struct ct_body *body = body_of(d, edge);
-    const struct ct_edge_info *e = &d->e->build->edge[edge];
+    const struct ct_edge_info *e = &d->e->build->topology->edge[edge];
     if (body)
         return ct_derivation_inertia_torque(d, body);
     return e->has_rotation || e->kind == CT_EDGE_FORCE
@@ -255,7 +254,7 @@ static void put_balances(struct ct_derivation *d, const struct ct_tree *t, bool 
     ct_page_equations(&d->page);
     for (int i = 0; i < Af.nrow; i++) {
         const int own = t->branch[i];
-        if (b->edge[own].kind == CT_EDGE_ARM || !has_balance(d, own, of_rotation))
+        if (b->topology->edge[own].kind == CT_EDGE_ARM || !has_balance(d, own, of_rotation))
             continue;
         if (n++ < MOST_EQUATIONS)
             put_balance(d, &rows, i, own, of_rotation);
@@ -282,9 +281,8 @@ void ct_stage_cutset(struct ct_derivation *d)
 
 // ---- circuits -------------------------------------------------------------------------------------
 
-// The chord from the branches on the way from its tail to its head.
-static const char *circuit_text(struct ct_derivation *d, const struct ct_tree *t, int chord,
-                                bool of_rotation)
+const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
+                                  bool of_rotation)
 {
     const struct ct_equations *e = d->e;
     const bool latex = ct_derivation_is_latex(d);
@@ -297,8 +295,8 @@ static const char *circuit_text(struct ct_derivation *d, const struct ct_tree *t
         const char *name = e->edge_name[branch[k]];
         if (of_rotation) {
             const char *S = ct_derivation_of(d, "S", name);
-            if (e->build->edge[branch[k]].kind == CT_EDGE_BODY
-                && e->build->node[e->graph->edge[branch[k]].head].is_particle)
+            if (e->build->topology->edge[branch[k]].kind == CT_EDGE_BODY
+                && e->build->topology->node[e->graph->edge[branch[k]].head].is_particle)
                 continue; // its axes stay parallel to ground
             s = ct_arena_printf(d->a, "%s%s%s%s", s, *s ? latex ? " \\, " : "*" : "", S,
                                 forward ? ""
@@ -318,14 +316,14 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
     int n = 0;
     ct_page_equations(&d->page);
     for (int i = 0; i < t->nchord; i++) {
-        const struct ct_edge_info *info = &e->build->edge[t->chord[i]];
+        const struct ct_edge_info *info = &e->build->topology->edge[t->chord[i]];
         if (of_rotation && !info->has_rotation)
             continue;
         if (n++ < MOST_EQUATIONS)
             ct_page_equation(
                 &d->page, NULL,
                 ct_derivation_of(d, of_rotation ? "S" : "d", e->edge_name[t->chord[i]]),
-                circuit_text(d, t, t->chord[i], of_rotation), NULL);
+                ct_derivation_circuit(d, t, t->chord[i], of_rotation), NULL);
     }
     if (n > MOST_EQUATIONS)
         ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);
@@ -368,10 +366,10 @@ void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s)
                                  .phi = CT_NEWN(d->a, ct_ex, e->nrow + 1)};
     for (int i = 0; i < e->T->nchord; i++) {
         const int edge = e->T->chord[i];
-        if (b->edge[edge].kind != CT_EDGE_BODY)
+        if (b->topology->edge[edge].kind != CT_EDGE_BODY)
             continue;
         ct_ex3 *at = &s->at[s->n];
-        *at = ct_node_position(b, b->wiring[edge].head);
+        *at = ct_node_position(b, b->topology->wiring[edge].head);
         s->edge[s->n++] = edge;
         for (int k = 0; k < 3; k++)
             where[n++] = &at->e[k];

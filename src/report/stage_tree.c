@@ -24,15 +24,16 @@ static void put_trees(struct ct_derivation *d)
     CT_PAGE_ROW(&d->page, "#", "component", "type", "from", "to", "translation", "rotation");
     for (int i = 0; i < e->graph->nedge; i++) {
         const struct ct_edge *w = &e->graph->edge[i];
-        if (b->edge[i].kind == CT_EDGE_ARM) {
+        if (b->topology->edge[i].kind == CT_EDGE_ARM) {
             narm++;
             continue;
         }
-        const bool force = b->edge[i].kind == CT_EDGE_FORCE;
+        const bool force = b->topology->edge[i].kind == CT_EDGE_FORCE;
         CT_PAGE_ROW(&d->page, ct_arena_printf(d->a, "%d", i + 1), e->edge_name[i],
                     e->edge_kind[i], e->node_name[w->tail], e->node_name[w->head],
                     force ? "chord" : role(d, e->T, e->weight_t, i, true),
-                    force ? "chord" : role(d, e->R, e->weight_r, i, b->edge[i].has_rotation));
+                    force ? "chord"
+                          : role(d, e->R, e->weight_r, i, b->topology->edge[i].has_rotation));
     }
     ct_page_sentence(&d->page, "in brackets: the unknowns an edge adds as a branch%s",
                      narm ? "; arms are branches of both trees" : "");
@@ -51,7 +52,7 @@ static const struct ct_coordinate *coordinate_of(const struct ct_equations *e, i
 static const struct ct_measure *measure_of(const struct ct_equations *e,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &e->build->edge[c->edge].motion;
+    const struct ct_motion *m = &e->build->kinematics->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index > m->quaternion ? m->quaternion : c->index;
     return k < m->nmeasure ? &m->measure[k] : NULL;
 }
@@ -59,7 +60,7 @@ static const struct ct_measure *measure_of(const struct ct_equations *e,
 static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinate *c,
                               const char **unit)
 {
-    const struct ct_edge_info *e = &d->e->build->edge[c->edge];
+    const struct ct_edge_info *e = &d->e->build->topology->edge[c->edge];
     const struct ct_measure *m = measure_of(d->e, c);
     const char *what = e->kind == CT_EDGE_BODY
                          ? ct_arena_printf(d->a, "%s %s",
@@ -148,7 +149,7 @@ static void put_unknowns(struct ct_derivation *d)
             const char *last = strrchr(e->q[i + 3].name, '.');
             CT_PAGE_ROW(
                 &d->page,
-                d->page.look == CT_LOOK_LATEX
+                ct_derivation_is_latex(d)
                     ? ct_derivation_text(d, e->q[i].symbol)
                     : ct_arena_printf(d->a, "%s..%s", e->q[i].name, last ? last + 1 : ""),
                 "", "", meaning);
@@ -187,7 +188,8 @@ static void put_dependent(struct ct_derivation *d)
     const char *list = "";
     for (size_t i = 0; i < e->ncoordinate; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
-        if (c->q >= 0 || c->driver >= 0 || e->build->edge[c->edge].kind != CT_EDGE_JOINT)
+        if (c->q >= 0 || c->driver >= 0
+            || e->build->topology->edge[c->edge].kind != CT_EDGE_JOINT)
             continue;
         list = ct_arena_printf(d->a, "%s%s%s", list, *list ? ", " : "", c->name);
     }

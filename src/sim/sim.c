@@ -154,6 +154,8 @@ bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
         .rate_jumps = m->rate_jumps,
         .output_rtol = sim->tolerance,
         .least_rtol = sim->least_rtol,
+        .take = sim->take,
+        .ntake = sim->ntake,
     };
     if (!choose_method(sim, o->method))
         return false;

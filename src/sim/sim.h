@@ -6,7 +6,6 @@
 //     verify.c        the error, by a second run
 //     result_file.c   results as a file
 //     summary.h       figures, for people and programs
-//     exported.c      the system as C source
 //
 // What always holds: a run owns a context, so that its memory is its alone; what it says is handed over to the caller's
 // context, as copies, before an entry point returns.
@@ -52,6 +51,8 @@ struct ct_sim {
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
+    const enum ct_take_kind *take; // from the last results, over the run  (ntake)
+    size_t ntake;
     bool is_verified; // a second run is wanted
     double *kept;     // rows so far, for it  (nkept x nresult)
     size_t nkept;

@@ -43,7 +43,7 @@ long ct_sim_redundant(const struct ct_sim *sim)
 
 bool ct_is_arm(const struct ct_equations *e, int edge)
 {
-    return e->build->edge[edge].kind == CT_EDGE_ARM;
+    return e->build->topology->edge[edge].kind == CT_EDGE_ARM;
 }
 
 bool ct_is_first_of_joint(const struct ct_equations *e, const bool *row, size_t i)

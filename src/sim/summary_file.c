@@ -285,8 +285,9 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
-static void write_summary(FILE *out, const struct ct_sim *sim)
+static void write_summary(const void *object, FILE *out)
 {
+    const struct ct_sim *sim = object;
     const struct ct_equations *e = &sim->system->equations;
     struct ct_json j;
     ct_json_init(&j, out);
@@ -316,7 +317,7 @@ static bool write_file(void *task)
     if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
         || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
-    write_summary(file.stream, w->sim);
+    write_summary(w->sim, file.stream);
     return ct_outfile_close(w->ctx, &file);
 }
 
@@ -328,22 +329,7 @@ bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim, const ch
     return sim && ct_enter(ctx, write_file, &w);
 }
 
-static bool print_text(void *task, FILE *out)
-{
-    write_summary(out, task);
-    return true;
-}
-
 char *ct_sim_summary_json(const struct ct_sim *sim)
 {
-    union {
-        const struct ct_sim *given;
-        void *task;
-    } u = {sim};
-    if (!sim)
-        return NULL;
-    const locale_t before = ct_locale_enter();
-    char *text = ct_text_of(NULL, print_text, u.task);
-    ct_locale_leave(before);
-    return text;
+    return ct_print_text(write_summary, sim);
 }

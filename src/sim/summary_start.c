@@ -17,7 +17,7 @@ static enum asked asked_of(const struct ct_coordinate *c, const struct ct_target
 static bool is_of_joint(const struct ct_initial_state *s, size_t i)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    return s->e->build->edge[c->edge].kind == CT_EDGE_JOINT
+    return s->e->build->topology->edge[c->edge].kind == CT_EDGE_JOINT
         && (c->in_translation || c->in_rotation);
 }
 
@@ -82,7 +82,7 @@ static double moved(const struct ct_initial_state *s, size_t i)
     if (!t->in_quaternion)
         return fabs(s->q[i] - t->value) * t->weight / (ct_start_is_length(s, i) ? 0.5 : pi / 2);
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    if (c->index != s->e->build->edge[c->edge].trial.quaternion)
+    if (c->index != s->e->build->topology->edge[c->edge].trial.quaternion)
         return 0;
     double cosine = 0;
     for (size_t k = 0; k < 4; k++)
@@ -101,7 +101,7 @@ void ct_sim_warn_of_start(struct ct_sim *sim)
         if (!is_of_joint(s, i) || !(moved(s, i) > 1))
             continue;
         const struct ct_coordinate *c = &s->e->coordinate[i];
-        const struct ct_instance *joint = s->e->build->edge[c->edge].self;
+        const struct ct_instance *joint = s->e->build->topology->edge[c->edge].self;
         const bool is_last = ++shown == MOST_WARNINGS && n > MOST_WARNINGS;
         const char *more
             = is_last ? ct_arena_printf(sim->own.model, "; so do %zu more", n - MOST_WARNINGS)

@@ -300,8 +300,9 @@ static void print_file(FILE *out, const struct ct_sim *sim)
         fprintf(out, "results      %ld samples in %s\n", sim->nwritten, path);
 }
 
-static void print_summary(const struct ct_sim *sim, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
+    const struct ct_sim *sim = object;
     const struct ct_run_report *r = &sim->report;
     fprintf(out, "%s: t = %.9g s\n", sim->system->model.name, sim->time);
     print_freedoms(out, sim);
@@ -327,27 +328,12 @@ static void print_summary(const struct ct_sim *sim, FILE *out)
 
 void ct_sim_print_summary(const struct ct_sim *sim, FILE *out)
 {
-    if (!sim || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(sim, out);
-    ct_locale_leave(before);
-}
-
-static bool print_text(void *task, FILE *out)
-{
-    const struct ct_sim *sim = task;
-    ct_sim_print_summary(sim, out);
-    return true;
+    ct_print_to(out, print_summary, sim);
 }
 
 char *ct_sim_summary(const struct ct_sim *sim)
 {
-    union {
-        const struct ct_sim *given;
-        void *task;
-    } u = {sim};
-    return sim ? ct_text_of(NULL, print_text, u.task) : NULL;
+    return ct_print_text(print_summary, sim);
 }
 
 // ---- what a system is ----------------------------------------------------------------------------------
@@ -451,8 +437,9 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     }
 }
 
-static void print_check(const struct ct_sim *sim, FILE *out)
+static void print_check(const void *object, FILE *out)
 {
+    const struct ct_sim *sim = object;
     const struct ct_system *s = sim->system;
     const struct ct_model *m = &s->model;
     const struct ct_equations *e = &s->equations;
@@ -503,9 +490,10 @@ static void print_check(const struct ct_sim *sim, FILE *out)
 
 void ct_sim_print_check(const struct ct_sim *sim, FILE *out)
 {
-    if (!sim || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_check(sim, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_check, sim);
+}
+
+char *ct_sim_check(const struct ct_sim *sim)
+{
+    return ct_print_text(print_check, sim);
 }

@@ -1,6 +1,9 @@
 // See plan.h.
 #include "study/plan.h"
 #include "base/entry.h"
+#include "io/sheet.h"
+#include "io/text.h"
+#include "report/number.h"
 
 #include <errno.h>
 #include <math.h>
@@ -80,15 +83,16 @@ static bool read_numbers(struct ct_ctx *ctx, struct ct_axis *axis, const char *r
     return true;
 }
 
+// option: with which the axis is given.
 static bool find_parameter(struct ct_ctx *ctx, const struct ct_model *m,
-                           const struct ct_axis *axis)
+                           const struct ct_axis *axis, struct ct_mark at, const char *option)
 {
     if (ct_names_get(&m->parameter_index, axis->name) >= 0)
         return true;
     const char **names = CT_NEWN(ctx->model, const char *, m->nparameter + 1);
     for (size_t i = 0; i < m->nparameter; i++)
         names[i] = m->parameter[i].name;
-    return ct_error(ctx, none, CT_E_USAGE, "--vary '%s': the model has no parameter '%s'%s",
+    return ct_error(ctx, at, CT_E_USAGE, "%s '%s': the model has no parameter '%s'%s", option,
                     axis->text, axis->name,
                     ct_suggest_or_list(ctx->model, axis->name, names, m->nparameter));
 }
@@ -103,7 +107,7 @@ static bool read_axis(struct ct_ctx *ctx, const struct ct_model *m, struct ct_pl
     for (size_t k = 0; k < i; k++)
         if (s->axis[k].name && strcmp(s->axis[k].name, axis->name) == 0)
             return wrong(ctx, axis, "the parameter varies already");
-    if (!find_parameter(ctx, m, axis) || !read_numbers(ctx, axis, equals + 1))
+    if (!find_parameter(ctx, m, axis, none, "--vary") || !read_numbers(ctx, axis, equals + 1))
         return false;
     if (s->is_sampled || axis->n)
         return true;
@@ -123,7 +127,7 @@ static bool count_members(struct ct_ctx *ctx, struct ct_plan *s, long sample)
         return ct_error(ctx, none, CT_E_USAGE,
                         "the study has %.6g members; at most %d are possible", n,
                         CT_MOST_MEMBERS);
-    s->nmember = (long)n;
+    s->nall = s->nmember = (long)n;
     return true;
 }
 
@@ -134,12 +138,128 @@ bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *cons
     out->axis = CT_NEWN(ctx->model, struct ct_axis, n + 1);
     bool ok = n > 0
            || ct_error(ctx, none, CT_E_USAGE,
-                       "nothing varies: a sweep needs --vary NAME=FROM:TO:N");
+                       "nothing varies: --vary NAME=FROM:TO:N or --members FILE.csv is needed");
     for (size_t i = 0; i < n; i++) {
         out->axis[i].text = vary[i];
         ok &= read_axis(ctx, m, out, i);
     }
     return ok && count_members(ctx, out, sample);
+}
+
+// ---- members from a file ------------------------------------------------------------------------------
+
+static bool read_sheet(struct ct_ctx *ctx, const char *path, struct ct_sheet *sheet)
+{
+    const size_t most = (size_t)1 << 30;
+    char *text;
+    size_t n;
+    errno = 0;
+    const enum ct_text_result e = ct_text_read(ctx->scratch, path, most, &text, &n);
+    if (e != CT_TEXT_OK)
+        return ct_error(ctx, none, CT_E_FILE, "cannot read the members '%s': %s", path,
+                        e == CT_TEXT_TOO_BIG ? "the file is too big" : strerror(errno));
+    return ct_sheet_parse(ctx, ctx->scratch, path, text, n, sheet);
+}
+
+static bool read_column(struct ct_ctx *ctx, const struct ct_model *m, const struct ct_sheet *t,
+                        struct ct_plan *s, size_t i)
+{
+    struct ct_axis *axis = &s->axis[i];
+    double *value = CT_NEWN(ctx->model, double, s->nall);
+    *axis = (struct ct_axis){
+        .name = ct_arena_strdup(ctx->model, t->field[i]),
+        .text = ct_arena_strdup(ctx->model, s->file),
+        .kind = CT_AXIS_LIST,
+        .value = value,
+        .n = s->nall,
+    };
+    for (size_t k = 0; k < i; k++)
+        if (strcmp(s->axis[k].name, axis->name) == 0)
+            return ct_error(ctx, t->mark[i], CT_E_USAGE, "there are two columns '%s'",
+                            axis->name);
+    if (!find_parameter(ctx, m, axis, t->mark[i], "--members"))
+        return false;
+    for (long k = 0; k < s->nall; k++) {
+        const size_t at = (size_t)(k + 1) * t->ncolumn + i;
+        const char *field = t->field[at];
+        char *end;
+        value[k] = strtod(field, &end); // the locale is that of C
+        const bool is_number = end != field && !*end;
+        if ((!is_number && !read_value(ctx, field, &value[k])) || !isfinite(value[k]))
+            return ct_error(ctx, t->mark[at], CT_E_TABLE_DATA,
+                            "'%.60s' is no constant, finite value of the parameter '%s'", field,
+                            axis->name);
+    }
+    return true;
+}
+
+bool ct_plan_read_members(struct ct_ctx *ctx, const struct ct_model *m, const char *path,
+                          struct ct_plan *out)
+{
+    struct ct_sheet t = {0};
+    *out = (struct ct_plan){.file = ct_arena_strdup(ctx->model, path)};
+    if (!read_sheet(ctx, path, &t))
+        return false;
+    if (t.nrow < 2 || t.nrow - 1 > CT_MOST_MEMBERS)
+        return ct_error(ctx, (struct ct_mark){.file = out->file}, CT_E_USAGE,
+                        "--members needs a first row of parameters and from 1 to %d rows of "
+                        "values below it; there are %zu rows",
+                        CT_MOST_MEMBERS, t.nrow);
+    out->naxis = t.ncolumn;
+    out->nall = out->nmember = (long)t.nrow - 1;
+    out->axis = CT_NEWN(ctx->model, struct ct_axis, t.ncolumn + 1);
+    bool ok = true;
+    for (size_t i = 0; i < t.ncolumn && ok; i++)
+        ok = read_column(ctx, m, &t, out, i);
+    return ok;
+}
+
+bool ct_plan_choose(struct ct_ctx *ctx, const struct ct_model *m, const char *members,
+                    const char *const *vary, size_t n, long sample, uint64_t seed,
+                    struct ct_plan *out)
+{
+    if (!members)
+        return ct_plan_read(ctx, m, vary, n, sample, seed, out);
+    if (n || sample > 0)
+        return ct_error(ctx, none, CT_E_USAGE,
+                        "the members come either from a file or from --vary: --members goes "
+                        "without --vary and --sample");
+    return ct_plan_read_members(ctx, m, members, out);
+}
+
+const char **ct_plan_settings(struct ct_arena *a, const struct ct_plan *s, const double *value,
+                              const char *const *set, size_t *n)
+{
+    const char **all = CT_NEWN(a, const char *, *n + s->naxis + 1);
+    for (size_t i = 0; i < *n; i++)
+        all[i] = set[i];
+    for (size_t i = 0; i < s->naxis; i++) {
+        char text[CT_NUMBER_SIZE];
+        all[(*n)++]
+            = ct_arena_printf(a, "%s=%s", s->axis[i].name, ct_number_format(text, value[i]));
+    }
+    return all;
+}
+
+// ---- shards -------------------------------------------------------------------------------------------
+
+bool ct_plan_take_shard(struct ct_ctx *ctx, struct ct_plan *s, long shard, long nshard)
+{
+    if (shard == 0 && nshard == 0)
+        return true;
+    if (!(shard >= 1 && shard <= nshard))
+        return ct_error(ctx, none, CT_E_USAGE,
+                        "there is no shard %ld/%ld: wanted is I/N with I from 1 to N", shard,
+                        nshard);
+    s->shard = shard;
+    s->nshard = nshard;
+    s->nmember = s->nall >= shard ? (s->nall - shard) / nshard + 1 : 0;
+    return true;
+}
+
+long ct_plan_number(const struct ct_plan *s, long member)
+{
+    return s->nshard ? s->shard + member * s->nshard : member + 1;
 }
 
 // ---- values -------------------------------------------------------------------------------------------
@@ -164,11 +284,14 @@ static double sampled(const struct ct_plan *s, long member, size_t i)
     return axis->from + axis->to * sqrt(-2 * log(1 - u1)) * cos(2 * acos(-1) * u2);
 }
 
-double ct_plan_value(const struct ct_plan *s, long member, size_t i)
+double ct_plan_value(const struct ct_plan *s, long local, size_t i)
 {
+    long member = ct_plan_number(s, local) - 1;
+    const struct ct_axis *axis = &s->axis[i];
     if (s->is_sampled)
         return sampled(s, member, i);
-    const struct ct_axis *axis = &s->axis[i];
+    if (axis->kind == CT_AXIS_LIST)
+        return axis->value[member];
     for (size_t k = s->naxis - 1; k > i; k--)
         member /= s->axis[k].n;
     const long place = member % axis->n;

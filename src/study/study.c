@@ -75,6 +75,10 @@ static void take_options(struct ct_study *s, const char *path,
     s->path = ct_arena_strdup(a, path);
     s->system_options = *system;
     s->system_options.set = set;
+    const char **output = CT_NEWN(a, const char *, system->noutput + 1);
+    for (size_t i = 0; i < system->noutput; i++)
+        output[i] = ct_arena_strdup(a, system->output[i]);
+    s->system_options.output = output;
     s->system_options.tree = copy_text(a, system->tree);
     s->run = o->run;
     s->run.method = copy_text(a, o->run.method);
@@ -82,8 +86,13 @@ static void take_options(struct ct_study *s, const char *path,
     s->run.solver = NULL; // lanes have forms of their own
 }
 
-static bool read_text(struct ct_study *s)
+static bool read_text(struct ct_study *s, const struct ct_study_options *options)
 {
+    if (options->text) {
+        s->ntext = options->ntext;
+        s->text = ct_arena_strndup(s->own.model, options->text, s->ntext);
+        return true;
+    }
     const enum ct_text_result e
         = ct_text_read(s->own.model, s->path, MOST_TEXT, &s->text, &s->ntext);
     return e == CT_TEXT_OK
@@ -125,7 +134,7 @@ static int count_threads(const struct ct_study *s, long wanted)
     const long most = (s->plan.nmember + s->lanes - 1) / s->lanes;
     long n = wanted > 0 ? wanted : sysconf(_SC_NPROCESSORS_ONLN);
     n = n > 0 ? n : 1;
-    n = n < most ? n : most;
+    n = n < most ? n : most > 0 ? most : 1;
     return (int)(n < MOST_THREADS ? n : MOST_THREADS);
 }
 
@@ -136,9 +145,12 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
     struct ct_set *set = CT_NEWN(s->own.model, struct ct_set, so->nset + 1);
     for (size_t i = 0; i < so->nset; i++)
         set[i].text = so->set[i];
-    if (!read_text(s) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
+    if (!read_text(s, o) || !ct_yaml_parse(&s->own, s->path, s->text, s->ntext, &s->root)
         || !ct_model_resolve(&s->own, s->path, s->root, set, so->nset, &file)
-        || !ct_plan_read(&s->own, &file, o->vary, o->nvary, o->sample, o->seed, &s->plan))
+        || !ct_plan_choose(&s->own, &file, o->members, o->vary, o->nvary, o->sample, o->seed,
+                           &s->plan)
+        || !ct_study_read_takes(s, o->take, o->ntake)
+        || !ct_plan_take_shard(&s->own, &s->plan, o->shard, o->shards))
         return false;
     s->base = CT_NEWN(s->own.model, double, s->plan.naxis);
     for (size_t i = 0; i < s->plan.naxis; i++)
@@ -152,7 +164,7 @@ static bool prepare(struct ct_study *s, const struct ct_study_options *o)
         return false;
     s->threads = count_threads(s, o->threads);
     s->varied = CT_NEWN(s->own.model, double, s->plan.naxis + 1);
-    s->row = calloc((size_t)s->plan.nmember, sizeof *s->row);
+    s->row = calloc((size_t)s->plan.nmember + 1, sizeof *s->row);
     if (!s->row)
         s->own.no_memory = true;
     return s->row;

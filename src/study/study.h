@@ -5,6 +5,9 @@
 //     study_file.c       rows in order, their file, and how it is resumed
 //     study_settings.c   what rows depend on besides their own values
 //     study_summary.c    what was done
+//     takes.c            what is taken over runs
+//     merge.c            shards become one file
+//     variation.c        analyses for each member, without a study
 #ifndef CT_STUDY_H
 #define CT_STUDY_H
 
@@ -38,6 +41,8 @@ struct ct_study {
     struct ct_system_options system_options; // with strings in own.model
     struct ct_sim_options run;
     struct ct_plan plan;
+    enum ct_take_kind *take; // over the run, from the last results  (ntake)
+    size_t ntake;
     double *base;             // what the file says of its axes
     struct ct_system *system; // with the values of the file; that of the first worker
     bool is_derived;          // each member needs equations of its own
@@ -74,6 +79,13 @@ void ct_study_run_members(struct ct_study *s);
 /// The system with what varies as numbers, so that all members order their parameters alike.
 struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study *s);
 
+// ---- takes.c --------------------------------------------------------------------------------------------
+
+/// "NAME=FUNCTION(EXPRESSION)" (n) into s->take, and what they are taken from into the outputs of the system. Errors: E003.
+bool ct_study_read_takes(struct ct_study *s, const char *const *text, size_t n);
+/// The word for a kind.
+const char *ct_study_take_name(enum ct_take_kind kind);
+
 // ---- study_file.c -------------------------------------------------------------------------------------
 
 /// Open the file, or go on with what an interrupted sweep has left. Errors: E002, E003.
@@ -90,7 +102,15 @@ bool ct_study_close(struct ct_study *s, bool ok);
 
 /// What the rows of a study depend on, a line for each setting; in s->own.model.
 const char *ct_study_settings(struct ct_study *s);
-/// The first setting that differs in two such texts, for people; NULL: none does.
+/// The first setting that differs in two such texts; NULL: a text does not have it. False: none does.
+struct ct_setting_difference {
+    const char *name, *before, *now;
+};
+bool ct_study_find_difference(struct ct_arena *a, const char *before, const char *now,
+                              struct ct_setting_difference *out);
+/// Is it the checksum of what a file has?
+bool ct_setting_is_file(const char *name);
+/// The same for people, of settings that were and are now; NULL: none differs.
 const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now);
 
 #endif

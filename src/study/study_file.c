@@ -36,11 +36,11 @@ static bool write_row(struct ct_study *s, long member, const double *value)
 {
     struct ct_csv *w = &s->sink.csv;
     const size_t n = s->system->equations.nresult;
-    ct_csv_number(w, (double)(member + 1));
+    ct_csv_number(w, (double)ct_plan_number(&s->plan, member));
     for (size_t i = 0; i < s->plan.naxis; i++)
         ct_csv_number(w, ct_plan_value(&s->plan, member, i));
     for (size_t i = 0; i < n; i++)
-        if (value)
+        if (value && !isnan(value[i])) // a time that never comes is none
             ct_csv_number(w, value[i]);
         else
             ct_csv_text(w, "");
@@ -61,7 +61,8 @@ static bool give_row(struct ct_study *s, long member, const struct ct_study_row 
         return true;
     for (size_t i = 0; i < s->plan.naxis; i++)
         s->varied[i] = ct_plan_value(&s->plan, member, i);
-    return r->row(r->user, member + 1, s->varied, row->value, row->message);
+    return r->row(r->user, ct_plan_number(&s->plan, member), s->varied, row->value,
+                  row->message);
 }
 
 // Rows that are complete from the first on go out; the rest waits for them.
@@ -187,11 +188,15 @@ static int read_status(const struct ct_study *s, long member, const char *line)
     const int status = length > 2 && strcmp(line + length - 3, ",0\n") == 0 ? 0
                      : length > 2 && strcmp(line + length - 3, ",1\n") == 0 ? 1
                                                                             : -1;
-    bool ok = status >= 0 && read_value(&line, (double)(member + 1));
+    bool ok = status >= 0 && read_value(&line, (double)ct_plan_number(&s->plan, member));
     for (size_t i = 0; ok && i < s->plan.naxis; i++)
         ok = read_value(&line, ct_plan_value(&s->plan, member, i));
-    for (size_t i = 0; ok && i < s->system->equations.nresult; i++)
-        ok = status ? read_empty(&line) : read_number(&line);
+    const size_t n = s->system->equations.nresult;
+    for (size_t i = 0; ok && i < n; i++) {
+        const bool may_be_empty
+            = i + s->ntake >= n && s->take[i + s->ntake - n] == CT_TAKE_TIME && *line == ',';
+        ok = status || may_be_empty ? read_empty(&line) : read_number(&line);
+    }
     return ok && strlen(line) == 2 ? status : -1;
 }
 
@@ -239,9 +244,10 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
 // ---- settings beside the rows ---------------------------------------------------------------------------
 
 //     FILE.partial, FILE.partial.settings  -- complete -->  FILE
-//                                          with `resume`:   FILE, then FILE.settings
+//                          with `resume`, and of shards:   FILE, then FILE.settings
 //
-// Who goes on with sweeps wants complete ones to be known as such; for all others the rows are all there is. Whatever
+// Who goes on with sweeps wants complete ones to be known as such, and who merges shards wants to know that they belong
+// together; for all others the rows are all there is. Whatever
 // happens in between, rows never stand beside settings of others.
 
 static const char *settings_path(struct ct_study *s, const char *rows)
@@ -279,7 +285,7 @@ static bool move_settings(struct ct_study *s)
     if (!rows->partial)
         return true;
     const char *from = settings_path(s, rows->partial), *to = settings_path(s, rows->path);
-    if (!s->results->resume)
+    if (!s->results->resume && !s->plan.nshard)
         return remove(from) == 0
             || ct_error(&s->own, none, CT_E_FILE, "cannot remove '%s': %s", from,
                         strerror(errno));
@@ -287,10 +293,18 @@ static bool move_settings(struct ct_study *s)
         || ct_error(&s->own, none, CT_E_FILE, "cannot write '%s': %s", to, strerror(errno));
 }
 
-// The rows appear under their name.
+// The rows appear under their name, and with that another sweep may begin to write them: not before the settings of these
+// are where they belong.
 static bool finish_rows(struct ct_study *s)
 {
-    return remove_old_settings(s) && ct_csv_close(&s->own, &s->sink.csv) && move_settings(s);
+    const struct ct_outfile *rows = &s->sink.csv.file;
+    struct ct_outfile lock = {0};
+    if (rows->partial && !ct_outfile_open(&s->own, &lock, settings_path(s, rows->partial)))
+        return false;
+    const bool ok
+        = remove_old_settings(s) && ct_csv_close(&s->own, &s->sink.csv) && move_settings(s);
+    ct_outfile_discard(&lock);
+    return ok;
 }
 
 // How the rows were made differs so from what is asked for now; NULL: it does not.
@@ -379,6 +393,9 @@ bool ct_study_open(struct ct_study *s)
     if (r->resume && (k->suffix != CT_SUFFIX_CSV || strcmp(path, "-") == 0))
         return ct_error(&s->own, none, CT_E_USAGE,
                         "only a sweep into a CSV file can be resumed");
+    if (s->plan.nshard && (k->suffix != CT_SUFFIX_CSV || strcmp(path, "-") == 0))
+        return ct_error(&s->own, none, CT_E_USAGE,
+                        "a shard is written to a .csv file, for 'cotree merge'");
     s->path_written
         = strcmp(path, "-") == 0 ? "standard output" : ct_arena_strdup(s->own.model, path);
     k->is_by_row = k->suffix == CT_SUFFIX_CSV || k->suffix == CT_SUFFIX_CSV_GZ;
@@ -399,7 +416,7 @@ bool ct_study_open(struct ct_study *s)
 static double cell(const struct ct_study *s, long member, size_t c, size_t ncolumn)
 {
     const struct ct_study_row *row = &s->row[member];
-    return c == 0             ? (double)(member + 1)
+    return c == 0             ? (double)ct_plan_number(&s->plan, member)
          : c <= s->plan.naxis ? ct_plan_value(&s->plan, member, c - 1)
          : c + 1 == ncolumn   ? row->state == CT_ROW_FAILED
          : row->value         ? row->value[c - 1 - s->plan.naxis]

@@ -94,6 +94,8 @@ static void add_system(struct settings *w, const struct ct_system_options *o)
 {
     for (size_t i = 0; i < o->nset; i++)
         add(w, "set", "%s", o->set[i]);
+    for (size_t i = 0; i < o->noutput; i++)
+        add(w, "output", "%s", o->output[i]);
     add_tree(w, o->tree);
     add(w, "keep all", "%s", o->keep_all ? "yes" : "");
     add_number(w, "elements", (double)o->beam_elements);
@@ -114,13 +116,20 @@ static void add_plan(struct settings *w, const struct ct_plan *p)
 {
     for (size_t i = 0; i < p->naxis; i++) {
         const struct ct_axis *axis = &p->axis[i];
+        if (axis->kind == CT_AXIS_LIST) {
+            add(w, "member", "%s=%016" PRIx64, axis->name,
+                checksum(offset_basis, axis->value, (size_t)axis->n * sizeof *axis->value));
+            continue;
+        }
         const char *kind = axis->kind == CT_AXIS_NORMAL ? "normal:" : "";
         const char *count = p->is_sampled ? "" : ct_arena_printf(w->a, ":%ld", axis->n);
         add(w, "vary", "%s=%s%s:%s%s", axis->name, kind, shortest(w->a, axis->from),
             shortest(w->a, axis->to), count);
     }
     if (p->is_sampled)
-        add(w, "sample", "%ld, seed %" PRIu64, p->nmember, p->seed);
+        add(w, "sample", "%ld, seed %" PRIu64, p->nall, p->seed);
+    if (p->nshard)
+        add(w, "shard", "%ld of %ld, of %ld members", p->shard, p->nshard, p->nall);
 }
 
 const char *ct_study_settings(struct ct_study *s)
@@ -133,6 +142,8 @@ const char *ct_study_settings(struct ct_study *s)
     add_system(&w, &s->system_options);
     add_run(&w, &s->run);
     add_plan(&w, &s->plan);
+    for (size_t i = 0; i < s->ntake; i++)
+        add(&w, "take", "%s", ct_study_take_name(s->take[i]));
     return w.text;
 }
 
@@ -161,7 +172,8 @@ static const char *value_of(const char *line)
     return strlen(line) > WIDTH ? line + WIDTH + 1 : "";
 }
 
-const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now)
+bool ct_study_find_difference(struct ct_arena *a, const char *before, const char *now,
+                              struct ct_setting_difference *out)
 {
     while (*before || *now) {
         const char *rest = before;
@@ -169,20 +181,38 @@ const char *ct_study_compare_settings(struct ct_arena *a, const char *before, co
         if (strcmp(old, new) == 0)
             continue;
         const char *old_name = name_of(a, old), *new_name = name_of(a, new);
-        if (strcmp(old_name, new_name) == 0) {
-            const bool is_file
-                = strcmp(new_name, "model") == 0 || strcmp(new_name, "tables") == 0;
-            return is_file ? ct_arena_printf(a, "the %s has changed since", new_name)
-                           : ct_arena_printf(a, "'%s' was %s and is %s now", new_name,
-                                             value_of(old), value_of(new));
-        }
+        *out = (struct ct_setting_difference){new_name, value_of(old), value_of(new)};
+        if (strcmp(old_name, new_name) == 0)
+            return true;
         // a line that only one of them has
         const char *name = ct_arena_printf(a, "\n%-*s ", WIDTH, new_name);
-        return *new && !strstr(rest, name)
-                 ? ct_arena_printf(a, "'%s' is %s now and was not given", new_name,
-                                   value_of(new))
-                 : ct_arena_printf(a, "'%s' was %s and is not given now", old_name,
-                                   value_of(old));
+        if (*new && !strstr(rest, name))
+            out->before = NULL;
+        else
+            *out = (struct ct_setting_difference){old_name, value_of(old), NULL};
+        return true;
     }
-    return NULL;
+    return false;
+}
+
+bool ct_setting_is_file(const char *name)
+{
+    return strcmp(name, "model") == 0 || strcmp(name, "tables") == 0
+        || strcmp(name, "member") == 0;
+}
+
+const char *ct_study_compare_settings(struct ct_arena *a, const char *before, const char *now)
+{
+    struct ct_setting_difference d;
+    if (!ct_study_find_difference(a, before, now, &d))
+        return NULL;
+    if (!d.before)
+        return ct_arena_printf(a, "'%s' is %s now and was not given", d.name, d.now);
+    if (!d.now)
+        return ct_arena_printf(a, "'%s' was %s and is not given now", d.name, d.before);
+    if (strcmp(d.name, "member") == 0)
+        return "the members have changed since";
+    return ct_setting_is_file(d.name)
+             ? ct_arena_printf(a, "the %s has changed since", d.name)
+             : ct_arena_printf(a, "'%s' was %s and is %s now", d.name, d.before, d.now);
 }

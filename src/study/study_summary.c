@@ -17,6 +17,12 @@ static void write_axes(struct ct_json *j, const struct ct_plan *plan)
         const bool is_normal = axis->kind == CT_AXIS_NORMAL;
         ct_json_object(j, NULL);
         ct_json_text(j, "parameter", axis->name);
+        if (axis->kind == CT_AXIS_LIST) {
+            ct_json_text(j, "kind", "list");
+            ct_json_integer(j, "count", axis->n);
+            ct_json_end(j);
+            continue;
+        }
         ct_json_text(j, "kind", is_normal ? "normal" : plan->is_sampled ? "uniform" : "grid");
         ct_json_number(j, is_normal ? "mean" : "from", axis->from);
         ct_json_number(j, is_normal ? "deviation" : "to", axis->to);
@@ -37,7 +43,7 @@ static void write_failures(struct ct_json *j, const struct ct_study *s)
         if (row->state != CT_ROW_FAILED && row->state != CT_ROW_RESUMED_FAILED)
             continue;
         ct_json_object(j, NULL);
-        ct_json_integer(j, "run", i + 1);
+        ct_json_integer(j, "run", ct_plan_number(&s->plan, i));
         if (row->code)
             ct_json_integer(j, "code", row->code);
         ct_json_text(j, "message", row->message);
@@ -46,13 +52,18 @@ static void write_failures(struct ct_json *j, const struct ct_study *s)
     ct_json_end(j);
 }
 
-static void write_summary(FILE *out, const struct ct_study *s)
+static void write_summary(const void *object, FILE *out)
 {
+    const struct ct_study *s = object;
     struct ct_json j;
     ct_json_init(&j, out);
     ct_json_object(&j, NULL);
     ct_json_text(&j, "model", s->system->model.name);
     ct_json_text(&j, "results", s->path_written);
+    if (s->plan.nshard) {
+        ct_json_integer(&j, "shard", s->plan.shard);
+        ct_json_integer(&j, "shards", s->plan.nshard);
+    }
     ct_json_integer(&j, "members", s->plan.nmember);
     ct_json_integer(&j, "done", s->ndone - s->nfailed);
     ct_json_integer(&j, "failed", s->nfailed);
@@ -90,7 +101,7 @@ static bool write_file(void *task)
     if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
         || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
-    write_summary(file.stream, w->s);
+    write_summary(w->s, file.stream);
     return ct_outfile_close(w->ctx, &file);
 }
 
@@ -107,17 +118,21 @@ static void print_failures(FILE *out, const struct ct_study *s)
     int shown = 0;
     for (long i = 0; i < s->plan.nmember && shown < MOST_SHOWN; i++)
         if (s->row[i].state == CT_ROW_FAILED) {
-            fprintf(out, "failed       run %ld: %s\n", i + 1, s->row[i].message);
+            fprintf(out, "failed       run %ld: %s\n", ct_plan_number(&s->plan, i),
+                    s->row[i].message);
             shown++;
         }
     if (shown == MOST_SHOWN && s->nfailed > shown)
         fprintf(out, "failed       %ld in all; --summary FILE.json lists them\n", s->nfailed);
 }
 
-static void print_summary(const struct ct_study *s, FILE *out)
+static void print_summary(const void *object, FILE *out)
 {
-    fprintf(out, "%s: %ld members, %ld failed", s->system->model.name, s->plan.nmember,
-            s->nfailed);
+    const struct ct_study *s = object;
+    fprintf(out, "%s: ", s->system->model.name);
+    if (s->plan.nshard)
+        fprintf(out, "shard %ld of %ld, ", s->plan.shard, s->plan.nshard);
+    fprintf(out, "%ld members, %ld failed", s->plan.nmember, s->nfailed);
     if (s->nresumed)
         fprintf(out, ", %ld taken over", s->nresumed);
     fprintf(out, "\nmethod       %s, tolerance %g\n", s->method, s->tolerance);
@@ -137,9 +152,15 @@ static void print_summary(const struct ct_study *s, FILE *out)
 
 void ct_study_print_summary(const struct ct_study *s, FILE *out)
 {
-    if (!s || !out)
-        return;
-    const locale_t before = ct_locale_enter();
-    print_summary(s, out);
-    ct_locale_leave(before);
+    ct_print_to(out, print_summary, s);
+}
+
+char *ct_study_summary(const struct ct_study *s)
+{
+    return ct_print_text(print_summary, s);
+}
+
+char *ct_study_summary_json(const struct ct_study *s)
+{
+    return ct_print_text(write_summary, s);
 }

@@ -2,7 +2,6 @@
 #include "study/study.h"
 
 #include "base/guard.h"
-#include "report/number.h"
 #include "solve/batch/batch.h"
 
 #include <stdlib.h>
@@ -60,17 +59,11 @@ static const char **member_set(const struct ct_study *s, struct ct_arena *a, lon
                                size_t *n)
 {
     const struct ct_system_options *o = &s->system_options;
-    const char **set = CT_NEWN(a, const char *, o->nset + s->plan.naxis + 1);
-    *n = 0;
-    for (size_t i = 0; i < o->nset; i++)
-        set[(*n)++] = o->set[i];
-    for (size_t i = 0; i < s->plan.naxis; i++) {
-        char text[CT_NUMBER_SIZE];
-        const double value = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
-        set[(*n)++]
-            = ct_arena_printf(a, "%s=%s", s->plan.axis[i].name, ct_number_format(text, value));
-    }
-    return set;
+    double *value = CT_NEWN(a, double, s->plan.naxis + 1);
+    for (size_t i = 0; i < s->plan.naxis; i++)
+        value[i] = member < 0 ? s->base[i] : ct_plan_value(&s->plan, member, i);
+    *n = o->nset;
+    return ct_plan_settings(a, &s->plan, value, o->set, n);
 }
 
 // The worker's system takes the values of the member as read by the reader, `simulation` included.
@@ -119,6 +112,8 @@ static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
         ct_study_record(s, member, NULL, ctx);
         return;
     }
+    sim->run_options.take = s->take;
+    sim->run_options.ntake = s->ntake;
     const bool ok = ct_sim_run(ctx, sim, NULL);
     ct_study_record(s, member, ok ? sim->report.final : NULL, ctx);
     count_steps(s, sim->report.stats.steps, sim->report.stats.rejected_steps, 1);
@@ -147,7 +142,7 @@ static void run_derived(struct worker *w, long member)
     }
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, member, &o.nset);
-    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    struct ct_system *system = ct_system_load_text(ctx, s->text, s->ntext, s->path, &o);
     run_alone(s, member, ctx, system);
     ct_system_destroy(system);
     ct_ctx_destroy(ctx);
@@ -208,7 +203,8 @@ static void create_groups(struct worker *w)
     struct ct_sim *sim = &w->sim;
     w->ngroup = w->s->lanes / CT_LANES;
     for (int g = 0; g < w->ngroup; g++)
-        w->group[g] = ct_batch_create(sim->own.model, &w->system->equations, sim->run);
+        w->group[g]
+            = ct_batch_create(sim->own.model, &w->system->equations, sim->run, w->s->ntake);
     // at the file's own values, which the system still has: the same in each worker
     if (start_member(w))
         for (int g = 0; g < w->ngroup; g++)
@@ -256,7 +252,7 @@ struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study
 {
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, -1, &o.nset);
-    struct ct_system *system = ct_system_load(ctx, s->path, &o);
+    struct ct_system *system = ct_system_load_text(ctx, s->text, s->ntext, s->path, &o);
     if (system)
         system->is_private = true; // members share what is derived later
     return system;
@@ -273,6 +269,8 @@ static bool work(void *task)
     }
     ct_own_init(&w->member_ctx);
     ct_own_init(&w->sim.own);
+    w->sim.take = s->take;
+    w->sim.ntake = s->ntake;
     if (!w->system) // text and options are those of the first, which could be loaded
         w->system = ct_study_load_system(&w->sim.own, s);
     if (!w->system || !ct_sim_prepare(&w->sim, w->system, &s->run))

@@ -5,7 +5,7 @@ for system in pendulum tumbling_body stewart bricard chain40; do
   "$COTREE" export "$SYSTEMS/$system/model.yaml" --format c -o $system || echo "exit $?"
   for cc in gcc clang; do
     if command -v $cc >/dev/null; then
-      (cd $system && $cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -o self_test ./*.c -lm && ./self_test)
+      (cd $system && $cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Werror -O1 -o self_test ./*.c -lm && ./self_test)
     else
       (cd $system && cc -std=c99 -O1 -o self_test ./*.c -lm && ./self_test) # a warning of others is no matter
     fi
@@ -15,7 +15,7 @@ done
 for lanes in 4 8; do
   for system in pendulum stewart; do
     "$COTREE" export "$SYSTEMS/$system/model.yaml" --lanes $lanes -o lanes_$lanes
-    (cd lanes_$lanes && cc -std=c99 -Wall -Wextra -Wpedantic -Werror -O1 -o self_test $system*.c -lm && ./self_test)
+    (cd lanes_$lanes && cc -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Werror -O1 -o self_test $system*.c -lm && ./self_test)
     grep -c '_lanes(const' lanes_$lanes/$system.h
   done
 done

@@ -38,7 +38,7 @@ static int run_lanes(struct variant *v, struct system *s, const char *method, in
     struct ct_run *run = ct_run_create(&v->ctx, v->arena, &s->model, &v->e, &s->start);
     assert_non_null(run);
     ct_evaluator_use(v->arena, ct_run_evaluator(run), backend);
-    struct ct_batch *lanes = ct_batch_create(v->arena, &v->e, run);
+    struct ct_batch *lanes = ct_batch_create(v->arena, &v->e, run, 0);
     int given_up = 0;
     assert_true(ct_run_restart(run, &s->start));
     ct_batch_begin(lanes);

@@ -72,7 +72,8 @@ static size_t count_joint_coordinates(const struct system *s)
 {
     size_t n = 0;
     while (n < s->assembly.ncoordinate
-           && s->assembly.build->edge[s->assembly.coordinate[n].edge].kind == CT_EDGE_JOINT)
+           && s->assembly.build->topology->edge[s->assembly.coordinate[n].edge].kind
+                  == CT_EDGE_JOINT)
         n++;
     return n;
 }
@@ -81,7 +82,8 @@ static size_t count_joint_coordinates(const struct system *s)
 static bool all_hang_on_joints(const struct system *s)
 {
     for (size_t i = 0; i < s->assembly.ncoordinate; i++)
-        if (s->assembly.build->edge[s->assembly.coordinate[i].edge].kind == CT_EDGE_BODY
+        if (s->assembly.build->topology->edge[s->assembly.coordinate[i].edge].kind
+                == CT_EDGE_BODY
             && s->assembly.coordinate[i].q >= 0)
             return false;
     return true;

@@ -328,7 +328,7 @@ static void find_coordinates(const struct hidden *h, const struct system *s, con
         q[i] = NULL;
     for (size_t c = 0; c < s->assembly.ncoordinate; c++) {
         const struct ct_coordinate *at = &s->assembly.coordinate[c];
-        const struct ct_edge_info *e = &s->assembly.build->edge[at->edge];
+        const struct ct_edge_info *e = &s->assembly.build->topology->edge[at->edge];
         if (e->kind == CT_EDGE_JOINT && at->index == 0)
             q[e->index] = &s->start.q[c];
     }

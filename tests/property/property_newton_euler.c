@@ -320,7 +320,7 @@ static bool bodies_are_balanced(struct system *s, const struct ct_formulate_opti
         act_forces(&c);
         struct vector n = {{0, 0, 0}};
         for (int i = 0; i < 3 && v.e.is_planar; i++)
-            n.e[i] = ct_ex_value(v.e.x, v.e.build->plane[2].e[i], v.e.build->value);
+            n.e[i] = ct_ex_value(v.e.x, v.e.build->topology->plane[2].e[i], v.e.build->value);
         for (size_t i = 1; i < s->model.nbody; i++)
             ok &= body_is_balanced(&c, i, v.e.is_planar ? &n : NULL, how);
     }

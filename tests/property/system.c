@@ -438,10 +438,11 @@ struct collecting {
 static bool collect(void *data, const bool *is_branch)
 {
     struct collecting *c = data;
-    struct tree_names t = {CT_NEWN(c->s->ctx.model, const char *, c->b->nedge + 1), 0};
-    for (size_t i = 0; i < c->b->nedge; i++)
-        if (is_branch[i] && c->b->edge[i].kind != CT_EDGE_ARM)
-            t.name[t.n++] = c->b->edge[i].name;
+    struct tree_names t
+        = {CT_NEWN(c->s->ctx.model, const char *, c->b->topology->nedge + 1), 0};
+    for (size_t i = 0; i < c->b->topology->nedge; i++)
+        if (is_branch[i] && c->b->topology->edge[i].kind != CT_EDGE_ARM)
+            t.name[t.n++] = c->b->topology->edge[i].name;
     CT_PUSH(c->s->ctx.model, c->list->tree, c->list->n, c->list->cap, t);
     return true;
 }
@@ -454,10 +455,10 @@ struct tree_list system_trees(struct system *s, bool keep_all, bool rotation)
     struct tree_list list = {0};
     assert_true(ct_formulate(&s->ctx, s->ctx.model, &s->model, &o, e, &report));
     const struct ct_build *b = e->build;
-    bool *forced = CT_NEWN(s->ctx.model, bool, b->nedge + 1);
-    bool *banned = CT_NEWN(s->ctx.model, bool, b->nedge + 1);
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *k = &b->edge[i];
+    bool *forced = CT_NEWN(s->ctx.model, bool, b->topology->nedge + 1);
+    bool *banned = CT_NEWN(s->ctx.model, bool, b->topology->nedge + 1);
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *k = &b->topology->edge[i];
         const bool is_particle = k->kind == CT_EDGE_BODY && s->model.body[k->index].is_particle;
         forced[i] = k->must_be_branch || (rotation && is_particle);
         banned[i] = k->never_branch || (rotation && !k->has_rotation && !is_particle);

@@ -129,6 +129,29 @@ def test_sweeps_by_grids_and_by_lists_agree():
         m.sweep({"nothing": [1]})
 
 
+def test_sweeps_take_what_runs_do_between_samples():
+    text = """
+cotree: 1
+parameters: {k: 1}
+bodies: {b: {mass: 1}}
+joints: {j: {type: prismatic, axis: x, from: ground, to: b, effort: -k*j.q, initial: {q: 1}}}
+outputs: [j.q]
+"""
+    m = cotree.loads(text)
+    k = np.array([1, 4, 25.0])
+    s = m.sweep({"k": k}, until=3.3, take={"peak": "max(abs(j.u))", "t1": "time(j.u)",
+                                           "never": "time(j.q - 2)", "square": "rms(j.q)"})
+    assert s.columns == ("k", "j.q", "peak", "t1", "never", "square") and s.failed == 0
+    assert np.allclose(s["peak"], np.sqrt(k), rtol=1e-6)
+    t1 = np.pi / np.sqrt(k)
+    assert np.allclose(s["t1"], t1, rtol=1e-6)
+    assert np.all(np.isnan(s["never"]))
+    w = np.sqrt(k)
+    assert np.allclose(s["square"]**2, 0.5 + np.sin(2 * w * 3.3) / (4 * w * 3.3), rtol=1e-6)
+    with pytest.raises(cotree.Error, match="there is no function 'most'"):
+        m.sweep({"k": k}, until=1, take={"peak": "most(j.q)"})
+
+
 def test_analyses(arm):
     lin = arm.linearize(about="equilibrium")
     assert lin.inputs == ("tau",) and lin.A.shape == (2, 2) and lin.B.shape == (2, 1)

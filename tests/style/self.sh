@@ -85,6 +85,21 @@ turned() {
 }
 fails_with 'turned.txt: low comes after a folder that may include it' turned
 
+# ---- class names
+mkdir -p src/component components
+touch components/spring.c
+classes() {
+  sh "$tests/style/classes.sh" .
+}
+echo 'if (strcmp(c->cls->name, name) == 0)' >src/component/registry.c
+passes classes
+echo 'if (!strcmp(self->cls->name, "torque"))' >src/high/b.c
+fails_with 'src/high/b.c:1:' classes
+echo 'if (strcmp(what, "spring") == 0)' >src/high/b.c
+fails_with 'src/high/b.c:1:' classes
+echo '#include "low/a.h"' >src/high/b.c
+rm -r src/component components
+
 # ---- keys
 keys() {
   sh "$tests/style/keys.sh" "$PWD/references.bib" .

@@ -225,6 +225,31 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
     return CT_NAME_UNKNOWN;
 }
 
+// The texts of the terms are the text of the sum, in pieces, and their operands sum to it.
+static void check_terms(struct ct_arena *a, struct ct_exs *x, ct_ex e, struct random *r)
+{
+    static const struct ct_print style[]
+        = {{.style = CT_PRINT_TEXT, .fractions = true}, {.style = CT_PRINT_LATEX, .line = 100}};
+    for (size_t i = 0; i < COUNT(style); i++) {
+        struct ct_print_term *term;
+        const size_t n = ct_ex_terms(a, x, e, &style[i], &term);
+        const char *joined = "";
+        ct_ex sum = CT_EX_ZERO;
+        for (size_t k = 0; k < n; k++) {
+            joined = ct_arena_printf(a, "%s%s", joined, term[k].text);
+            sum = term[k].is_subtracted ? ct_ex_sub(x, sum, term[k].value)
+                                        : ct_ex_add(x, sum, term[k].value);
+        }
+        assert_string_equal(joined, ct_ex_text(a, x, e, &style[i]));
+        double value[8];
+        for (size_t k = 0; k < 8; k++)
+            value[k] = random_double(r);
+        const double want = ct_ex_value(x, e, value), got = ct_ex_value(x, sum, value);
+        if (fabs(want) < 1e3 && !(fabs(got - want) <= 1e-9))
+            fail_msg("terms sum to %.17g, not %.17g: %s", got, want, joined);
+    }
+}
+
 static void check_read_back(struct ct_ctx *ctx, struct ct_exs *x, ct_ex e, struct random *r)
 {
     const struct ct_scope scope = {.x = x, .user = x, .name = find_name};
@@ -259,6 +284,7 @@ static void text_reads_back_as_the_same(void **unused)
             e[k] = random_node(&r, &x, e, k);
         check_read_back(&ctx, &x, e[23], &r);
         check_read_back(&ctx, &x, e[22], &r);
+        check_terms(ctx.scratch, &x, e[23], &r);
         ct_arena_destroy(ctx.model);
         ct_arena_destroy(ctx.scratch);
     }

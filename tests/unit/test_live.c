@@ -464,7 +464,15 @@ static void a_comma_locale_changes_nothing(void **state)
     struct ct_sim *sim = ct_sim_create(ctx, sys, NULL);
     assert_true(ct_sim_run(ctx, sim, NULL));
     char *summary = ct_sim_summary(sim);
+    char exported[] = "/tmp/cotree-export-XXXXXX";
+    assert_non_null(mkdtemp(exported));
+    assert_true(ct_sim_export(ctx, sim, "c", exported));
     setlocale(LC_ALL, "C");
+    snprintf(command, sizeof command, "cat %s/*.[ch] %s/*.json | grep -q '[0-9],[0-9]'",
+             exported, exported);
+    assert_int_not_equal(system(command), 0);
+    snprintf(command, sizeof command, "rm -r %s", exported);
+    assert_int_equal(system(command), 0);
     assert_string_equal(got, want);
     assert_string_equal(got_c, want_c);
     assert_non_null(strstr(summary, "t = 1 s"));

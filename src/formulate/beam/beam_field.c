@@ -107,7 +107,7 @@ void ct_fields_start(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
     const int nfreedom = NKIND * (beam->nelement + 1);
-    if (!beam->nstart || b->is_rigid)
+    if (!beam->nstart || b->options->is_rigid)
         return;
     ct_ex *of[2], *fitted = CT_NEWN(b->ctx->scratch, ct_ex, f->nelastic + 1);
     for (int k = 0; k < 2; k++)

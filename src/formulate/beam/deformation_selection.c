@@ -8,7 +8,7 @@ static const double roundoff = 1e-12; // of components of unit vectors
 
 static ct_ex3 normal_at(struct ct_build *b, const ct_ex33 *U)
 {
-    return ct_ex33_apply_t(b->x, U, b->plane[2]);
+    return ct_ex33_apply_t(b->x, U, b->topology->plane[2]);
 }
 
 // Is v zero along n, whatever time and state are?
@@ -65,12 +65,12 @@ static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
             const struct ct_value *v = ct_instance_value(self, "value");
             const struct ct_value *in = ct_instance_value(self, "in");
             const ct_ex3 value = {{v->e[0], v->e[1], v->e[2]}};
-            const ct_ex3 n
-                = in->given ? normal_at(b, U[b->node_of_frame[in->frame]]) : b->plane[2];
+            const ct_ex3 n = in->given ? normal_at(b, U[b->topology->node_of_frame[in->frame]])
+                                       : b->topology->plane[2];
             if (is_torque ? !is_along(b, value, n) : !is_across(b, value, n))
                 return false;
         } else if (self->from >= 0
-                   && !is_axis(b, normal_at(b, U[b->node_of_frame[self->from]]))) {
+                   && !is_axis(b, normal_at(b, U[b->topology->node_of_frame[self->from]]))) {
             return false; // a bushing whose axes are askew pushes out of the plane
         }
     }
@@ -81,14 +81,15 @@ static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
 static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allowed)
 {
     const struct ct_model *m = b->model;
-    for (size_t i = 1; i < b->nnode; i++)
-        if (fabs(ct_ex_value(b->x, ct_ex_sub(b->x, b->layer[i], b->layer[0]), b->value))
+    for (size_t i = 1; i < b->topology->nnode; i++)
+        if (fabs(ct_ex_value(
+                b->x, ct_ex_sub(b->x, b->topology->layer[i], b->topology->layer[0]), b->value))
             > allowed)
             return false;
     for (size_t i = 1; i < m->nbody; i++) {
         const ct_ex *I = m->body[i].inertia;
         const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-        const ct_ex3 n = normal_at(b, U[b->node_of_com[i]]);
+        const ct_ex3 n = normal_at(b, U[b->topology->node_of_com[i]]);
         if (!m->body[i].is_particle && !m->body[i].beam
             && !is_along(b, ct_ex33_apply(b->x, &own, n), n))
             return false;
@@ -96,7 +97,7 @@ static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allo
     return true;
 }
 
-bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
+bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_spatial)
 {
     const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
     bool asked = false; // does any beam leave the choice to us?
@@ -117,11 +118,10 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U)
         asked = asked || !f->beam->deformation_given;
     }
     const bool keeps = !asked
-                    || (is_across(b, b->model->gravity, b->plane[2]) && loads_keep_plane(b, U)
-                        && masses_keep_plane(b, U, 1e-9 * longest));
-    b->is_spatial_for_beams
-        = b->is_spatial_for_beams || (keeps && frees && b->keeps_all_deformations);
-    return keeps && !b->is_spatial_for_beams;
+                    || (is_across(b, b->model->gravity, b->topology->plane[2])
+                        && loads_keep_plane(b, U) && masses_keep_plane(b, U, 1e-9 * longest));
+    *is_spatial = *is_spatial || (keeps && frees && b->options->keeps_all_deformations);
+    return keeps && !*is_spatial;
 }
 
 // Does the joint hand torques on to the section it sits at?
@@ -154,7 +154,7 @@ static bool bends_about_both(const struct ct_flexible *f)
 static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f)
 {
     return bends_about_both(f)
-        && (b->keeps_all_deformations
+        && (b->options->keeps_all_deformations
             || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, f->beam)));
 }
 
@@ -200,7 +200,7 @@ const char *ct_deformation_no_twist(const struct ct_build *b, const struct ct_fl
     }
     if (!(f->beam->known & CT_BEAM_TORSION))
         return "only bending about both axes twists it, and G or nu, or J, is not given";
-    return ct_ex_is_zero(f->beam->twist_inertia) && !b->keeps_all_deformations
+    return ct_ex_is_zero(f->beam->twist_inertia) && !b->options->keeps_all_deformations
              ? "only bending about both axes twists it, and its sections have no inertia"
              : NULL;
 }

@@ -4,10 +4,11 @@
 
 #include "formulate/beam/flexible_body.h"
 
-/// May the beams of a mechanism whose joints keep to the plane b->plane keep to it, too? Each must bend about the normal,
+/// May the beams of a mechanism whose joints keep to the plane b->topology->plane keep to it, too? Each must bend about the normal,
 /// and nothing may push it out of the plane: gravity, loads, inertia and arms lie in it; or the beam is told to deform
-/// there alone. One that is told to leave the plane does, and with b->frees_beams one that can. U: axes of the nodes at rest (linear_graph.c). layer: place of each node along the normal.
-bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U);
+/// there alone. One that is told to leave the plane does, and with b->options->keeps_all_deformations one that can: then
+/// *is_spatial is set. U: axes of the nodes at rest (linear_graph.c).
+bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_spatial);
 
 /// Why the beam does not twist, for `left_out`; NULL if it does: by a joint, a torque or an arm off its axis beyond the base,
 /// or, in a foreshortened beam of unequal Iy and Iz, by bending about both axes. f->formulation must be known.

@@ -288,10 +288,10 @@ static void given_unknowns(struct ct_build *b, struct ct_flexible *f)
 // Are bodies counted from a section of f other than its base?
 static bool carries_bodies(const struct ct_build *b, const struct ct_flexible *f)
 {
-    for (size_t i = 0; i < b->nnode; i++) {
+    for (size_t i = 0; i < b->topology->nnode; i++) {
         const int from = b->T.parent[i];
-        if (from >= 0 && from != f->base && b->node[from].body == f->body
-            && b->edge[b->T.parent_edge[i]].kind == CT_EDGE_JOINT)
+        if (from >= 0 && from != f->base && b->topology->node[from].body == f->body
+            && b->topology->edge[b->T.parent_edge[i]].kind == CT_EDGE_JOINT)
             return true;
     }
     return false;

@@ -80,9 +80,9 @@ static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_el
 // What deforms where the scene keeps to a plane: bending about the normal; a beam's y or z axis points along it.
 static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
 {
-    if (!b->keeps_plane)
+    if (!b->topology->keeps_plane)
         return CT_BEAM_ALL;
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->normal);
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->normal);
     const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 0.5;
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
@@ -115,7 +115,7 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
         if (!(f->deformation & all[i].family & ~f->beam->known))
             continue;
         f->deformation &= ~all[i].family;
-        if (b->keep_all || b->is_spatial_for_beams)
+        if (b->options->keep_all || b->topology->is_spatial_for_beams)
             ct_build_note_left_out(
                 b, ct_arena_printf(b->arena, "that %s can %s", f->name, all[i].what),
                 ct_arena_printf(b->arena, "%s is not given", all[i].key));
@@ -130,10 +130,12 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 // Left to the program: as in equations that were made before, else the one that holds further.
 static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 {
-    const struct ct_flexible *like = b->like ? ct_flexible_of(b->like->build, f->body) : NULL;
+    const struct ct_flexible *like
+        = b->options->like ? ct_flexible_of(b->options->like->build, f->body) : NULL;
     f->formulation = like ? like->formulation : CT_BEAM_FORESHORTENING;
-    if (b->is_linear)
-        f->formulation = b->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
+    if (b->options->is_linear)
+        f->formulation
+            = b->options->is_linear[f->body] ? CT_BEAM_LINEAR : CT_BEAM_FORESHORTENING;
 }
 
 static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
@@ -143,7 +145,7 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
     if (beam->formulation == CT_BEAM_AUTO)
         choose_formulation(b, f);
     f->excited = in_plane(b, f);
-    f->deformation = beam->deformation & (b->is_planar ? f->excited : CT_BEAM_ALL);
+    f->deformation = beam->deformation & (b->topology->is_planar ? f->excited : CT_BEAM_ALL);
     // nor has it an inertia of its own then, so there is no coordinate to keep
     const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
                               ? ct_deformation_no_twist(b, f)
@@ -153,7 +155,8 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
         ct_build_note_left_out(b, ct_arena_printf(b->arena, "torsion of %s", f->name),
                                untwisted);
     }
-    if (b->is_planar && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
+    if (b->topology->is_planar
+        && beam->deformation & ~(unsigned)(CT_BEAM_AXIAL | f->deformation))
         ct_build_note_left_out(
             b,
             ct_arena_printf(b->arena, "bending of %s out of the plane, and its torsion",
@@ -175,7 +178,7 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
     if (beam->nshape)
         f->deformation &= ct_fields_family(beam);
     need_stiffness(b, f);
-    if (b->is_rigid)
+    if (b->options->is_rigid)
         f->deformation = 0;
     f->axial = f->kinematics = axial_of(b, f);
     if (f->formulation == CT_BEAM_FORCE_ONLY)
@@ -214,6 +217,11 @@ void ct_flexible_choose_deformation(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++)
         choose_deformation(b, &b->flexible[i]);
+}
+
+struct ct_flexible *ct_flexible_of_edge(const struct ct_build *b, const struct ct_edge_info *e)
+{
+    return e->beam < 0 ? NULL : &b->flexible[e->beam];
 }
 
 struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body)

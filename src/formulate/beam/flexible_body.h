@@ -127,6 +127,8 @@ void ct_flexible_create(struct ct_build *b);
 void ct_flexible_choose_deformation(struct ct_build *b);
 /// The beam of a body; NULL if it is none.
 struct ct_flexible *ct_flexible_of(const struct ct_build *b, int body);
+/// The beam whose section the edge leads to; NULL: none.
+struct ct_flexible *ct_flexible_of_edge(const struct ct_build *b, const struct ct_edge_info *e);
 /// Are all coordinates of beam f small, by its formulation or its name?
 bool ct_flexible_is_small(const struct ct_build *b, const struct ct_flexible *f);
 /// Can all beams be articulated bodies (recursive/member.h), as far as their kinematics and coordinates that are small go?

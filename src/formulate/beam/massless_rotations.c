@@ -38,7 +38,8 @@ static int axis_along(struct ct_build *b, const struct ct_frame *frame, ct_ex3 v
 static unsigned about_normal(const struct node_moments *w)
 {
     const struct ct_build *b = w->b;
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[w->f->base], b->plane[2]);
+    const ct_ex3 n
+        = ct_ex33_apply_t(b->x, &b->topology->upright[w->f->base], b->topology->plane[2]);
     unsigned bits = 0;
     for (int i = 0; i < NAXIS; i++)
         if (fabs(ct_ex_value(b->x, n.e[i], b->value)) > 0.5)
@@ -56,13 +57,13 @@ static unsigned joint_moments(const struct node_moments *w, size_t j, const stru
     if (b->model->body[other].is_particle
         || (self->cls->is_moment_free && !ct_joint_is_active(self)))
         return 0;
-    if (b->edge_of_joint[j] < 0 || ct_joint_is_active(self))
+    if (b->topology->edge_of_joint[j] < 0 || ct_joint_is_active(self))
         return ALL;
-    const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
+    const struct ct_edge_info *e = &b->topology->edge[b->topology->edge_of_joint[j]];
     if (e->must_be_branch)
         return ALL;
-    if (e->weight_r == (b->is_planar ? 1 : NAXIS))
-        return b->is_planar ? ALL & ~about_normal(w) : 0;
+    if (e->weight_r == (b->topology->is_planar ? 1 : NAXIS))
+        return b->topology->is_planar ? ALL & ~about_normal(w) : 0;
     if (e->weight_r != 1 || e->trial.nturn != 1)
         return ALL;
     const int axis = axis_along(b, at, e->trial.turn[0].axis);
@@ -115,11 +116,12 @@ static unsigned turns_freely(const struct node_moments *w, size_t j, const struc
     struct ct_build *b = w->b;
     const struct ct_instance *self = &b->model->joint[j];
     const bool is_custom = self->cls->ncoord < 0;
-    if (b->edge_of_joint[j] < 0 || is_custom || ct_instance_value(self, "motion")->given)
+    if (b->topology->edge_of_joint[j] < 0 || is_custom
+        || ct_instance_value(self, "motion")->given)
         return 0;
-    const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
-    if (e->weight_r == (b->is_planar ? 1 : NAXIS))
-        return b->is_planar ? about_normal(w) : ALL;
+    const struct ct_edge_info *e = &b->topology->edge[b->topology->edge_of_joint[j]];
+    if (e->weight_r == (b->topology->is_planar ? 1 : NAXIS))
+        return b->topology->is_planar ? about_normal(w) : ALL;
     unsigned about = 0; // two of a universal joint, as the frames coincide
     for (int i = 0; i < e->trial.nturn && e->weight_r == e->trial.nturn; i++) {
         const int axis = axis_along(b, at, e->trial.turn[i].axis);
@@ -174,7 +176,7 @@ bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_fle
     const bool turns_apart = f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO;
     bool any = false, marked = false;
     memset(follows, 0, (size_t)(NKIND * nnode) * sizeof *follows);
-    if (b->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
+    if (b->options->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
         return false; // analyses do without masses, and then loads count that are not seen here
     for (int axis = 0; axis < NAXIS && f->deformation; axis++) {
         const bool is_massless

@@ -17,7 +17,8 @@ enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam)
 
 bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f)
 {
-    return f->formulation == CT_BEAM_FORESHORTENING && f->beam->has_rotary && !b->is_planar;
+    return f->formulation == CT_BEAM_FORESHORTENING && f->beam->has_rotary
+        && !b->topology->is_planar;
 }
 
 // Inertia per length about the axes; twist has some of its own where nothing else is given.

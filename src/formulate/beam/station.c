@@ -160,8 +160,8 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
 static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
 {
     size_t nsection = 0, nproduct = 0;
-    for (size_t i = 0; i < b->nedge; i++)
-        nsection += b->edge[i].flexible == f;
+    for (size_t i = 0; i < b->topology->nedge; i++)
+        nsection += ct_flexible_of_edge(b, &b->topology->edge[i]) == f;
     for (int e = 0; f->condensation && e < f->beam->nelement; e++)
         for (int j = 2; j < CT_BENT_DOF; j++) {
             int sign;

@@ -20,7 +20,7 @@ static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
 {
     struct ct_exs *x = b->x;
     ct_ex3 w, al;
-    if (b->is_planar) {
+    if (b->topology->is_planar) {
         out->w = ct_ex33_apply_t(x, &p->S, ct_cluster_velocity(b, p->frame));
         out->al = ct_ex33_apply_t(x, &p->S, ct_cluster_acceleration(b, p->frame, level));
         return true;
@@ -35,7 +35,7 @@ static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
 struct ct_base ct_base_motion(struct ct_build *b, const struct ct_flexible *f,
                               enum ct_level level, ct_ex3 apparent)
 {
-    const struct ct_node_placement *p = &b->placement[f->base];
+    const struct ct_node_placement *p = &b->kinematics->placement[f->base];
     struct ct_base m = {.a = ct_base_into(b, f, apparent)};
     if (!plain_rates(b, p, level, &m)) {
         m.w = ct_base_into(b, f, ct_cluster_velocity(b, p->frame));

@@ -27,7 +27,7 @@ void ct_flexible_lump(struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         struct ct_flexible *f = &b->flexible[i];
-        const struct ct_node_placement *p = &b->placement[f->base];
+        const struct ct_node_placement *p = &b->kinematics->placement[f->base];
         ct_flexible_inertia_derive(b, f);
         const struct ct_inertia *I = f->inertia;
         const ct_ex33 t = ct_ex33_transpose(&p->S), half = ct_ex33_mul(b->x, &I->inertia, &t);
@@ -63,7 +63,7 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
     struct ct_exs *x = b->x;
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        const struct ct_node_placement *p = &b->placement[f->base];
+        const struct ct_node_placement *p = &b->kinematics->placement[f->base];
         const struct ct_base m = ct_base_motion(b, f, level, apparent[p->anchor]);
         ct_ex3 F, T, lessF, lessT;
         const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
@@ -290,14 +290,14 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_columns *c, ct_ex *M)
 {
     struct ct_exs *x = b->x;
-    const struct ct_node_placement *at = &b->placement[f->base];
-    for (size_t r = 0; r < b->nrotation_axis; r++) {
-        const struct ct_rotation_axis *spin = &b->rotation_axis[r];
+    const struct ct_node_placement *at = &b->kinematics->placement[f->base];
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
+        const struct ct_rotation_axis *spin = &b->kinematics->rotation_axis[r];
         ct_ex3 reach = zero3, s = zero3;
         if (!has_unknown(spin->term, spin->nterm))
             continue;
-        for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
-            if (ct_cluster_is_outboard(b, spin->cluster, b->anchor[a].cluster))
+        for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent)
+            if (ct_cluster_is_outboard(b, spin->cluster, b->kinematics->anchor[a].cluster))
                 reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
         const ct_ex3 p
             = ct_ex3_is_zero(reach)
@@ -306,23 +306,25 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);
-            else if (b->is_planar)
+            else if (b->topology->is_planar)
                 s = ct_ex33_apply_t(x, &at->S, spin->axis);
             else
                 s = ct_base_into(b, f, spin->axis);
         }
         base_column(b, f, c, p, s, spin->term, spin->nterm, M);
     }
-    for (int a = at->anchor; a > 0; a = b->anchor[a].parent)
-        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++) {
-            const struct ct_translation_axis *slide = &b->anchor[a].translation_axis[k];
+    for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent)
+        for (int k = 0; k < b->kinematics->anchor[a].ntranslation_axis; k++) {
+            const struct ct_translation_axis *slide
+                = &b->kinematics->anchor[a].translation_axis[k];
             const struct ct_term term = {slide->speed, slide->driver, CT_EX_ONE};
             if (slide->speed < 0)
                 continue;
             const ct_ex3 p
-                = b->anchor[a].cluster == at->frame
+                = b->kinematics->anchor[a].cluster == at->frame
                     ? ct_ex33_apply_t(x, &at->S, slide->p)
-                    : ct_base_into(b, f, ct_cluster_turn(b, b->anchor[a].cluster, slide->p));
+                    : ct_base_into(
+                        b, f, ct_cluster_turn(b, b->kinematics->anchor[a].cluster, slide->p));
             base_column(b, f, c, p, zero3, &term, 1, M);
         }
 }

@@ -81,9 +81,9 @@ static void add_coordinates(struct ct_build *w, struct ct_flexible *f)
 }
 
 // A section moves by what its own element does, and by its start.
-static void move_by_element(struct ct_build *w, struct ct_edge_info *e)
+static void move_by_element(struct ct_build *w, const struct ct_flexible *f,
+                            struct ct_edge_kinematics *e)
 {
-    const struct ct_flexible *f = e->flexible;
     e->translation = CT_NEWN(w->arena, ct_ex3, f->nelastic + 1);
     e->rotation = CT_NEWN(w->arena, ct_ex3, f->nelastic + 1);
     ct_station_own_partials(w, f, e->station, e->translation, e->rotation);
@@ -105,23 +105,23 @@ static struct ct_build *clone_augmented(const struct ct_build *b)
     w->eqs->M = NULL;
     w->eqs->nM = w->eqs->M_cap = 0;
     w->flexible = copy(a, b->flexible, b->nflexible, sizeof *b->flexible);
-    w->edge = copy(a, b->edge, b->nedge, sizeof *b->edge);
-    w->anchor = copy(a, b->anchor, b->nanchor, sizeof *b->anchor);
-    w->rotation_axis = copy(a, b->rotation_axis, b->nrotation_axis, sizeof *b->rotation_axis);
-    w->coefficient = NULL;
+    struct ct_kinematics *k = copy(a, b->kinematics, 1, sizeof *k);
+    k->edge = copy(a, k->edge, b->topology->nedge, sizeof *k->edge);
+    k->anchor = copy(a, k->anchor, k->nanchor, sizeof *k->anchor);
+    k->rotation_axis = copy(a, k->rotation_axis, k->nrotation_axis, sizeof *k->rotation_axis);
+    w->kinematics = k;
+    w->cache.anchor = copy(a, b->cache.anchor, k->nanchor, sizeof *b->cache.anchor);
+    w->cache.coefficient = NULL;
     for (size_t i = 0; i < w->nflexible; i++)
         if (is_augmented(&w->flexible[i]))
             add_coordinates(w, &w->flexible[i]);
-    for (size_t i = 0; i < w->nedge; i++) {
-        struct ct_edge_info *e = &w->edge[i];
-        if (!e->flexible)
-            continue;
-        e->flexible = &w->flexible[e->flexible - b->flexible];
-        if (e->flexible->nstart)
-            move_by_element(w, e);
+    for (size_t i = 0; i < w->topology->nedge; i++) {
+        const struct ct_flexible *f = ct_flexible_of_edge(w, &w->topology->edge[i]);
+        if (f && f->nstart)
+            move_by_element(w, f, &k->edge[i]);
     }
-    ct_translation_slide_sections(w);
-    ct_rotation_turn_sections(w);
+    ct_translation_slide_sections(w, k);
+    ct_rotation_turn_sections(w, k);
     return w;
 }
 

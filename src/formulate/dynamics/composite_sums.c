@@ -5,16 +5,48 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-static size_t at(const struct ct_composite_sums *s, int anchor, int cluster)
+static const struct ct_composite_pair *find_pair(const struct ct_composite_sums *s, int anchor,
+                                                 int cluster)
 {
-    return (size_t)anchor + s->b->nanchor * (size_t)cluster;
+    const int i = ct_pairs_get(&s->pair_of, anchor, cluster);
+    return i < 0 ? NULL : &s->pair[i];
+}
+
+// The pair of an anchor and a cluster, made when first asked for.
+static struct ct_composite_pair *take_pair(struct ct_composite_sums *s, int anchor, int cluster)
+{
+    const int found = ct_pairs_get(&s->pair_of, anchor, cluster);
+    if (found >= 0)
+        return &s->pair[found];
+    const struct ct_composite_pair p = {
+        .cluster = cluster, .next = s->first_pair[anchor], .first_part = -1, .last_part = -1};
+    ct_pairs_put(s->b->arena, &s->pair_of, anchor, cluster, (int)s->npair);
+    s->first_pair[anchor] = (int)s->npair;
+    CT_PUSH(s->b->arena, s->pair, s->npair, s->pair_cap, p);
+    return &s->pair[s->npair - 1];
+}
+
+static void add_part(struct ct_composite_sums *s, struct ct_composite_pair *p, int body,
+                     int child)
+{
+    const struct ct_composite_part part = {body, child, -1};
+    *(p->last_part < 0 ? &p->first_part : &s->part[p->last_part].next) = (int)s->npart;
+    p->last_part = (int)s->npart;
+    CT_PUSH(s->b->arena, s->part, s->npart, s->part_cap, part);
+}
+
+int ct_composite_sums_first_part(const struct ct_composite_sums *s, int anchor, int cluster)
+{
+    const struct ct_composite_pair *p = find_pair(s, anchor, cluster);
+    return p ? p->first_part : -1;
 }
 
 ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star)
 {
     if (!s->has_moment[star])
-        s->moment[star] = ct_cluster_turn(s->b, s->b->augmented_body[star].cluster,
-                                          s->b->augmented_body[star].moment);
+        s->moment[star]
+            = ct_cluster_turn(s->b, s->b->dynamics.masses.augmented_body[star].cluster,
+                              s->b->dynamics.masses.augmented_body[star].moment);
     s->has_moment[star] = true;
     return s->moment[star];
 }
@@ -34,38 +66,58 @@ ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
 static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
 {
     for (int k = 0; k < s->nchild; k++)
-        if (!ct_ex_is_zero(b->anchor[b->child[s->first_child + k]].mass))
+        if (!ct_ex_is_zero(
+                b->dynamics.masses.mass[b->dynamics.masses.child[s->first_child + k]]))
             return true;
     return !ct_ex3_is_zero(s->moment);
+}
+
+static void count_augmented_body(struct ct_composite_sums *s, int anchor, int body)
+{
+    const struct ct_build *b = s->b;
+    const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[body];
+    const bool felt = is_felt(b, self);
+    s->nstar[anchor] += felt;
+    for (int c = self->cluster; c > 0; c = b->kinematics->cluster[c].parent) {
+        struct ct_composite_pair *p = take_pair(s, anchor, c);
+        p->nturning += felt;
+        add_part(s, p, body, -1);
+    }
+    for (int k = 0; k < self->nchild; k++) {
+        const int child = b->dynamics.masses.child[self->first_child + k];
+        s->nstar[anchor] += s->nstar[child];
+        for (int i = s->first_pair[child]; i >= 0; i = s->pair[i].next) {
+            const int n = s->pair[i].nturning;
+            if (!n)
+                continue;
+            struct ct_composite_pair *p = take_pair(s, anchor, s->pair[i].cluster);
+            p->nturning += n;
+            add_part(s, p, body, child);
+        }
+    }
 }
 
 static void count_augmented_bodies(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
-    for (size_t i = 0; i < b->nanchor; i++)
-        s->first[i] = -1;
-    for (size_t i = b->naugmented_body; i-- > 0;) {
-        s->next[i] = s->first[b->augmented_body[i].anchor];
-        s->first[b->augmented_body[i].anchor] = (int)i;
-        if (!is_felt(b, &b->augmented_body[i]))
-            continue;
-        s->nstar[b->augmented_body[i].anchor]++;
-        for (int c = b->augmented_body[i].cluster; c > 0; c = b->cluster[c].parent)
-            s->nturning[at(s, b->augmented_body[i].anchor, c)]++;
+    for (size_t i = 0; i < b->kinematics->nanchor; i++)
+        s->first[i] = s->first_pair[i] = -1;
+    for (size_t i = b->dynamics.masses.naugmented_body; i-- > 0;) {
+        s->next[i] = s->first[b->dynamics.masses.augmented_body[i].anchor];
+        s->first[b->dynamics.masses.augmented_body[i].anchor] = (int)i;
     }
-    for (size_t a = b->nanchor; a-- > 1;) {
-        s->nstar[b->anchor[a].parent] += s->nstar[a];
-        for (size_t c = 1; c < b->ncluster; c++)
-            s->nturning[at(s, b->anchor[a].parent, (int)c)]
-                += s->nturning[at(s, (int)a, (int)c)];
-    }
+    for (size_t a = b->kinematics->nanchor; a-- > 0;) // those outboard have larger numbers
+        for (int i = s->first[a]; i >= 0; i = s->next[i])
+            count_augmented_body(s, (int)a, i);
 }
 
 enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int anchor,
                                           int cluster)
 {
-    const int n = s->nturning[at(s, anchor, cluster)];
-    return !n ? CT_TURNS_NONE : n < s->nstar[anchor] ? CT_TURNS_SOME : CT_TURNS_ALL;
+    const struct ct_composite_pair *p = find_pair(s, anchor, cluster);
+    return !p || !p->nturning             ? CT_TURNS_NONE
+         : p->nturning < s->nstar[anchor] ? CT_TURNS_SOME
+                                          : CT_TURNS_ALL;
 }
 
 // The innermost anchor outboard of which everything turns with a cluster; if there is none, the outermost one
@@ -73,37 +125,42 @@ enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int
 static void find_starts(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
-    for (size_t c = 0; c < b->ncluster; c++)
+    for (size_t c = 0; c < b->kinematics->ncluster; c++)
         s->start[c] = -1;
-    for (size_t i = 0; i < b->naugmented_body; i++)
-        for (int c = b->augmented_body[i].cluster; c > 0 && is_felt(b, &b->augmented_body[i]);
-             c = b->cluster[c].parent) {
-            int other = b->augmented_body[i].anchor;
+    for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++)
+        for (int c = b->dynamics.masses.augmented_body[i].cluster;
+             c > 0 && is_felt(b, &b->dynamics.masses.augmented_body[i]);
+             c = b->kinematics->cluster[c].parent) {
+            int other = b->dynamics.masses.augmented_body[i].anchor;
             if (s->start[c] < 0)
                 s->start[c] = other;
             while (s->start[c] != other) // numbers grow outwards
                 *(s->start[c] > other ? &s->start[c] : &other)
-                    = b->anchor[s->start[c] > other ? s->start[c] : other].parent;
+                    = b->kinematics->anchor[s->start[c] > other ? s->start[c] : other].parent;
         }
-    for (size_t c = 1; c < b->ncluster; c++)
-        for (int a = s->start[c]; a >= 0; a = a ? b->anchor[a].parent : -1)
+    for (size_t c = 1; c < b->kinematics->ncluster; c++)
+        for (int a = s->start[c]; a >= 0; a = a ? b->kinematics->anchor[a].parent : -1)
             if (ct_composite_sums_turning(s, a, (int)c) == CT_TURNS_ALL)
                 s->start[c] = a;
 }
 
 ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int cluster)
 {
-    const size_t i = at(s, anchor, cluster);
     if (anchor == 0)
         return zero3;
-    if (!s->has_g[i]) {
-        const struct ct_anchor *a = &s->b->anchor[anchor];
-        s->g[i] = ct_composite_sums_reach(s, a->parent, cluster);
-        if (ct_composite_sums_turns_with(s, cluster, a->cluster))
-            s->g[i] = ct_ex3_add(s->b->x, s->g[i], ct_composite_sums_link(s, anchor));
-        s->has_g[i] = true;
-    }
-    return s->g[i];
+    const struct ct_composite_pair *known = find_pair(s, anchor, cluster);
+    if (known && known->has_g)
+        return known->g;
+    const struct ct_anchor *a = &s->b->kinematics->anchor[anchor];
+    ct_ex3 g = ct_composite_sums_reach(s, a->parent, cluster);
+    if (ct_composite_sums_turns_with(s, cluster, a->cluster))
+        g = ct_ex3_add(s->b->x, g, ct_composite_sums_link(s, anchor));
+    if (ct_ex3_is_zero(g))
+        return g;
+    struct ct_composite_pair *p = take_pair(s, anchor, cluster);
+    p->g = g;
+    p->has_g = true;
+    return g;
 }
 
 ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor)
@@ -113,10 +170,12 @@ ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor)
         ct_ex3 sum = zero3;
         for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
             sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
-            for (int k = 0; k < b->augmented_body[i].nchild; k++)
-                sum = ct_ex3_add(b->x, sum,
-                                 ct_composite_sums_moment(
-                                     s, b->child[b->augmented_body[i].first_child + k]));
+            for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++)
+                sum = ct_ex3_add(
+                    b->x, sum,
+                    ct_composite_sums_moment(
+                        s, b->dynamics.masses
+                               .child[b->dynamics.masses.augmented_body[i].first_child + k]));
         }
         s->all[anchor] = sum;
         s->has_all[anchor] = true;
@@ -127,27 +186,25 @@ ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor)
 ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor, int cluster)
 {
     struct ct_build *b = s->b;
-    const size_t at_pair = at(s, anchor, cluster);
     const enum ct_turning part = ct_composite_sums_turning(s, anchor, cluster);
     if (part == CT_TURNS_NONE)
         return zero3;
     if (part == CT_TURNS_ALL)
         return ct_composite_sums_moment(s, anchor);
-    if (!s->has_h[at_pair]) {
-        ct_ex3 sum = zero3;
-        for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
-            if (ct_composite_sums_turns_with(s, cluster, b->augmented_body[i].cluster))
-                sum = ct_ex3_add(b->x, sum, ct_composite_sums_body_moment(s, i));
-            for (int k = 0; k < b->augmented_body[i].nchild; k++)
-                sum = ct_ex3_add(
-                    b->x, sum,
-                    ct_composite_sums_moment_turning(
-                        s, b->child[b->augmented_body[i].first_child + k], cluster));
-        }
-        s->h[at_pair] = sum;
-        s->has_h[at_pair] = true;
+    const struct ct_composite_pair *known = find_pair(s, anchor, cluster);
+    if (known->has_h)
+        return known->h;
+    ct_ex3 sum = zero3;
+    for (int i = known->first_part; i >= 0; i = s->part[i].next) {
+        const struct ct_composite_part *t = &s->part[i];
+        sum = ct_ex3_add(b->x, sum,
+                         t->child < 0 ? ct_composite_sums_body_moment(s, t->body)
+                                      : ct_composite_sums_moment_turning(s, t->child, cluster));
     }
-    return s->h[at_pair];
+    struct ct_composite_pair *p = take_pair(s, anchor, cluster);
+    p->h = sum;
+    p->has_h = true;
+    return sum;
 }
 
 // ---- composite inertia ------------------------------------------------------------------------------
@@ -164,7 +221,7 @@ static ct_ex33 cross_inertia(struct ct_build *b, ct_ex3 d, ct_ex3 h)
     struct ct_exs *x = b->x;
     const ct_ex twice = ct_ex_scale(x, 2, ct_ex3_dot(x, d, h));
     ct_ex33 X = {{{0}}};
-    if (b->is_planar) {
+    if (b->topology->is_planar) {
         X.e[8] = twice;
         return X;
     }
@@ -184,8 +241,10 @@ static const ct_ex33 *cross_descendants(struct ct_composite_sums *s, int anchor)
     if (!s->has_cross[anchor]) {
         ct_ex33 sum = {{{0}}};
         for (int i = s->first[anchor]; i >= 0; i = s->next[i])
-            for (int k = 0; k < b->augmented_body[i].nchild; k++) {
-                const int child = b->child[b->augmented_body[i].first_child + k];
+            for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++) {
+                const int child
+                    = b->dynamics.masses
+                          .child[b->dynamics.masses.augmented_body[i].first_child + k];
                 const ct_ex33 X = cross_inertia(b, ct_composite_sums_link(s, child),
                                                 ct_composite_sums_moment(s, child));
                 add_tensor(b, &sum, cross_descendants(s, child));
@@ -201,10 +260,11 @@ static const ct_ex33 *cross_descendants(struct ct_composite_sums *s, int anchor)
 ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
 {
     struct ct_exs *x = b->x;
-    const ct_ex33 *L = &b->cluster[c].L, *R = &b->cluster[c].R;
+    const ct_ex33 *L = &b->dynamics.masses.inertia[c], *R = &b->kinematics->cluster[c].R;
     ct_ex33 out = {{{0}}};
-    if (b->is_planar) {
-        out.e[8] = ct_ex3_dot(x, b->plane[2], ct_ex33_apply(x, L, b->plane[2]));
+    if (b->topology->is_planar) {
+        out.e[8]
+            = ct_ex3_dot(x, b->topology->plane[2], ct_ex33_apply(x, L, b->topology->plane[2]));
         return out;
     }
     const ct_ex33 half = ct_ex33_mul(x, R, L);
@@ -220,12 +280,12 @@ ct_ex33 ct_cluster_inertia(struct ct_build *b, int c)
 static void sum_inertias(struct ct_composite_sums *s)
 {
     struct ct_build *b = s->b;
-    for (size_t c = b->ncluster; c-- > 1;) {
+    for (size_t c = b->kinematics->ncluster; c-- > 1;) {
         const ct_ex33 own = ct_cluster_inertia(b, (int)c);
         add_tensor(b, &s->inertia[c], &s->descendants[c]);
         add_tensor(b, &s->inertia[c], &own);
-        if (b->cluster[c].parent > 0)
-            add_tensor(b, &s->descendants[b->cluster[c].parent], &s->inertia[c]);
+        if (b->kinematics->cluster[c].parent > 0)
+            add_tensor(b, &s->descendants[b->kinematics->cluster[c].parent], &s->inertia[c]);
     }
 }
 
@@ -240,22 +300,18 @@ void ct_composite_sums_add_full(struct ct_composite_sums *s, int anchor, int clu
         add_tensor(b, sum, cross_descendants(s, anchor));
         return;
     }
-    for (int i = s->first[anchor]; i >= 0; i = s->next[i])
-        for (int k = 0; k < b->augmented_body[i].nchild; k++)
-            ct_composite_sums_add_full(s, b->child[b->augmented_body[i].first_child + k],
-                                       cluster, sum);
+    for (int i = ct_composite_sums_first_part(s, anchor, cluster); i >= 0; i = s->part[i].next)
+        if (s->part[i].child >= 0)
+            ct_composite_sums_add_full(s, s->part[i].child, cluster, sum);
 }
 
 struct ct_composite_sums ct_composite_sums_create(struct ct_build *b)
 {
-    const size_t na = b->nanchor, nc = b->ncluster, ns = b->naugmented_body + 1;
+    const size_t na = b->kinematics->nanchor, nc = b->kinematics->ncluster,
+                 ns = b->dynamics.masses.naugmented_body + 1;
     struct ct_composite_sums s = {.b = b};
     s.nstar = CT_NEWN(b->arena, int, na);
-    s.nturning = CT_NEWN(b->arena, int, na *nc);
-    s.g = CT_NEWN(b->arena, ct_ex3, na * nc);
-    s.h = CT_NEWN(b->arena, ct_ex3, na * nc);
-    s.has_g = CT_NEWN(b->arena, bool, na *nc);
-    s.has_h = CT_NEWN(b->arena, bool, na *nc);
+    s.first_pair = CT_NEWN(b->arena, int, na);
     s.moment = CT_NEWN(b->arena, ct_ex3, ns);
     s.has_moment = CT_NEWN(b->arena, bool, ns);
     s.all = CT_NEWN(b->arena, ct_ex3, na);

@@ -28,8 +28,9 @@ static ct_ex continuous_speeds(struct ct_build *b)
     ct_ex joints = CT_EX_ZERO, beams = CT_EX_ZERO;
     for (size_t i = 0; i < b->model->njoint; i++) {
         const struct ct_instance *self = &b->model->joint[i];
-        for (int k = 0; k < self->nfree && self->from >= 0 && b->edge_of_joint[i] >= 0; k++) {
-            const int first = b->edge[b->edge_of_joint[i]].first_coordinate;
+        for (int k = 0;
+             k < self->nfree && self->from >= 0 && b->topology->edge_of_joint[i] >= 0; k++) {
+            const int first = b->topology->edge[b->topology->edge_of_joint[i]].first_coordinate;
             const ct_ex u = ct_coordinate_speed(b, first + k);
             joints = ct_ex_add(x, joints, ct_ex_mul(x, u, u));
         }
@@ -50,16 +51,17 @@ void ct_energies_derive(struct ct_build *b)
     e->power = ct_ex_add(x, e->power, ct_flexible_dissipation(b));
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
-        const int node = b->node_of_com[i];
+        const int node = b->topology->node_of_com[i];
         if (body->beam)
             continue;
         const ct_ex3 v = ct_node_velocity(b, node);
         const ct_ex weight = ct_ex_mul(
             x, body->mass, ct_ex3_dot(x, b->model->gravity, ct_node_position(b, node)));
         kinetic = ct_ex_add(x, kinetic, ct_ex_mul(x, body->mass, ct_ex3_dot(x, v, v)));
-        kinetic = ct_ex_add(x, kinetic,
-                            ct_ex3_dot(x, ct_cluster_velocity(b, b->placement[node].frame),
-                                       ct_body_angular_momentum(b, i)));
+        kinetic = ct_ex_add(
+            x, kinetic,
+            ct_ex3_dot(x, ct_cluster_velocity(b, b->kinematics->placement[node].frame),
+                       ct_body_angular_momentum(b, i)));
         e->potential = ct_ex_sub(x, e->potential, weight);
     }
     e->kinetic = ct_ex_scale(x, 0.5, kinetic);

@@ -17,7 +17,7 @@
 
 void ct_load_add(struct ct_build *b, const struct ct_load *load)
 {
-    CT_PUSH(b->arena, b->load, b->nload, b->load_cap, *load);
+    CT_PUSH(b->arena, b->dynamics.load, b->dynamics.nload, b->dynamics.load_cap, *load);
 }
 
 ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
@@ -27,7 +27,7 @@ ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
     ct_ex3 v;
     for (int i = 0; i < 3; i++)
         v.e[i] = ct_build_value(b, value->e[i]);
-    return in->given ? ct_node_turn(b, b->node_of_frame[in->frame], v) : v;
+    return in->given ? ct_node_turn(b, b->topology->node_of_frame[in->frame], v) : v;
 }
 
 bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *out)
@@ -54,7 +54,7 @@ struct work {
 static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
 {
     struct ct_exs *x = w->b->x;
-    const struct ct_node_placement *p = &w->b->placement[node];
+    const struct ct_node_placement *p = &w->b->kinematics->placement[node];
     ct_ex3 *rest = &w->rest[p->anchor], *arm = &w->torque[p->cluster],
            *own = &w->torque[p->frame];
     *rest = ct_ex3_sub(x, *rest, force);
@@ -80,14 +80,14 @@ static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 
 static void apply_loads(struct work *w)
 {
     struct ct_build *b = w->b;
-    for (size_t i = 0; i < b->nload; i++) {
-        const struct ct_load *l = &b->load[i];
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        const struct ct_load *l = &b->dynamics.load[i];
         apply_pair(w, l->tail, l->head, l->force, l->torque, !l->is_central);
     }
     if (w->level == CT_BIAS)
         return;
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
         const ct_ex lam = b->eqs->row[p->row].lam;
         apply_pair(w, p->tail, p->head, ct_ex3_scale(b->x, lam, p->force),
                    ct_ex3_scale(b->x, lam, p->torque), p->carried);
@@ -98,8 +98,8 @@ static void find_apparent(struct work *w)
 {
     struct ct_build *b = w->b;
     w->apparent[0] = ct_ex3_neg(b->x, b->model->gravity);
-    for (size_t a = 1; a < b->nanchor; a++)
-        w->apparent[a] = ct_ex3_add(b->x, w->apparent[b->anchor[a].parent],
+    for (size_t a = 1; a < b->kinematics->nanchor; a++)
+        w->apparent[a] = ct_ex3_add(b->x, w->apparent[b->kinematics->anchor[a].parent],
                                     ct_link_acceleration(b, (int)a, w->level));
 }
 
@@ -115,8 +115,8 @@ static void sweep_augmented_body(struct work *w, const struct ct_augmented_body 
     ct_ex3 rest = turning;
     ct_ex3 torque = ct_ex3_cross(x, moment, w->apparent[s->anchor]);
     for (int k = 0; k < s->nchild; k++) {
-        const int child = b->child[s->first_child + k];
-        const ct_ex3 slide = ct_ex3_scale(x, b->anchor[child].mass,
+        const int child = b->dynamics.masses.child[s->first_child + k];
+        const ct_ex3 slide = ct_ex3_scale(x, b->dynamics.masses.mass[child],
                                           ct_link_sliding_acceleration(b, child, w->level));
         const ct_ex3 force = ct_ex3_add(x, w->rest[child], slide);
         rest = ct_ex3_add(x, rest, force);
@@ -133,7 +133,7 @@ static ct_ex3 inertia_torque(struct work *w, int c)
     struct ct_exs *x = b->x;
     const ct_ex33 I = ct_cluster_inertia(b, c);
     const ct_ex3 al = ct_cluster_acceleration(b, c, w->level);
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(x, I.e[8], al);
     const ct_ex3 omega = ct_cluster_velocity(b, c);
     return ct_ex3_add(x, ct_ex33_apply(x, &I, al),
@@ -146,9 +146,9 @@ static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    const ct_ex33 *L = &b->cluster[c].L;
+    const ct_ex33 *L = &b->dynamics.masses.inertia[c];
     ct_ex3 omega, al;
-    if (b->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
+    if (b->topology->is_planar || !ct_cluster_own_rates(b, c, w->level, &omega, &al))
         return false;
     *torque = ct_ex3_add(x, ct_ex33_apply(x, L, al),
                          ct_ex3_cross(x, omega, ct_ex33_apply(x, L, omega)));
@@ -158,46 +158,46 @@ static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
 static void sweep_anchors(struct work *w)
 {
     struct ct_build *b = w->b;
-    int *first = CT_NEWN(b->arena, int, b->nanchor),
-        *next = CT_NEWN(b->arena, int, b->naugmented_body + 1);
-    for (size_t i = 0; i < b->naugmented_body;
+    int *first = CT_NEWN(b->arena, int, b->kinematics->nanchor),
+        *next = CT_NEWN(b->arena, int, b->dynamics.masses.naugmented_body + 1);
+    for (size_t i = 0; i < b->dynamics.masses.naugmented_body;
          i++) { // chains end at 0: numbers are one too large
-        next[i] = first[b->augmented_body[i].anchor];
-        first[b->augmented_body[i].anchor] = (int)i + 1;
+        next[i] = first[b->dynamics.masses.augmented_body[i].anchor];
+        first[b->dynamics.masses.augmented_body[i].anchor] = (int)i + 1;
     }
-    for (size_t a = b->nanchor; a-- > 0;)
+    for (size_t a = b->kinematics->nanchor; a-- > 0;)
         for (int i = first[a]; i; i = next[i - 1])
-            sweep_augmented_body(w, &b->augmented_body[i - 1]);
+            sweep_augmented_body(w, &b->dynamics.masses.augmented_body[i - 1]);
 }
 
 const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
 {
-    if (b->sweep[level])
-        return b->sweep[level];
+    if (b->dynamics.sweep[level])
+        return b->dynamics.sweep[level];
     struct work w = {.b = b, .level = level};
     ct_augmented_bodies_lump(b);
     struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
-    w.rest = CT_NEWN(b->arena, ct_ex3, b->nanchor);
-    w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->ncluster);
-    s->local = CT_NEWN(b->arena, ct_ex3, b->ncluster);
-    w.apparent = CT_NEWN(b->arena, ct_ex3, b->nanchor);
-    s->force = CT_NEWN(b->arena, ct_ex3, b->nanchor);
+    w.rest = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
+    w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->kinematics->ncluster);
+    s->local = CT_NEWN(b->arena, ct_ex3, b->kinematics->ncluster);
+    w.apparent = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
+    s->force = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
     s->row = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     find_apparent(&w);
     apply_loads(&w);
     ct_flexible_sweep(b, level, w.apparent, w.rest, w.torque, s->row);
     sweep_anchors(&w);
-    for (size_t c = b->ncluster; c-- > 1;) {
+    for (size_t c = b->kinematics->ncluster; c-- > 1;) {
         if (!local_inertia_torque(&w, (int)c, &s->local[c]))
             w.torque[c] = ct_ex3_add(b->x, w.torque[c], inertia_torque(&w, (int)c));
-        const int parent = b->cluster[c].parent;
+        const int parent = b->kinematics->cluster[c].parent;
         w.torque[parent] = ct_ex3_add(b->x, w.torque[parent], w.torque[c]);
     }
-    for (size_t a = 1; a < b->nanchor; a++) {
-        const ct_ex3 inertia = ct_ex3_scale(b->x, b->anchor[a].mass, w.apparent[a]);
+    for (size_t a = 1; a < b->kinematics->nanchor; a++) {
+        const ct_ex3 inertia = ct_ex3_scale(b->x, b->dynamics.masses.mass[a], w.apparent[a]);
         s->force[a] = ct_ex3_add(b->x, w.rest[a], inertia);
     }
-    b->sweep[level] = s;
+    b->dynamics.sweep[level] = s;
     return s;
 }
 
@@ -208,9 +208,10 @@ static ct_ex add_rotation_axis(struct ct_build *b, const struct ct_sweep *s, ct_
                                size_t r, const struct ct_term *t)
 {
     struct ct_exs *x = b->x;
-    const int c = b->rotation_axis[r].cluster;
-    const ct_ex moment = ct_ex_add(x, ct_ex3_dot(x, b->rotation_axis[r].axis, s->torque[c]),
-                                   ct_ex3_dot(x, b->rotation_axis[r].local, s->local[c]));
+    const int c = b->kinematics->rotation_axis[r].cluster;
+    const ct_ex moment
+        = ct_ex_add(x, ct_ex3_dot(x, b->kinematics->rotation_axis[r].axis, s->torque[c]),
+                    ct_ex3_dot(x, b->kinematics->rotation_axis[r].local, s->local[c]));
     return ct_ex_add(x, sum, ct_ex_mul(x, t->coef, moment));
 }
 
@@ -218,11 +219,11 @@ static ct_ex add_translation_axis(struct ct_build *b, const struct ct_sweep *s, 
                                   size_t a, const struct ct_translation_axis *t)
 {
     struct ct_exs *x = b->x;
-    const ct_ex3 p = ct_cluster_turn(b, b->anchor[a].cluster, t->p);
+    const ct_ex3 p = ct_cluster_turn(b, b->kinematics->anchor[a].cluster, t->p);
     sum = ct_ex_add(x, sum, ct_ex3_dot(x, p, s->force[a]));
     if (ct_ex3_is_zero(t->extra))
         return sum;
-    const ct_ex3 extra = ct_cluster_turn(b, b->anchor[a].cluster, t->extra);
+    const ct_ex3 extra = ct_cluster_turn(b, b->kinematics->anchor[a].cluster, t->extra);
     return ct_ex_add(x, sum, ct_ex3_dot(x, extra, ct_sweep_run(b, CT_BIAS)->force[a]));
 }
 
@@ -232,38 +233,43 @@ static void list_speed_axis(struct ct_build *b, int speed, bool slides, size_t a
     if (speed < 0)
         return;
     const struct ct_speed_axis user = {.is_translation = slides, .at = at, .k = k};
-    CT_PUSH(b->arena, b->speed_axis, b->nspeed_axis, b->speed_axis_cap, user);
-    if (b->first_speed_axis[speed])
-        b->speed_axis[last[speed] - 1].next = b->nspeed_axis;
+    CT_PUSH(b->arena, b->dynamics.speed_axis, b->dynamics.nspeed_axis,
+            b->dynamics.speed_axis_cap, user);
+    if (b->dynamics.first_speed_axis[speed])
+        b->dynamics.speed_axis[last[speed] - 1].next = b->dynamics.nspeed_axis;
     else
-        b->first_speed_axis[speed] = b->nspeed_axis;
-    last[speed] = b->nspeed_axis;
+        b->dynamics.first_speed_axis[speed] = b->dynamics.nspeed_axis;
+    last[speed] = b->dynamics.nspeed_axis;
 }
 
 // What each speed moves, in the order of spins and anchors.
 static void list_speed_axes(struct ct_build *b)
 {
     size_t *last = CT_NEWN(b->ctx->scratch, size_t, b->eqs->nu + 1);
-    b->first_speed_axis = CT_NEWN(b->arena, size_t, b->eqs->nu + 1);
-    for (size_t r = 0; r < b->nrotation_axis; r++)
-        for (int k = 0; k < b->rotation_axis[r].nterm; k++)
-            list_speed_axis(b, b->rotation_axis[r].term[k].speed, false, r, k, last);
-    for (size_t a = 1; a < b->nanchor; a++)
-        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++)
-            list_speed_axis(b, b->anchor[a].translation_axis[k].speed, true, a, k, last);
+    b->dynamics.first_speed_axis = CT_NEWN(b->arena, size_t, b->eqs->nu + 1);
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++)
+        for (int k = 0; k < b->kinematics->rotation_axis[r].nterm; k++)
+            list_speed_axis(b, b->kinematics->rotation_axis[r].term[k].speed, false, r, k,
+                            last);
+    for (size_t a = 1; a < b->kinematics->nanchor; a++)
+        for (int k = 0; k < b->kinematics->anchor[a].ntranslation_axis; k++)
+            list_speed_axis(b, b->kinematics->anchor[a].translation_axis[k].speed, true, a, k,
+                            last);
 }
 
 static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed)
 {
     ct_ex sum = s->row[speed];
-    if (!b->first_speed_axis)
+    if (!b->dynamics.first_speed_axis)
         list_speed_axes(b);
-    for (size_t i = b->first_speed_axis[speed]; i > 0; i = b->speed_axis[i - 1].next) {
-        const struct ct_speed_axis *m = &b->speed_axis[i - 1];
+    for (size_t i = b->dynamics.first_speed_axis[speed]; i > 0;
+         i = b->dynamics.speed_axis[i - 1].next) {
+        const struct ct_speed_axis *m = &b->dynamics.speed_axis[i - 1];
         sum = m->is_translation
                 ? add_translation_axis(b, s, sum, m->at,
-                                       &b->anchor[m->at].translation_axis[m->k])
-                : add_rotation_axis(b, s, sum, m->at, &b->rotation_axis[m->at].term[m->k]);
+                                       &b->kinematics->anchor[m->at].translation_axis[m->k])
+                : add_rotation_axis(b, s, sum, m->at,
+                                    &b->kinematics->rotation_axis[m->at].term[m->k]);
     }
     return sum;
 }
@@ -271,16 +277,17 @@ static ct_ex sweep_row(struct ct_build *b, const struct ct_sweep *s, int speed)
 static ct_ex sweep_driver_row(struct ct_build *b, const struct ct_sweep *s, int driver)
 {
     ct_ex sum = CT_EX_ZERO;
-    for (size_t r = 0; r < b->nrotation_axis; r++)
-        for (int k = 0; k < b->rotation_axis[r].nterm; k++)
-            if (b->rotation_axis[r].term[k].speed == -1
-                && b->rotation_axis[r].term[k].driver == driver)
-                sum = add_rotation_axis(b, s, sum, r, &b->rotation_axis[r].term[k]);
-    for (size_t a = 1; a < b->nanchor; a++)
-        for (int k = 0; k < b->anchor[a].ntranslation_axis; k++)
-            if (b->anchor[a].translation_axis[k].speed == -1
-                && b->anchor[a].translation_axis[k].driver == driver)
-                sum = add_translation_axis(b, s, sum, a, &b->anchor[a].translation_axis[k]);
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++)
+        for (int k = 0; k < b->kinematics->rotation_axis[r].nterm; k++)
+            if (b->kinematics->rotation_axis[r].term[k].speed == -1
+                && b->kinematics->rotation_axis[r].term[k].driver == driver)
+                sum = add_rotation_axis(b, s, sum, r, &b->kinematics->rotation_axis[r].term[k]);
+    for (size_t a = 1; a < b->kinematics->nanchor; a++)
+        for (int k = 0; k < b->kinematics->anchor[a].ntranslation_axis; k++)
+            if (b->kinematics->anchor[a].translation_axis[k].speed == -1
+                && b->kinematics->anchor[a].translation_axis[k].driver == driver)
+                sum = add_translation_axis(b, s, sum, a,
+                                           &b->kinematics->anchor[a].translation_axis[k]);
     return sum;
 }
 
@@ -289,7 +296,7 @@ void ct_forces_derive(struct ct_build *b)
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
     for (size_t k = 0; k < e->nu; k++)
-        e->Q[k] = ct_ex_sub(b->x, b->effort[k], sweep_row(b, s, (int)k));
+        e->Q[k] = ct_ex_sub(b->x, b->dynamics.effort[k], sweep_row(b, s, (int)k));
 }
 
 void ct_dynamics_derive(struct ct_build *b)
@@ -306,8 +313,9 @@ void ct_dynamics_derive(struct ct_build *b)
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
 {
     if (ct_speed_is_state(b->eqs, (size_t)speed))
-        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->effort[speed]);
-    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed), b->effort[speed]);
+        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->dynamics.effort[speed]);
+    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed),
+                     b->dynamics.effort[speed]);
 }
 
 // ---- efforts of joints ------------------------------------------------------------------------------
@@ -322,7 +330,7 @@ static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct
                             ct_ex power)
 {
     const struct ct_coordinate *c = &b->coordinate[coordinate];
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     struct ct_equations *s = b->eqs;
     if (c->u >= 0)
         s->Q[c->u] = ct_ex_add(b->x, s->Q[c->u], effort);
@@ -334,8 +342,8 @@ static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct
     struct ct_wrench w;
     if (ct_coordinate_wrench(b, coordinate, &w))
         ct_load_add(b, &(struct ct_load){.self = e->self,
-                                         .tail = b->wiring[c->edge].tail,
-                                         .head = b->wiring[c->edge].head,
+                                         .tail = b->topology->wiring[c->edge].tail,
+                                         .head = b->topology->wiring[c->edge].head,
                                          .force = ct_ex3_scale(b->x, effort, w.force),
                                          .torque = ct_ex3_scale(b->x, effort, w.torque),
                                          .potential = potential,
@@ -376,14 +384,14 @@ ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
     const struct ct_coordinate *c = &b->coordinate[coordinate];
     if (c->motion_row)
         return b->eqs->row[c->motion_row - 1].lam;
-    const struct effort own = own_effort(b, &b->edge[c->edge], c->index);
+    const struct effort own = own_effort(b, &b->topology->edge[c->edge], c->index);
     ct_ex rest
         = ct_ex_sub(x, sweep_driver_row(b, ct_sweep_run(b, CT_FULL), c->driver), own.total);
-    for (size_t i = 0; i < b->ncoupling; i++)
-        if (b->coupling[i].coordinate == coordinate)
-            rest = ct_ex_sub(
-                x, rest,
-                ct_ex_mul(x, b->coupling[i].factor, b->eqs->row[b->coupling[i].row].lam));
+    for (size_t i = 0; i < b->rows.ncoupling; i++)
+        if (b->rows.coupling[i].coordinate == coordinate)
+            rest = ct_ex_sub(x, rest,
+                             ct_ex_mul(x, b->rows.coupling[i].factor,
+                                       b->eqs->row[b->rows.coupling[i].row].lam));
     return rest;
 }
 
@@ -420,8 +428,8 @@ static void derive_rates(struct ct_build *b)
 bool ct_loads_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         b->signals.holding = e->mark;
         if (e->kind == CT_EDGE_JOINT && e->self->cls->motion)
             for (int k = 0; k < e->self->nfree; k++)
@@ -429,13 +437,13 @@ bool ct_loads_derive(struct ct_build *b)
         if (e->kind == CT_EDGE_FORCE)
             e->self->cls->apply(b, e->self);
     }
-    for (size_t i = 0; i < b->nload; i++) {
-        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->load[i].potential);
-        b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->load[i].power);
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->dynamics.load[i].potential);
+        b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->dynamics.load[i].power);
     }
     derive_rates(b);
-    b->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    b->dynamics.effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
-        b->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
+        b->dynamics.effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
     return b->ctx->nerror == before;
 }

@@ -11,6 +11,7 @@
 // once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/dynamics/composite_sums.h"
+#include "formulate/dynamics/couplings.h"
 #include "formulate/mass_sums.h"
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/kinematics/kinematics.h"
@@ -28,13 +29,14 @@ struct column {
     bool is_local;   // the inertia is the cluster's own and the axis is fixed in it:
     ct_ex3 momentum; // their product in its axes, constant
     ct_ex3 *torque;  // by anchor, of everything outboard
-    bool *has_torque;
+    int *has_torque; // by anchor: `number` where torque is of this column
+    int number;      // columns are numbered from 1
 };
 
 // a x (axis x v): planar: (a . v) along the axis.
 static ct_ex3 double_cross(struct ct_build *b, const struct column *c, ct_ex3 a, ct_ex3 v)
 {
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(b->x, ct_ex3_dot(b->x, a, v), c->axis);
     return ct_ex3_cross(b->x, a, ct_ex3_cross(b->x, c->axis, v));
 }
@@ -43,11 +45,11 @@ static ct_ex3 augmented_body_torque(struct ct_composite_sums *s, const struct co
                                     int star)
 {
     struct ct_build *b = s->b;
-    const struct ct_augmented_body *self = &b->augmented_body[star];
+    const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[star];
     ct_ex3 sum = double_cross(b, c, ct_composite_sums_body_moment(s, star),
                               ct_composite_sums_reach(s, self->anchor, c->cluster));
     for (int k = 0; k < self->nchild; k++) {
-        const int child = b->child[self->first_child + k];
+        const int child = b->dynamics.masses.child[self->first_child + k];
         sum = ct_ex3_add(b->x, sum,
                          double_cross(b, c, ct_composite_sums_link(s, child),
                                       ct_composite_sums_moment_turning(s, child, c->cluster)));
@@ -61,7 +63,7 @@ static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c,
     struct ct_build *b = s->b;
     if (!s->nstar[anchor])
         return zero3;
-    if (c->has_torque[anchor])
+    if (c->has_torque[anchor] == c->number)
         return c->torque[anchor];
     if (ct_composite_sums_turning(s, anchor, c->cluster) != CT_TURNS_SOME)
         return double_cross(b, c, ct_composite_sums_moment(s, anchor),
@@ -69,12 +71,16 @@ static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c,
     ct_ex3 sum = zero3;
     for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
         sum = ct_ex3_add(b->x, sum, augmented_body_torque(s, c, i));
-        for (int k = 0; k < b->augmented_body[i].nchild; k++)
+        for (int k = 0; k < b->dynamics.masses.augmented_body[i].nchild; k++)
             sum = ct_ex3_add(
-                b->x, sum, anchor_torque(s, c, b->child[b->augmented_body[i].first_child + k]));
+                b->x, sum,
+                anchor_torque(
+                    s, c,
+                    b->dynamics.masses
+                        .child[b->dynamics.masses.augmented_body[i].first_child + k]));
     }
     c->torque[anchor] = sum;
-    c->has_torque[anchor] = true;
+    c->has_torque[anchor] = c->number;
     return sum;
 }
 
@@ -89,20 +95,18 @@ static ct_ex3 row_torque(struct ct_composite_sums *s, const struct column *c, in
     if (part == CT_TURNS_ALL)
         return anchor_torque(s, c, anchor);
     ct_ex3 sum = zero3;
-    for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
-        if (ct_composite_sums_turns_with(s, row, b->augmented_body[i].cluster))
-            sum = ct_ex3_add(b->x, sum, augmented_body_torque(s, c, i));
-        for (int k = 0; k < b->augmented_body[i].nchild; k++)
-            sum = ct_ex3_add(
-                b->x, sum,
-                row_torque(s, c, row, b->child[b->augmented_body[i].first_child + k]));
+    for (int i = ct_composite_sums_first_part(s, anchor, row); i >= 0; i = s->part[i].next) {
+        const struct ct_composite_part *t = &s->part[i];
+        sum = ct_ex3_add(b->x, sum,
+                         t->child < 0 ? augmented_body_torque(s, c, t->body)
+                                      : row_torque(s, c, row, t->child));
     }
     return sum;
 }
 
 static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
 {
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return ct_ex3_scale(b->x, c->inertia.e[8], c->axis);
     if (c->is_local)
         return ct_cluster_turn(b, c->cluster, c->momentum);
@@ -140,13 +144,16 @@ static bool is_row_of(const struct ct_build *b, const int *depth, int r, int c)
 }
 
 static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
-                            const struct column *c, const int *depth)
+                            const struct column *c, const int *depth,
+                            const struct ct_couplings *couplings)
 {
     struct ct_build *b = s->b;
-    const struct ct_rotation_axis *self = &b->rotation_axis[r];
+    const struct ct_rotation_axis *self = &b->kinematics->rotation_axis[r];
     const ct_ex3 own = column_inertia_torque(b, c);
-    for (size_t row = 0; row < b->nrotation_axis; row++) {
-        const struct ct_rotation_axis *other = &b->rotation_axis[row];
+    const struct ct_index_list rows = ct_couplings_axes(couplings, c->cluster);
+    for (size_t i = 0; i < rows.n; i++) {
+        const size_t row = (size_t)rows.index[i];
+        const struct ct_rotation_axis *other = &b->kinematics->rotation_axis[row];
         const bool same = other->cluster == c->cluster;
         if ((same && row > r) || !is_row_of(b, depth, other->cluster, c->cluster)
             || !has_unknown(other->term, other->nterm))
@@ -165,8 +172,10 @@ static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
             ct_mass_spread(b, M, self->term, self->nterm, other->term, other->nterm, m);
     }
     // slides carried by the spin, or that carry it: p . (s x (m g + h))
-    for (size_t a = 1; a < b->nanchor; a++) {
-        const struct ct_anchor *anchor = &b->anchor[a];
+    const struct ct_index_list slides = ct_couplings_slides(couplings, c->cluster);
+    for (size_t i = 0; i < slides.n; i++) {
+        const size_t a = (size_t)slides.index[i];
+        const struct ct_anchor *anchor = &b->kinematics->anchor[a];
         for (int k = 0; k < anchor->ntranslation_axis; k++) {
             const struct ct_translation_axis *slide = &anchor->translation_axis[k];
             const struct ct_term along = {slide->speed, slide->driver, CT_EX_ONE};
@@ -174,7 +183,7 @@ static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
                 continue;
             const ct_ex3 g = ct_composite_sums_reach(s, (int)a, c->cluster);
             const ct_ex3 moved
-                = ct_ex3_add(b->x, ct_ex3_scale(b->x, anchor->mass, g),
+                = ct_ex3_add(b->x, ct_ex3_scale(b->x, b->dynamics.masses.mass[a], g),
                              ct_composite_sums_moment_turning(s, (int)a, c->cluster));
             if (ct_ex3_is_zero(moved))
                 continue;
@@ -185,49 +194,61 @@ static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
     }
 }
 
+static void translation_pair(struct ct_build *b, ct_ex *M, size_t i, size_t j)
+{
+    const struct ct_anchor *out = &b->kinematics->anchor[i], *in = &b->kinematics->anchor[j];
+    for (int k = 0; k < out->ntranslation_axis; k++)
+        for (int l = 0; l < (i == j ? k + 1 : in->ntranslation_axis); l++) {
+            if (out->translation_axis[k].speed < 0 || in->translation_axis[l].speed < 0)
+                continue;
+            const bool fixed = out->cluster == in->cluster;
+            const ct_ex3 p = fixed
+                               ? out->translation_axis[k].p
+                               : ct_cluster_turn(b, out->cluster, out->translation_axis[k].p);
+            const ct_ex3 q = fixed ? in->translation_axis[l].p
+                                   : ct_cluster_turn(b, in->cluster, in->translation_axis[l].p);
+            const ct_ex m = ct_ex_mul(b->x, b->dynamics.masses.mass[i], ct_ex3_dot(b->x, p, q));
+            const struct ct_term tp = {out->translation_axis[k].speed, -1, CT_EX_ONE};
+            const struct ct_term tq = {in->translation_axis[l].speed, -1, CT_EX_ONE};
+            if (i == j && k == l)
+                spread_self(b, M, &tp, 1, m);
+            else
+                ct_mass_spread(b, M, &tp, 1, &tq, 1, m);
+        }
+}
+
+// Slides of an anchor and of those inboard of it, from ground outwards.
 static void translation_pairs(struct ct_build *b, ct_ex *M)
 {
-    for (size_t i = 1; i < b->nanchor; i++)
-        for (size_t j = 1; j <= i; j++) {
-            if (!b->anchor[i].ntranslation_axis || !b->anchor[j].ntranslation_axis
-                || !ct_anchor_is_outboard(b, (int)j, (int)i))
-                continue;
-            const struct ct_anchor *out = &b->anchor[i], *in = &b->anchor[j];
-            for (int k = 0; k < out->ntranslation_axis; k++)
-                for (int l = 0; l < (i == j ? k + 1 : in->ntranslation_axis); l++) {
-                    if (out->translation_axis[k].speed < 0 || in->translation_axis[l].speed < 0)
-                        continue;
-                    const bool fixed = out->cluster == in->cluster;
-                    const ct_ex3 p
-                        = fixed ? out->translation_axis[k].p
-                                : ct_cluster_turn(b, out->cluster, out->translation_axis[k].p);
-                    const ct_ex3 q
-                        = fixed ? in->translation_axis[l].p
-                                : ct_cluster_turn(b, in->cluster, in->translation_axis[l].p);
-                    const ct_ex m = ct_ex_mul(b->x, out->mass, ct_ex3_dot(b->x, p, q));
-                    const struct ct_term tp = {out->translation_axis[k].speed, -1, CT_EX_ONE};
-                    const struct ct_term tq = {in->translation_axis[l].speed, -1, CT_EX_ONE};
-                    if (i == j && k == l)
-                        spread_self(b, M, &tp, 1, m);
-                    else
-                        ct_mass_spread(b, M, &tp, 1, &tq, 1, m);
-                }
-        }
+    int *sliding = CT_NEWN(b->arena, int,
+                           b->kinematics->nanchor), // the anchor or the next inboard; 0: none
+        *path = CT_NEWN(b->arena, int, b->kinematics->nanchor);
+    for (size_t i = 1; i < b->kinematics->nanchor; i++) {
+        const bool slides = b->kinematics->anchor[i].ntranslation_axis > 0;
+        sliding[i] = slides ? (int)i : sliding[b->kinematics->anchor[i].parent];
+        size_t n = 0;
+        for (int a = slides ? (int)i : 0; a > 0; a = sliding[b->kinematics->anchor[a].parent])
+            path[n++] = a;
+        while (n-- > 0)
+            translation_pair(b, M, i, (size_t)path[n]);
+    }
 }
 
 // Depth in anchors of the first augmented body that turns with a cluster.
 static int *start_depths(struct ct_composite_sums *s)
 {
     struct ct_build *b = s->b;
-    int *depth = CT_NEWN(b->arena, int, b->ncluster), *of = CT_NEWN(b->arena, int, b->nanchor);
-    for (size_t a = 1; a < b->nanchor; a++)
-        of[a] = of[b->anchor[a].parent] + 1;
-    for (size_t c = 0; c < b->ncluster; c++)
-        depth[c] = (int)b->nanchor;
-    for (size_t i = 0; i < b->naugmented_body; i++)
-        for (int c = b->augmented_body[i].cluster; c > 0; c = b->cluster[c].parent)
-            if (of[b->augmented_body[i].anchor] < depth[c])
-                depth[c] = of[b->augmented_body[i].anchor];
+    int *depth = CT_NEWN(b->arena, int, b->kinematics->ncluster),
+        *of = CT_NEWN(b->arena, int, b->kinematics->nanchor);
+    for (size_t a = 1; a < b->kinematics->nanchor; a++)
+        of[a] = of[b->kinematics->anchor[a].parent] + 1;
+    for (size_t c = 0; c < b->kinematics->ncluster; c++)
+        depth[c] = (int)b->kinematics->nanchor;
+    for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++)
+        for (int c = b->dynamics.masses.augmented_body[i].cluster; c > 0;
+             c = b->kinematics->cluster[c].parent)
+            if (of[b->dynamics.masses.augmented_body[i].anchor] < depth[c])
+                depth[c] = of[b->dynamics.masses.augmented_body[i].anchor];
     return depth;
 }
 
@@ -245,23 +266,28 @@ void ct_mass_matrix_derive(struct ct_build *b)
     struct ct_composite_sums s = ct_composite_sums_create(b);
     ct_ex *M = CT_NEWN(b->arena, ct_ex, e->nu * e->nu + 1);
     const int *depth = start_depths(&s);
-    for (size_t r = 0; r < b->nrotation_axis; r++) {
-        const struct ct_rotation_axis *self = &b->rotation_axis[r];
-        struct column c = {.cluster = self->cluster, .axis = self->axis};
+    const struct ct_couplings *couplings = ct_couplings_find(&s);
+    struct column c = {.torque = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor),
+                       .has_torque = CT_NEWN(b->arena, int, b->kinematics->nanchor)};
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
+        const struct ct_rotation_axis *self = &b->kinematics->rotation_axis[r];
         if (!has_unknown(self->term, self->nterm))
             continue;
+        c.number++;
+        c.cluster = self->cluster;
+        c.axis = self->axis;
         c.inertia = s.descendants[c.cluster];
-        c.torque = CT_NEWN(b->arena, ct_ex3, b->nanchor);
-        c.has_torque = CT_NEWN(b->arena, bool, b->nanchor);
         ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
-        c.is_local = !b->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
+        c.is_local
+            = !b->topology->is_planar && !ct_ex3_is_zero(self->local) && is_zero(&c.inertia);
         if (c.is_local) {
-            c.momentum = ct_ex33_apply(b->x, &b->cluster[c.cluster].L, self->local);
+            c.momentum
+                = ct_ex33_apply(b->x, &b->dynamics.masses.inertia[c.cluster], self->local);
         } else {
             c.inertia = s.inertia[c.cluster];
             ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
         }
-        rotation_column(&s, M, r, &c, depth);
+        rotation_column(&s, M, r, &c, depth, couplings);
     }
     translation_pairs(b, M);
     ct_flexible_mass(b, M);

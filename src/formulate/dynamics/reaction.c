@@ -34,27 +34,27 @@ static ct_ex3 own_force(struct ct_build *b, int node)
     struct ct_exs *x = b->x;
     ct_ex3 sum = zero3;
     for (size_t i = 1; i < b->model->nbody; i++)
-        if (b->node_of_com[i] == node && b->model->body[i].beam) {
+        if (b->topology->node_of_com[i] == node && b->model->body[i].beam) {
             ct_ex3 force, torque;
             ct_flexible_wrench(b, ct_flexible_of(b, (int)i), &force, &torque);
             add(b, &sum, force);
-        } else if (b->node_of_com[i] == node) {
+        } else if (b->topology->node_of_com[i] == node) {
             const ct_ex3 a = ct_node_acceleration(b, node, CT_FULL);
             add(b, &sum,
                 ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
         }
-    for (size_t i = 0; i < b->nload; i++) {
-        if (b->load[i].head == node)
-            take(b, &sum, b->load[i].force);
-        if (b->load[i].tail == node)
-            add(b, &sum, b->load[i].force);
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        if (b->dynamics.load[i].head == node)
+            take(b, &sum, b->dynamics.load[i].force);
+        if (b->dynamics.load[i].tail == node)
+            add(b, &sum, b->dynamics.load[i].force);
     }
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const ct_ex3 f = ct_ex3_scale(x, b->eqs->row[b->multiplier_wrench[i].row].lam,
-                                      b->multiplier_wrench[i].force);
-        if (b->multiplier_wrench[i].head == node)
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const ct_ex3 f = ct_ex3_scale(x, b->eqs->row[b->rows.multiplier_wrench[i].row].lam,
+                                      b->rows.multiplier_wrench[i].force);
+        if (b->rows.multiplier_wrench[i].head == node)
             take(b, &sum, f);
-        if (b->multiplier_wrench[i].tail == node)
+        if (b->rows.multiplier_wrench[i].tail == node)
             add(b, &sum, f);
     }
     return sum;
@@ -70,7 +70,7 @@ static ct_ex3 body_torque(struct ct_build *b, int body, int node)
     }
     const ct_ex *I = b->model->body[body].inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-    const int c = b->placement[node].frame;
+    const int c = b->kinematics->placement[node].frame;
     const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, c));
     const ct_ex3 al = ct_node_unturn(b, node, ct_cluster_acceleration(b, c, CT_FULL));
     const ct_ex3 T = ct_ex3_add(x, ct_ex33_apply(x, &own, al),
@@ -83,10 +83,10 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
     struct ct_exs *x = b->x;
     ct_ex3 sum = zero3;
     for (size_t i = 1; i < b->model->nbody; i++)
-        if (b->node_of_com[i] == node && !b->model->body[i].is_particle)
+        if (b->topology->node_of_com[i] == node && !b->model->body[i].is_particle)
             add(b, &sum, body_torque(b, (int)i, node));
-    for (size_t i = 0; i < b->nload; i++) {
-        const struct ct_load *l = &b->load[i];
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        const struct ct_load *l = &b->dynamics.load[i];
         if (l->head == node)
             take(b, &sum, l->torque);
         if (l->tail == node) {
@@ -95,8 +95,8 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
                 add(b, &sum, pair_moment(b, l->tail, l->head, l->force));
         }
     }
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
         const ct_ex lam = b->eqs->row[p->row].lam;
         const ct_ex3 T = ct_ex3_scale(x, lam, p->torque), F = ct_ex3_scale(x, lam, p->force);
         if (p->head == node)
@@ -125,9 +125,9 @@ static ct_ex3 cut_force(struct ct_build *b, int node)
 // Vector of a translational branch in ground components.
 static ct_ex3 branch_vector(struct ct_build *b, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
-    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
-    return ct_node_turn(b, b->wiring[edge].tail, d);
+    const struct ct_edge_info *e = &b->topology->edge[edge];
+    const ct_ex3 d = ct_edge_motion(b, e)->d;
+    return ct_node_turn(b, b->topology->wiring[edge].tail, d);
 }
 
 // Torque that the branch above a node of T_R must supply.  (5.9)
@@ -137,7 +137,7 @@ static ct_ex3 cut_torque(struct ct_build *b, int node)
     ct_ex3 sum = own_torque(b, node);
     for (int i = 1; i < b->T.nnode; i++) {
         const int child = b->T.order[i], edge = b->T.parent_edge[child];
-        if (b->wiring[edge].tail != node)
+        if (b->topology->wiring[edge].tail != node)
             continue;
         const ct_ex3 d = branch_vector(b, edge);
         if (ct_ex3_is_zero(d))
@@ -158,8 +158,8 @@ static ct_ex3 cut_torque(struct ct_build *b, int node)
 
 static int outboard_node(const struct ct_build *b, const struct ct_tree *t, int edge)
 {
-    const int head = b->wiring[edge].head;
-    return t->parent_edge[head] == edge ? head : b->wiring[edge].tail;
+    const int head = b->topology->wiring[edge].head;
+    return t->parent_edge[head] == edge ? head : b->topology->wiring[edge].tail;
 }
 
 static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
@@ -185,7 +185,7 @@ static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *
 static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
 {
     const double roundoff = 1e-12; // of components of unit vectors
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[node], b->plane[2]);
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[node], b->topology->plane[2]);
     const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
     return is_force ? along < roundoff : along > 1 - roundoff;
 }
@@ -201,30 +201,32 @@ static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
 
 static bool is_chord(const struct ct_build *b, int edge)
 {
-    return !b->T.is_branch[edge] || (b->edge[edge].has_rotation && !b->R.is_branch[edge]);
+    return !b->T.is_branch[edge]
+        || (b->topology->edge[edge].has_rotation && !b->R.is_branch[edge]);
 }
 
 static bool is_link(const struct ct_build *b, size_t edge)
 {
-    const enum ct_edge_kind kind = b->edge[edge].kind;
-    return kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE && !b->edge[edge].never_branch;
+    const enum ct_edge_kind kind = b->topology->edge[edge].kind;
+    return kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE
+        && !b->topology->edge[edge].never_branch;
 }
 
 // Nodes that hang on the head of an edge once it is cut; NULL if its tail is among them: it closes a loop.
 static const bool *hanging_on(const struct ct_build *b, int edge)
 {
-    bool *hangs = CT_NEWN(b->arena, bool, b->nnode), grows = true;
-    hangs[b->wiring[edge].head] = true;
+    bool *hangs = CT_NEWN(b->arena, bool, b->topology->nnode), grows = true;
+    hangs[b->topology->wiring[edge].head] = true;
     while (grows) {
         grows = false;
-        for (size_t e = 0; e < b->nedge; e++) {
-            const int tail = b->wiring[e].tail, head = b->wiring[e].head;
+        for (size_t e = 0; e < b->topology->nedge; e++) {
+            const int tail = b->topology->wiring[e].tail, head = b->topology->wiring[e].head;
             if ((int)e == edge || !is_link(b, e) || hangs[tail] == hangs[head])
                 continue;
             hangs[tail] = hangs[head] = grows = true;
         }
     }
-    return hangs[b->wiring[edge].tail] ? NULL : hangs;
+    return hangs[b->topology->wiring[edge].tail] ? NULL : hangs;
 }
 
 // Do the trees cut off, below branch e of both, all that hangs on it? Chords out of the cut may carry part of it.
@@ -235,14 +237,14 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
     bool *cut[2];
     for (int k = 0; k < 2; k++) {
         const struct ct_tree *t = k ? &b->R : &b->T;
-        cut[k] = CT_NEWN(b->arena, bool, b->nnode);
+        cut[k] = CT_NEWN(b->arena, bool, b->topology->nnode);
         if (t->is_branch[edge])
             mark_outboard(t, edge, cut[k]);
     }
-    for (size_t e = 0; e < b->nedge; e++) {
-        const int tail = b->wiring[e].tail, head = b->wiring[e].head;
+    for (size_t e = 0; e < b->topology->nedge; e++) {
+        const int tail = b->topology->wiring[e].tail, head = b->topology->wiring[e].head;
         const bool is_open
-            = b->edge[e].kind != CT_EDGE_ARM && is_link(b, e) && is_chord(b, (int)e);
+            = b->topology->edge[e].kind != CT_EDGE_ARM && is_link(b, e) && is_chord(b, (int)e);
         // a chord within the cut keeps what it transmits to itself, if both trees cut off both its ends
         if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
             && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
@@ -256,10 +258,10 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
 static void sum_over_side(struct ct_build *b, int edge, const bool *hangs, ct_ex3 *force,
                           ct_ex3 *torque)
 {
-    const int head = b->wiring[edge].head;
+    const int head = b->topology->wiring[edge].head;
     const bool is_inboard = hangs[0]; // ground hangs on the head: take the other side
     *force = *torque = zero3;
-    for (int node = 1; node < (int)b->nnode; node++) {
+    for (int node = 1; node < (int)b->topology->nnode; node++) {
         if (hangs[node] == is_inboard)
             continue;
         const ct_ex3 f = own_force(b, node);
@@ -287,11 +289,11 @@ static void complete(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque
     if (!hangs)
         return;
     sum_over_side(b, edge, hangs, &f, &t);
-    const ct_ex3 n = b->plane[2];
+    const ct_ex3 n = b->topology->plane[2];
     take(b, force, part_along(b, *force, n));
     add(b, force, part_along(b, f, n));
     *torque = part_along(b, *torque, n);
-    if (b->edge[edge].has_rotation) {
+    if (b->topology->edge[edge].has_rotation) {
         add(b, torque, t);
         take(b, torque, part_along(b, t, n));
     }
@@ -300,7 +302,7 @@ static void complete(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque
 void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
 {
     sum_over_trees(b, edge, force, torque);
-    if (b->is_planar && !is_cut_by_trees(b, edge))
+    if (b->topology->is_planar && !is_cut_by_trees(b, edge))
         complete(b, edge, force, torque);
 }
 
@@ -308,20 +310,20 @@ void ct_reaction_of_edge(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *to
 
 void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *torque)
 {
-    const int edge = b->edge_of_joint[joint];
+    const int edge = b->topology->edge_of_joint[joint];
     const bool in_T = b->T.is_branch[edge], in_R = b->R.is_branch[edge];
     ct_reaction_of_edge(b, edge, force, torque);
-    for (size_t i = 0; i < b->nload; i++)
-        if (b->load[i].self == b->edge[edge].self) {
+    for (size_t i = 0; i < b->dynamics.nload; i++)
+        if (b->dynamics.load[i].self == b->topology->edge[edge].self) {
             if (!in_T)
-                add(b, force, b->load[i].force);
+                add(b, force, b->dynamics.load[i].force);
             if (!in_R)
-                add(b, torque, b->load[i].torque);
+                add(b, torque, b->dynamics.load[i].torque);
         }
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
-        if (p->joint != joint || p->head != b->wiring[edge].head
-            || p->tail != b->wiring[edge].tail)
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
+        if (p->joint != joint || p->head != b->topology->wiring[edge].head
+            || p->tail != b->topology->wiring[edge].tail)
             continue; // rows of the weld behind a joint carry its number, too
         const ct_ex lam = b->eqs->row[p->row].lam;
         add(b, force, ct_ex3_scale(b->x, lam, p->force));
@@ -331,13 +333,14 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
 
 bool ct_reaction_is_known(const struct ct_build *b, int joint, bool is_force, int i)
 {
-    const int edge = b->edge_of_joint[joint];
-    return !b->edge[edge].self->cls->motion
+    const int edge = b->topology->edge_of_joint[joint];
+    return !b->topology->edge[edge].self->cls->motion
         || ct_reaction_of_edge_is_known(b, edge, is_force, i);
 }
 
 bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_force, int i)
 {
-    return !b->is_planar || is_of_plane(b, b->wiring[edge].tail, is_force, i)
+    return !b->topology->is_planar
+        || is_of_plane(b, b->topology->wiring[edge].tail, is_force, i)
         || is_cut_by_trees(b, edge) || hanging_on(b, edge);
 }

@@ -30,9 +30,9 @@ static void add_unknown(struct ct_build *b, struct small *s, int q, int u)
 
 static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_mark at)
 {
-    if (b->edge_of_joint[j] < 0)
+    if (b->topology->edge_of_joint[j] < 0)
         return true; // a gear has no coordinate
-    const struct ct_edge_info *e = &b->edge[b->edge_of_joint[j]];
+    const struct ct_edge_info *e = &b->topology->edge[b->topology->edge_of_joint[j]];
     for (int k = 0; k < e->ncoordinate; k++) {
         const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
         if (c->driver >= 0 || (!c->in_translation && !c->in_rotation))

@@ -11,7 +11,7 @@ static void new_offset(struct ct_build *b, bool is_rotation)
 
 ct_ex ct_constraint_offset_subtract(struct ct_build *b, const struct ct_edge_info *e, ct_ex phi)
 {
-    if (!b->has_offsets)
+    if (!b->options->has_offsets)
         return phi;
     new_offset(b, false);
     return ct_ex_sub(b->x, phi, ct_memory_keep(b, e->name, e->index, phi));
@@ -20,7 +20,7 @@ ct_ex ct_constraint_offset_subtract(struct ct_build *b, const struct ct_edge_inf
 void ct_constraint_offset_rotate(struct ct_build *b, const struct ct_edge_info *e, int tail,
                                  int head, ct_ex3 *s, int n)
 {
-    if (!b->has_offsets || !n)
+    if (!b->options->has_offsets || !n)
         return;
     const ct_ex33 A = ct_node_rotation(b, tail), B = ct_node_rotation(b, head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(b->x, &T, &B);

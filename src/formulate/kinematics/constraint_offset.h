@@ -5,7 +5,7 @@
 //     tail --- offset --- head      phi - g = 0;  of rotations  (R_g s | t), R_g turns the tail's axes to the head's
 //
 // Offsets are memories (equations.h): they take their values at the start and keep them until
-// they are set. Without b->has_offsets both functions return their argument.
+// they are set. Without b->options->has_offsets both functions return their argument.
 #ifndef CT_FORMULATE_KINEMATICS_CONSTRAINT_OFFSET_H
 #define CT_FORMULATE_KINEMATICS_CONSTRAINT_OFFSET_H
 

@@ -22,10 +22,10 @@ static void add_term(struct ct_build *b, struct ct_linear *l, int speed, int dri
 // One at a time.
 static struct ct_linear linear_zero(struct ct_build *b)
 {
-    if (!b->coefficient)
-        b->coefficient = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    memset(b->coefficient, 0, (b->eqs->nu + 1) * sizeof *b->coefficient);
-    return (struct ct_linear){b->coefficient, CT_EX_ZERO};
+    if (!b->cache.coefficient)
+        b->cache.coefficient = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    memset(b->cache.coefficient, 0, (b->eqs->nu + 1) * sizeof *b->cache.coefficient);
+    return (struct ct_linear){b->cache.coefficient, CT_EX_ZERO};
 }
 
 // p . (dv_head - dv_tail [- dw_tail x d]) + h . (dw_head - dw_tail) in terms of the speeds.  (4.2)-(4.4)
@@ -33,15 +33,16 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
                          bool carried, struct ct_linear *l)
 {
     struct ct_exs *x = b->x;
-    const int from = b->placement[n.tail].frame, to = b->placement[n.head].frame;
-    if (!b->marked)
-        b->marked = CT_NEWN(b->arena, bool, b->ncluster + 1);
-    ct_path_mark(b, n.tail, n.head, b->marked);
-    for (size_t r = 0; r < b->nrotation_axis; r++) {
-        const struct ct_rotation_axis *s = &b->rotation_axis[r];
+    const int from = b->kinematics->placement[n.tail].frame,
+              to = b->kinematics->placement[n.head].frame;
+    if (!b->cache.marked)
+        b->cache.marked = CT_NEWN(b->arena, bool, b->kinematics->ncluster + 1);
+    ct_path_mark(b, n.tail, n.head, b->cache.marked);
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
+        const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[r];
         ct_ex3 sweep;
         ct_ex v = CT_EX_ZERO;
-        if (!b->marked[s->cluster])
+        if (!b->cache.marked[s->cluster])
             continue;
         if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
             v = ct_ex3_dot(x, w->force, sweep);
@@ -55,14 +56,14 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
             add_term(b, l, s->term[k].speed, s->term[k].driver,
                      ct_ex_mul(x, s->term[k].coef, v));
     }
-    for (size_t a = 1; a < b->nanchor && !ct_ex3_is_zero(w->force); a++) {
-        const int side = b->anchor[a].ntranslation_axis
+    for (size_t a = 1; a < b->kinematics->nanchor && !ct_ex3_is_zero(w->force); a++) {
+        const int side = b->kinematics->anchor[a].ntranslation_axis
                            ? ct_path_translation_side(b, n.tail, n.head, (int)a)
                            : 0;
-        for (int k = 0; side && k < b->anchor[a].ntranslation_axis; k++) {
-            const struct ct_translation_axis *s = &b->anchor[a].translation_axis[k];
-            const ct_ex v
-                = ct_ex3_dot(x, w->force, ct_cluster_turn(b, b->anchor[a].cluster, s->p));
+        for (int k = 0; side && k < b->kinematics->anchor[a].ntranslation_axis; k++) {
+            const struct ct_translation_axis *s = &b->kinematics->anchor[a].translation_axis[k];
+            const ct_ex v = ct_ex3_dot(
+                x, w->force, ct_cluster_turn(b, b->kinematics->anchor[a].cluster, s->p));
             add_term(b, l, s->speed, s->driver, side > 0 ? v : ct_ex_neg(x, v));
         }
     }
@@ -115,14 +116,15 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
         row->lever = ct_path_levers(b, n.tail, n.head, carried, &row->nlever);
     const struct ct_multiplier_wrench p
         = {index, n.tail, n.head, joint, w->force, w->torque, carried};
-    CT_PUSH(b->arena, b->multiplier_wrench, b->nmultiplier_wrench, b->multiplier_wrench_cap, p);
+    CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
+            b->rows.multiplier_wrench_cap, p);
 }
 
 const ct_ex *ct_row_coefficients(struct ct_build *b, int row)
 {
     struct ct_linear l = linear_zero(b);
-    for (size_t i = 0; i < b->nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
         const struct ct_wrench w = {p->force, p->torque};
         if (p->row == row)
             wrench_terms(b, (struct ct_ends){p->tail, p->head}, &w, p->carried, &l);
@@ -170,7 +172,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         const ct_ex f = i ? ct_ex_neg(x, ratio) : CT_EX_ONE;
         if (ct_coordinate_is_known(c)) {
             const struct ct_coupling own = {row, coupled[i], f};
-            CT_PUSH(b->arena, b->coupling, b->ncoupling, b->coupling_cap, own);
+            CT_PUSH(b->arena, b->rows.coupling, b->rows.ncoupling, b->rows.coupling_cap, own);
             continue;
         }
         if (!ct_coordinate_wrench(b, coupled[i], &w))
@@ -178,12 +180,12 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         const struct ct_multiplier_wrench p = {row,
                                                n.tail,
                                                n.head,
-                                               b->edge[c->edge].index,
+                                               b->topology->edge[c->edge].index,
                                                ct_ex3_scale(x, f, w.force),
                                                ct_ex3_scale(x, f, w.torque),
                                                true};
-        CT_PUSH(b->arena, b->multiplier_wrench, b->nmultiplier_wrench, b->multiplier_wrench_cap,
-                p);
+        CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
+                b->rows.multiplier_wrench_cap, p);
     }
 }
 
@@ -195,12 +197,13 @@ static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct 
     struct ct_exs *x = b->x;
     const ct_ex3 d = ct_path_position(b, n.tail, n.head);
     const ct_ex3 a = ct_path_acceleration(b, n.tail, n.head, CT_BIAS);
-    for (int i = 0; i < (b->is_planar ? 2 : 3); i++) {
-        const struct ct_wrench w = {b->plane[i], zero3};
+    for (int i = 0; i < (b->topology->is_planar ? 2 : 3); i++) {
+        const struct ct_wrench w = {b->topology->plane[i], zero3};
         add_row(b, e->index,
                 ct_arena_printf(b->arena, "%s.%s", e->name, ct_plane_axis_name(b, i)), n, &w,
-                false, ct_constraint_offset_subtract(b, e, ct_ex3_dot(x, b->plane[i], d)),
-                ct_ex3_dot(x, b->plane[i], a));
+                false,
+                ct_constraint_offset_subtract(b, e, ct_ex3_dot(x, b->topology->plane[i], d)),
+                ct_ex3_dot(x, b->topology->plane[i], a));
     }
 }
 
@@ -230,21 +233,22 @@ static int slide_directions(struct ct_build *b, const struct ct_edge_info *e, ct
 
 static void translation_rows(struct ct_build *b, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
     ct_ex3 dir[3];
     const int nslide = slide_directions(b, e, dir);
     if (nslide == 0) {
         place_rows(b, e, n);
-    } else if (b->is_planar) {
+    } else if (b->topology->is_planar) {
         if (nslide == 1) {
-            const ct_ex3 p = ct_ex3_cross(b->x, b->plane[2], ct_node_turn(b, n.tail, dir[0]));
+            const ct_ex3 p
+                = ct_ex3_cross(b->x, b->topology->plane[2], ct_node_turn(b, n.tail, dir[0]));
             across_row(b, e, ct_arena_printf(b->arena, "%s.across", e->name), n, p);
         }
     } else {
-        for (int i = 0; i < e->motion.ntrans; i++)
+        for (int i = 0; i < ct_edge_motion(b, e)->ntrans; i++)
             across_row(b, e, ct_arena_printf(b->arena, "%s.across%d", e->name, i + 1), n,
-                       ct_node_turn(b, n.tail, e->motion.trans[i]));
+                       ct_node_turn(b, n.tail, ct_edge_motion(b, e)->trans[i]));
     }
 }
 
@@ -253,33 +257,36 @@ static void translation_rows(struct ct_build *b, int edge)
 static void planar_angle_row(struct ct_build *b, int edge)
 {
     struct ct_exs *x = b->x;
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
-    const struct ct_wrench w = {zero3, b->plane[2]};
-    const ct_ex3 v = ct_ex33_apply_t(x, &b->upright[n.tail], b->plane[0]);
+    const struct ct_wrench w = {zero3, b->topology->plane[2]};
+    const ct_ex3 v = ct_ex33_apply_t(x, &b->topology->upright[n.tail], b->topology->plane[0]);
     // the gap of an angle is not wrapped: it says which way round
     const ct_ex diff = ct_constraint_offset_subtract(
         b, e, ct_ex_sub(x, ct_angle_in_plane(b, n.head, v), ct_angle_in_plane(b, n.tail, v)));
     // wrapped, as one whole turn is as good as none
     const ct_ex phi = ct_ex_fun2(x, CT_OP_ATAN2, ct_ex_fun(x, CT_OP_SIN, diff),
                                  ct_ex_fun(x, CT_OP_COS, diff));
-    const ct_ex3 al = ct_cluster_path_acceleration(b, b->placement[n.tail].frame,
-                                                   b->placement[n.head].frame, CT_BIAS);
+    const ct_ex3 al
+        = ct_cluster_path_acceleration(b, b->kinematics->placement[n.tail].frame,
+                                       b->kinematics->placement[n.head].frame, CT_BIAS);
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.angle", e->name), n, &w, true, phi,
-            ct_ex3_dot(x, b->plane[2], al));
+            ct_ex3_dot(x, b->topology->plane[2], al));
 }
 
 // Pair (s|t): s fixed in the tail's axes, t in the head's; s_local: s there.  (4.4)
 static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
 {
     struct ct_exs *x = b->x;
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
-    const int from = b->placement[n.tail].frame, to = b->placement[n.head].frame;
+    const int from = b->kinematics->placement[n.tail].frame,
+              to = b->kinematics->placement[n.head].frame;
     const ct_ex3 s = ct_node_turn(b, n.tail, s_local);
-    const ct_ex3 t = ct_node_turn(b, n.head, e->motion.rot_to[i]);
+    const ct_ex3 t = ct_node_turn(b, n.head, ct_edge_motion(b, e)->rot_to[i]);
     const struct ct_wrench w = {zero3, ct_ex3_cross(x, t, s)};
-    const ct_ex wanted = ct_ex3_dot(x, e->motion.rot_from[i], e->motion.rot_to[i]);
+    const ct_ex wanted
+        = ct_ex3_dot(x, ct_edge_motion(b, e)->rot_from[i], ct_edge_motion(b, e)->rot_to[i]);
     const ct_ex phi = ct_ex_sub(x, ct_ex3_dot(x, s, t), wanted);
     const ct_ex3 turning
         = ct_ex3_add(x, ct_ex3_cross(x, ct_cluster_cross_velocity(b, to, t), s),
@@ -290,21 +297,22 @@ static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.turn%d", e->name, i + 1), n, &w, true,
             phi, gam);
     // the rows also hold half a turn away: the cosine between like axes tells
-    const ct_ex3 axis = ct_node_turn(b, n.tail, e->motion.rot_to[i]);
-    if (e->motion.nrot > 1)
+    const ct_ex3 axis = ct_node_turn(b, n.tail, ct_edge_motion(b, e)->rot_to[i]);
+    if (ct_edge_motion(b, e)->nrot > 1)
         b->eqs->row[b->eqs->nrow - 1].assembly_sign = ct_ex3_dot(x, axis, t);
 }
 
 static void rotation_rows(struct ct_build *b, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
-    if (!b->is_planar) {
-        ct_ex3 s[COUNT(e->motion.rot_from)];
-        for (int i = 0; i < e->motion.nrot; i++)
-            s[i] = e->motion.rot_from[i];
-        ct_constraint_offset_rotate(b, e, b->wiring[edge].tail, b->wiring[edge].head, s,
-                                    e->motion.nrot);
-        for (int i = 0; i < e->motion.nrot; i++)
+    const struct ct_edge_info *e = &b->topology->edge[edge];
+    if (!b->topology->is_planar) {
+        ct_ex3 s[COUNT(ct_edge_motion(b, e)->rot_from)];
+        for (int i = 0; i < ct_edge_motion(b, e)->nrot; i++)
+            s[i] = ct_edge_motion(b, e)->rot_from[i];
+        ct_constraint_offset_rotate(b, e, b->topology->wiring[edge].tail,
+                                    b->topology->wiring[edge].head, s,
+                                    ct_edge_motion(b, e)->nrot);
+        for (int i = 0; i < ct_edge_motion(b, e)->nrot; i++)
             pair_row(b, edge, i, s[i]);
         return;
     }
@@ -320,7 +328,7 @@ static void driven_row(struct ct_build *b, int coordinate)
 {
     struct ct_exs *x = b->x;
     const struct ct_coordinate *c = &b->coordinate[coordinate];
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     struct ct_wrench w;
     if (!ct_coordinate_wrench(b, coordinate, &w))
@@ -358,8 +366,8 @@ static bool is_open(const struct ct_build *b)
 bool ct_rows_derive(struct ct_build *b)
 {
     b->eqs->is_open = is_open(b);
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         const bool moves
             = e->kind == CT_EDGE_CLOSURE || (e->kind == CT_EDGE_JOINT && e->self->cls->motion);
         if (!moves)

@@ -8,7 +8,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static const struct ct_measure *measure_of(const struct ct_build *b,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &b->edge[c->edge].motion;
+    const struct ct_motion *m = &b->kinematics->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index >= m->quaternion ? m->quaternion : c->index;
     return &m->measure[k];
 }
@@ -54,8 +54,9 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
 static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const ct_ex3 e1 = b->plane[0], s = ct_ex33_apply(x, &b->placement[node].S, v);
-    const ct_ex sine = ct_ex3_dot(x, b->plane[2], ct_ex3_cross(x, e1, s));
+    const ct_ex3 e1 = b->topology->plane[0],
+                 s = ct_ex33_apply(x, &b->kinematics->placement[node].S, v);
+    const ct_ex sine = ct_ex3_dot(x, b->topology->plane[2], ct_ex3_cross(x, e1, s));
     return ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
 }
 
@@ -65,14 +66,14 @@ static bool is_upward(const struct ct_build *b, const ct_ex3 *direction)
     double sum = 0;
     for (int i = 0; i < 3; i++)
         sum += ct_ex_value(b->x, direction->e[i], b->value)
-             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+             * ct_ex_value(b->x, b->topology->plane[2].e[i], b->value);
     return sum > 0;
 }
 
 ct_ex ct_angle_in_plane(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const struct ct_cluster *c = &b->cluster[b->placement[node].frame];
+    const struct ct_cluster *c = &b->kinematics->cluster[b->kinematics->placement[node].frame];
     const ct_ex own = angle_in_frame(b, node, v);
     if (!c->has_angle)
         return own;
@@ -86,7 +87,7 @@ static bool add_angles(struct ct_build *b, const struct ct_measure *m, struct ct
 {
     struct ct_exs *x = b->x;
     const unsigned known = 1u << CT_SYM_PARAM;
-    if (!b->is_planar
+    if (!b->topology->is_planar
         || (ct_ex_kinds(x, angle_in_frame(b, p.tail, m->v))
             | ct_ex_kinds(x, angle_in_frame(b, p.head, m->w)))
                & ~known)
@@ -107,7 +108,7 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const ct_ex along = ct_ex3_dot(x, m->about, m->reversed ? m->w : m->v);
     const ct_ex cosine = ct_ex_sub(x, ct_ex3_dot(x, V, W), ct_ex_mul(x, along, along));
     const ct_ex sine = ct_ex3_dot(x, a, ct_ex3_cross(x, V, W));
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const int joint = e->kind == CT_EDGE_JOINT ? e->index : -1;
     const size_t r = b->eqs->nmemory;
     const ct_ex followed = angle_from(b, c->name, joint, c->index, sine, cosine);
@@ -165,7 +166,8 @@ static void measure_quaternion(struct ct_build *b, const struct ct_coordinate *c
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     const ct_ex33 A = ct_node_rotation(b, p.tail), B = ct_node_rotation(b, p.head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(b->x, &T, &B);
-    const int first = b->edge[c->edge].first_coordinate + b->edge[c->edge].motion.quaternion;
+    const int first = b->topology->edge[c->edge].first_coordinate
+                    + b->kinematics->edge[c->edge].motion.quaternion;
     ct_ex q[4];
     ct_quaternion_follow(b, c->name, &R, q);
     for (int i = 0; i < 4; i++) {
@@ -222,7 +224,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
         break;
     case CT_MEASURE_QUATERNION: {
         ct_ex3 axis = zero3;
-        const int i = c->index - b->edge[c->edge].motion.quaternion;
+        const int i = c->index - b->kinematics->edge[c->edge].motion.quaternion;
         if (i >= 3) // four numbers, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;
@@ -236,7 +238,8 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
 ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3 torque)
 {
     struct ct_exs *x = b->x;
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
+    const int from = b->kinematics->placement[tail].frame,
+              to = b->kinematics->placement[head].frame;
     ct_ex3 v = ct_path_velocity(b, tail, head);
     if (from)
         v = ct_ex3_sub(x, v,
@@ -262,7 +265,7 @@ ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate)
 ct_ex ct_along_acceleration(struct ct_build *b, struct ct_ends n, ct_ex3 p, enum ct_level level)
 {
     struct ct_exs *x = b->x;
-    const int a = b->placement[n.tail].frame;
+    const int a = b->kinematics->placement[n.tail].frame;
     ct_ex3 sum = ct_path_acceleration(b, n.tail, n.head, level);
     if (a) {
         const ct_ex3 d = ct_path_position(b, n.tail, n.head);
@@ -292,7 +295,8 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
     if (m->kind == CT_MEASURE_LENGTH)
         return ct_along_acceleration(b, p, w.force, level);
     // h . al_rel + h' . w_rel, h = parts fixed in the tail's and in the head's axes
-    const int from = b->placement[p.tail].frame, to = b->placement[p.head].frame;
+    const int from = b->kinematics->placement[p.tail].frame,
+              to = b->kinematics->placement[p.head].frame;
     ct_ex3 turning = ct_cluster_cross_velocity(b, to, w.torque);
     if (m->kind == CT_MEASURE_ANGLE)
         turning = ct_ex3_add(

@@ -10,7 +10,7 @@ struct ct_ends {
 
 static inline struct ct_ends ct_edge_ends(const struct ct_build *b, int edge)
 {
-    return (struct ct_ends){b->wiring[edge].tail, b->wiring[edge].head};
+    return (struct ct_ends){b->topology->wiring[edge].tail, b->topology->wiring[edge].head};
 }
 
 /// Unit wrench on the head, the opposite on the tail, both along the line through the head (carried) or each at

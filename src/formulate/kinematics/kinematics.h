@@ -11,12 +11,12 @@
 enum ct_level { CT_BIAS, CT_FULL };
 
 /// Unknowns and drivers of the chosen trees; then clusters and spins, anchors and places.
-bool ct_unknowns_choose(struct ct_build *b);
-void ct_rotation_derive(struct ct_build *b);
-void ct_translation_derive(struct ct_build *b);
+void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics);
+void ct_rotation_derive(struct ct_build *b, struct ct_kinematics *kinematics);
+void ct_translation_derive(struct ct_build *b, struct ct_kinematics *kinematics);
 /// Slides and turns of the sections of beams anew, for other elastic coordinates at the same places.
-void ct_translation_slide_sections(struct ct_build *b);
-void ct_rotation_turn_sections(struct ct_build *b);
+void ct_translation_slide_sections(struct ct_build *b, struct ct_kinematics *kinematics);
+void ct_rotation_turn_sections(struct ct_build *b, struct ct_kinematics *kinematics);
 
 /// d/dt of an expression of coordinates and time: coordinates change at their speeds; speeds are held.
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e);

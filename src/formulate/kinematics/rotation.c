@@ -56,7 +56,8 @@ static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
         q[1 + i].rate = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
 }
 
-static void choose_quaternion(struct ct_build *b, struct ct_edge_info *e, int k, int speed)
+static void choose_quaternion(struct ct_build *b, const struct ct_edge_info *e, int k,
+                              int speed)
 {
     ct_ex w[3];
     const int first = (int)b->eqs->nq;
@@ -84,7 +85,7 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     d.mark = b->signals.holding = motion->at[c->index];
     d.value = ct_switch_hold(b, motion->e[c->index]);
-    if (!b->drivers_are_held) {
+    if (!b->options->drivers_are_held) {
         d.rate = ct_build_rate(b, d.value);
         d.acceleration = ct_build_rate(b, d.rate);
     }
@@ -106,29 +107,31 @@ static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
 }
 
 // An arm of a beam: where its section is, and how that depends on the elastic coordinates.
-static void find_station(struct ct_build *b, struct ct_edge_info *e)
+static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
+                         const struct ct_edge_info *e)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    struct ct_edge_kinematics *k = &kinematics->edge[e - b->topology->edge];
     struct ct_station *s = CT_NEW(b->arena, struct ct_station);
     ct_flexible_station(b, f, e->along, f->kinematics, s);
-    e->translation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
-    e->rotation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
-    ct_station_partials(b, f, s, e->translation, e->rotation);
-    e->station = s;
+    k->translation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    k->rotation = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+    ct_station_partials(b, f, s, k->translation, k->rotation);
+    k->station = s;
     if (f->kinematics != f->axial) {
         struct ct_station forces;
-        e->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
+        k->foreshortened = CT_NEWN(b->arena, ct_ex3, f->nelastic + 1);
         ct_flexible_station(b, f, e->along, f->axial, &forces);
-        ct_station_partials(b, f, &forces, e->foreshortened,
+        ct_station_partials(b, f, &forces, k->foreshortened,
                             CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
     }
-    e->at = s->position;
+    k->motion.d = s->position;
     struct ct_section_turn turn[4];
     const int n = ct_section_turns(s->angle, turn);
     for (int i = 0; i < n; i++) {
         double axis[3] = {0};
         axis[turn[i].axis] = 1;
-        ct_motion_add_rotation(&e->motion, ct_ex3_const(b->x, axis),
+        ct_motion_add_rotation(&k->motion, ct_ex3_const(b->x, axis),
                                ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
     }
 }
@@ -149,10 +152,11 @@ static void add_state(struct ct_build *b, const char *name)
     s->nstate++;
 }
 
-bool ct_unknowns_choose(struct ct_build *b)
+void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    for (size_t i = 0; i < b->nedge; i++) {
-        struct ct_edge_info *e = &b->edge[i];
+    kinematics->edge = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         for (int k = 0; k < e->ncoordinate; k++) {
             struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
             if (!is_branch_coordinate(b, c))
@@ -170,37 +174,45 @@ bool ct_unknowns_choose(struct ct_build *b)
         for (int k = 0; k < e->ncoordinate; k++)
             m.coord[k] = b->coordinate[e->first_coordinate + k].value;
         ct_linear_graph_edge_motion(b, e, &m);
-        e->motion = m;
+        kinematics->edge[i].motion = m;
     }
     for (size_t i = 0; i < b->nflexible; i++)
         ct_flexible_unknowns(b, &b->flexible[i]);
-    for (size_t i = 0; i < b->nedge; i++)
-        if (b->edge[i].flexible)
-            find_station(b, &b->edge[i]);
+    for (size_t i = 0; i < b->topology->nedge; i++)
+        if (b->topology->edge[i].beam >= 0)
+            find_station(b, kinematics, &b->topology->edge[i]);
     b->eqs->nmotion = b->eqs->nu;
     for (size_t i = 0; i < b->model->nstate; i++)
         add_state(b, b->model->state[i].name);
-    return true;
 }
 
 // ---- rates ----------------------------------------------------------------------------------------
 
+static bool is_moving(const struct ct_exs *x, ct_ex e, unsigned moving)
+{
+    const struct ct_sym *sym = ct_ex_symbol(x, e);
+    return sym && (moving & 1u << sym->kind);
+}
+
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
 {
     const struct ct_equations *s = b->eqs;
-    const unsigned moving = 1u << CT_SYM_Q | (b->drivers_are_held ? 0 : 1u << CT_SYM_TIME);
+    const unsigned moving
+        = 1u << CT_SYM_Q | (b->options->drivers_are_held ? 0 : 1u << CT_SYM_TIME);
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
     // only the symbols below e matter; joints have few
-    ct_ex *from = CT_NEWN(b->arena, ct_ex, s->nq + 1),
-          *to = CT_NEWN(b->arena, ct_ex, s->nq + 1);
-    size_t n = 0;
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
+    size_t n = 0;
+    for (size_t i = 0; i < nwalk; i++)
+        n += is_moving(b->x, (ct_ex){b->x->stack[i]}, moving);
+    ct_ex *from = CT_NEWN(b->arena, ct_ex, n + 1), *to = CT_NEWN(b->arena, ct_ex, n + 1);
+    n = 0;
     for (size_t i = 0; i < nwalk; i++) {
         const ct_ex leaf = {b->x->stack[i]};
-        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
-        if (!sym || !(moving & 1u << sym->kind))
+        if (!is_moving(b->x, leaf, moving))
             continue;
+        const struct ct_sym *sym = ct_ex_symbol(b->x, leaf);
         from[n] = leaf;
         to[n++] = sym->kind == CT_SYM_TIME ? CT_EX_ONE : s->q[sym->index].rate;
     }
@@ -216,12 +228,13 @@ ct_ex3 ct_build_rate3(struct ct_build *b, ct_ex3 e)
 
 // ---- clusters -------------------------------------------------------------------------------------
 
-static int add_cluster(struct ct_build *b, int parent, int nspin)
+static int add_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
+                       int nspin)
 {
     const struct ct_cluster c
-        = {.parent = parent, .first_axis = (int)b->nrotation_axis, .naxis = nspin};
-    CT_PUSH(b->arena, b->cluster, b->ncluster, b->cluster_cap, c);
-    return (int)b->ncluster - 1;
+        = {.parent = parent, .first_axis = (int)kinematics->nrotation_axis, .naxis = nspin};
+    CT_PUSH(b->arena, kinematics->cluster, kinematics->ncluster, kinematics->cluster_cap, c);
+    return (int)kinematics->ncluster - 1;
 }
 
 static bool same3(ct_ex3 a, ct_ex3 b)
@@ -233,7 +246,8 @@ static bool same3(ct_ex3 a, ct_ex3 b)
 ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex trial, int k)
 {
     const ct_ex c = ct_ex_diff(b->x, trial, e->trial.coord[k]);
-    return ct_ex_subst(b->x, c, e->trial.coord, e->motion.coord, (size_t)e->ncoordinate);
+    return ct_ex_subst(b->x, c, e->trial.coord, ct_edge_motion(b, e)->coord,
+                       (size_t)e->ncoordinate);
 }
 
 static void add_term(struct ct_build *b, struct ct_rotation_axis *s, int speed, int driver,
@@ -248,35 +262,38 @@ static void add_term(struct ct_build *b, struct ct_rotation_axis *s, int speed, 
 static void section_terms(struct ct_build *b, const struct ct_edge_info *e, int i, int sign,
                           struct ct_rotation_axis *s)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_edge_kinematics *kin = ct_edge_kinematics(b, e);
     struct ct_section_turn turn[4];
-    ct_section_turns(e->station->angle, turn);
+    ct_section_turns(kin->station->angle, turn);
     s->term = CT_NEWN(b->arena, struct ct_term, f->nelastic + 1);
     for (int k = 0; k < f->nelastic; k++)
         add_term(b, s, f->elastic[k].u, -1, sign,
-                 ct_ex_scale(b->x, turn[i].share, e->rotation[k].e[turn[i].axis]));
+                 ct_ex_scale(b->x, turn[i].share, kin->rotation[k].e[turn[i].axis]));
 }
 
-void ct_rotation_turn_sections(struct ct_build *b)
+void ct_rotation_turn_sections(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    for (size_t i = 0; i < b->nrotation_axis; i++) {
-        struct ct_rotation_axis *s = &b->rotation_axis[i];
+    for (size_t i = 0; i < kinematics->nrotation_axis; i++) {
+        struct ct_rotation_axis *s = &kinematics->rotation_axis[i];
         s->nterm = s->section ? 0 : s->nterm;
         if (s->section)
-            section_terms(b, &b->edge[s->section - 1], s->turn, s->sign, s);
+            section_terms(b, &b->topology->edge[s->section - 1], s->turn, s->sign, s);
     }
 }
 
 // Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
 // are sign * d angle / d q_k.
-static void add_rotation_axis(struct ct_build *b, int cluster, const struct ct_edge_info *e,
-                              int i, int sign, ct_ex3 local, ct_ex angle)
+static void add_rotation_axis(struct ct_build *b, struct ct_kinematics *kinematics, int cluster,
+                              const struct ct_edge_info *e, int i, int sign, ct_ex3 local,
+                              ct_ex angle)
 {
     // fixed in the axes it starts from and in those it leads to
     struct ct_rotation_axis s
-        = {.cluster = cluster, .axis = ct_cluster_turn(b, b->cluster[cluster].base, local)};
-    if (e->flexible) {
-        s.section = (int)(e - b->edge) + 1;
+        = {.cluster = cluster,
+           .axis = ct_cluster_turn(b, kinematics->cluster[cluster].base, local)};
+    if (e->beam >= 0) {
+        s.section = (int)(e - b->topology->edge) + 1;
         s.turn = i;
         s.sign = sign;
         section_terms(b, e, i, sign, &s);
@@ -291,20 +308,21 @@ static void add_rotation_axis(struct ct_build *b, int cluster, const struct ct_e
     s.local = local;
     s.rate = ct_build_rate(b, angle);
     s.bias = ct_build_rate(b, s.rate);
-    CT_PUSH(b->arena, b->rotation_axis, b->nrotation_axis, b->rotation_axis_cap, s);
+    CT_PUSH(b->arena, kinematics->rotation_axis, kinematics->nrotation_axis,
+            kinematics->rotation_axis_cap, s);
 }
 
 // Cluster turned about a local axis of `parent`; parallel axes accumulate.
-static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_info *e, int i,
-                        int sign, ct_ex3 axis)
+static int turn_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
+                        const struct ct_edge_info *e, int i, int sign, ct_ex3 axis)
 {
     struct ct_exs *x = b->x;
-    ct_ex angle = e->motion.turn[i].angle;
+    ct_ex angle = ct_edge_motion(b, e)->turn[i].angle;
     if (sign < 0)
         angle = ct_ex_neg(x, angle);
-    const int c = add_cluster(b, parent, 1);
-    struct ct_cluster *self = &b->cluster[c];
-    const struct ct_cluster *p = &b->cluster[parent];
+    const int c = add_cluster(b, kinematics, parent, 1);
+    struct ct_cluster *self = &kinematics->cluster[c];
+    const struct ct_cluster *p = &kinematics->cluster[parent];
     const ct_ex3 opposite = ct_ex3_neg(x, axis);
     self->has_angle = true;
     self->own_angle = angle;
@@ -318,10 +336,10 @@ static int turn_cluster(struct ct_build *b, int parent, const struct ct_edge_inf
         self->axis = axis;
         self->angle = angle;
     }
-    const ct_ex33 *B = &b->cluster[self->base].R;
+    const ct_ex33 *B = &kinematics->cluster[self->base].R;
     const ct_ex33 A = ct_ex33_axis_angle(x, self->axis, self->angle);
     self->R = ct_ex33_mul(x, B, &A);
-    add_rotation_axis(b, c, e, i, sign, axis, angle);
+    add_rotation_axis(b, kinematics, c, e, i, sign, axis, angle);
     return c;
 }
 
@@ -346,18 +364,18 @@ static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
 }
 
 // Cluster of a 3-dof rotation. The node of the axes of `to` is the child (sign +1) or the parent.
-static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
-                              const struct ct_edge_info *e, int sign)
+static int quaternion_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
+                              const ct_ex33 *S, const struct ct_edge_info *e, int sign)
 {
     struct ct_exs *x = b->x;
-    const int c = add_cluster(b, parent, 3);
-    const ct_ex33 P = ct_ex33_mul(x, &b->cluster[parent].R, S);
-    const int k = e->motion.quaternion;
-    const ct_ex33 forward = quaternion_matrix(x, &e->motion.coord[k]);
+    const int c = add_cluster(b, kinematics, parent, 3);
+    const ct_ex33 P = ct_ex33_mul(x, &kinematics->cluster[parent].R, S);
+    const int k = ct_edge_motion(b, e)->quaternion;
+    const ct_ex33 forward = quaternion_matrix(x, &ct_edge_motion(b, e)->coord[k]);
     const ct_ex33 A = sign > 0 ? forward : ct_ex33_transpose(&forward);
-    b->cluster[c].R = ct_ex33_mul(x, &P, &A);
-    b->cluster[c].S = ct_ex33_mul(x, S, &A);
-    const ct_ex33 *to = sign > 0 ? &b->cluster[c].R : &P;
+    kinematics->cluster[c].R = ct_ex33_mul(x, &P, &A);
+    kinematics->cluster[c].S = ct_ex33_mul(x, S, &A);
+    const ct_ex33 *to = sign > 0 ? &kinematics->cluster[c].R : &P;
     for (int i = 0; i < 3; i++) {
         const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
         struct ct_rotation_axis s = {.cluster = c, .nterm = 1};
@@ -369,17 +387,18 @@ static int quaternion_cluster(struct ct_build *b, int parent, const ct_ex33 *S,
         s.term = CT_NEW(b->arena, struct ct_term);
         s.term[0] = (struct ct_term){coordinate->u, -1, CT_EX_ONE};
         s.rate = b->eqs->u[coordinate->u].symbol;
-        CT_PUSH(b->arena, b->rotation_axis, b->nrotation_axis, b->rotation_axis_cap, s);
+        CT_PUSH(b->arena, kinematics->rotation_axis, kinematics->nrotation_axis,
+                kinematics->rotation_axis_cap, s);
     }
     return c;
 }
 
 // Axes of a node from those of its parent in the rotational tree.
-static void place_axes(struct ct_build *b, int node)
+static void place_axes(struct ct_build *b, struct ct_kinematics *kinematics, int node)
 {
-    const struct ct_edge_info *e = &b->edge[b->R.parent_edge[node]];
-    const struct ct_node_placement *p = &b->placement[b->R.parent[node]];
-    struct ct_node_placement *self = &b->placement[node];
+    const struct ct_edge_info *e = &b->topology->edge[b->R.parent_edge[node]];
+    const struct ct_node_placement *p = &kinematics->placement[b->R.parent[node]];
+    struct ct_node_placement *self = &kinematics->placement[node];
     const int sign = b->R.sign[node];
     self->frame = p->frame;
     ct_ex33 S = p->S; // of the axes that turns are about
@@ -388,33 +407,36 @@ static void place_axes(struct ct_build *b, int node)
         S = ct_ex33_mul(b->x, &p->S, &own);
     }
     self->S = S;
-    for (int i = 0; i < e->motion.nturn; i++) {
-        const int k = sign > 0 ? i : e->motion.nturn - 1 - i; // backwards from `to` to `from`
-        const ct_ex3 axis = ct_ex33_apply(b->x, sign > 0 ? &p->S : &S, e->motion.turn[k].axis);
-        self->frame = turn_cluster(b, self->frame, e, k, sign, axis);
+    for (int i = 0; i < ct_edge_motion(b, e)->nturn; i++) {
+        const int k = sign > 0
+                        ? i
+                        : ct_edge_motion(b, e)->nturn - 1 - i; // backwards from `to` to `from`
+        const ct_ex3 axis
+            = ct_ex33_apply(b->x, sign > 0 ? &p->S : &S, ct_edge_motion(b, e)->turn[k].axis);
+        self->frame = turn_cluster(b, kinematics, self->frame, e, k, sign, axis);
     }
     if (e->kind == CT_EDGE_ARM)
         return;
     if (e->kind == CT_EDGE_BODY) // from ground outwards always
         self->S = e->S;
-    if (e->motion.quaternion >= 0) {
-        self->frame = quaternion_cluster(b, self->frame, &p->S, e, sign);
+    if (ct_edge_motion(b, e)->quaternion >= 0) {
+        self->frame = quaternion_cluster(b, kinematics, self->frame, &p->S, e, sign);
         self->S = ct_ex33_identity();
     }
 }
 
 // Preorder intervals; children are found by scanning, parents come first.
-static void number_clusters(struct ct_build *b)
+static void number_clusters(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    int *size = CT_NEWN(b->arena, int, b->ncluster),
-        *next = CT_NEWN(b->arena, int, b->ncluster);
-    for (size_t c = b->ncluster; c-- > 1;)
-        size[b->cluster[c].parent] += ++size[c];
-    b->cluster[0].enter = 0;
-    b->cluster[0].leave = size[0];
+    int *size = CT_NEWN(b->arena, int, kinematics->ncluster),
+        *next = CT_NEWN(b->arena, int, kinematics->ncluster);
+    for (size_t c = kinematics->ncluster; c-- > 1;)
+        size[kinematics->cluster[c].parent] += ++size[c];
+    kinematics->cluster[0].enter = 0;
+    kinematics->cluster[0].leave = size[0];
     next[0] = 1;
-    for (size_t c = 1; c < b->ncluster; c++) {
-        struct ct_cluster *self = &b->cluster[c];
+    for (size_t c = 1; c < kinematics->ncluster; c++) {
+        struct ct_cluster *self = &kinematics->cluster[c];
         self->enter = next[self->parent];
         self->leave = self->enter + size[c] - 1;
         next[self->parent] += size[c];
@@ -424,30 +446,32 @@ static void number_clusters(struct ct_build *b)
 
 static ct_ex3 relative_velocity(struct ct_build *b, int c)
 {
-    const struct ct_cluster *self = &b->cluster[c];
+    const struct ct_cluster *self = &b->kinematics->cluster[c];
     ct_ex3 w = {{{0}, {0}, {0}}};
     for (int i = 0; i < self->naxis; i++) {
-        const struct ct_rotation_axis *s = &b->rotation_axis[self->first_axis + i];
+        const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[self->first_axis + i];
         w = ct_ex3_add(b->x, w, ct_ex3_scale(b->x, s->rate, s->axis));
     }
     return w;
 }
 
-void ct_rotation_derive(struct ct_build *b)
+void ct_rotation_derive(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    b->placement = CT_NEWN(b->arena, struct ct_node_placement, b->nnode);
-    add_cluster(b, -1, 0);
-    b->cluster[0].R = ct_ex33_identity();
-    b->placement[0].S = ct_ex33_identity();
-    for (size_t i = 1; i < b->nnode; i++)
-        place_axes(b, b->R.order[i]);
-    number_clusters(b);
-    for (size_t c = 1; c < b->ncluster; c++) {
-        struct ct_cluster *self = &b->cluster[c];
-        self->w = ct_ex3_add(b->x, b->cluster[self->parent].w, relative_velocity(b, (int)c));
-        if (b->is_planar) { // one spin, its axis is the normal or its opposite
-            const struct ct_rotation_axis *s = &b->rotation_axis[self->first_axis];
-            const ct_ex inner = b->cluster[self->parent].omega;
+    kinematics->placement = CT_NEWN(b->arena, struct ct_node_placement, b->topology->nnode);
+    add_cluster(b, kinematics, -1, 0);
+    kinematics->cluster[0].R = ct_ex33_identity();
+    kinematics->placement[0].S = ct_ex33_identity();
+    for (size_t i = 1; i < b->topology->nnode; i++)
+        place_axes(b, kinematics, b->R.order[i]);
+    number_clusters(b, kinematics);
+    b->cache.cluster = CT_NEWN(b->arena, struct ct_cluster_cache, kinematics->ncluster);
+    for (size_t c = 1; c < kinematics->ncluster; c++) {
+        struct ct_cluster *self = &kinematics->cluster[c];
+        self->w = ct_ex3_add(b->x, kinematics->cluster[self->parent].w,
+                             relative_velocity(b, (int)c));
+        if (b->topology->is_planar) { // one spin, its axis is the normal or its opposite
+            const struct ct_rotation_axis *s = &kinematics->rotation_axis[self->first_axis];
+            const ct_ex inner = kinematics->cluster[self->parent].omega;
             self->omega = ct_rotation_axis_is_positive(b, (size_t)self->first_axis)
                             ? ct_ex_add(b->x, inner, s->rate)
                             : ct_ex_sub(b->x, inner, s->rate);
@@ -459,14 +483,14 @@ bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r)
 {
     double sum = 0;
     for (int i = 0; i < 3; i++)
-        sum += ct_ex_value(b->x, b->rotation_axis[r].axis.e[i], b->value)
-             * ct_ex_value(b->x, b->plane[2].e[i], b->value);
+        sum += ct_ex_value(b->x, b->kinematics->rotation_axis[r].axis.e[i], b->value)
+             * ct_ex_value(b->x, b->topology->plane[2].e[i], b->value);
     return sum > 0;
 }
 
 ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c)
 {
-    return b->cluster[c].w;
+    return b->kinematics->cluster[c].w;
 }
 
 // bias + coef u': the derivative of a turn's rate.
@@ -484,12 +508,12 @@ static ct_ex axis_acceleration(struct ct_build *b, const struct ct_rotation_axis
 
 bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level level, ct_ex3 *w, ct_ex3 *al)
 {
-    const struct ct_cluster *self = &b->cluster[c];
+    const struct ct_cluster *self = &b->kinematics->cluster[c];
     *w = *al = (ct_ex3){{{0}, {0}, {0}}};
     if (c && self->parent != 0)
         return false;
     for (int i = 0; i < self->naxis; i++) {
-        const struct ct_rotation_axis *s = &b->rotation_axis[self->first_axis + i];
+        const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[self->first_axis + i];
         if (ct_ex3_is_zero(s->local))
             return false;
         const ct_ex rate = axis_acceleration(b, s, level);
@@ -503,25 +527,26 @@ bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level level, ct_ex3
 // of a quaternion in one of them; the formula is the same.  (4.1), (1.8)
 static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level level)
 {
-    const struct ct_cluster *self = &b->cluster[c];
+    const struct ct_cluster *self = &b->kinematics->cluster[c];
     struct ct_exs *x = b->x;
     ct_ex3 w = {{{0}, {0}, {0}}}, al = w;
     for (int i = 0; i < self->naxis; i++) {
-        const struct ct_rotation_axis *s = &b->rotation_axis[self->first_axis + i];
+        const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[self->first_axis + i];
         const ct_ex rate = axis_acceleration(b, s, level);
         al = ct_ex3_add(x, al, ct_ex3_scale(x, rate, s->axis));
         w = ct_ex3_add(x, w, ct_ex3_scale(x, s->rate, s->axis));
     }
-    if (b->is_planar)
+    if (b->topology->is_planar)
         return al; // all axes are parallel
-    return ct_ex3_add(x, al, ct_ex3_cross(x, b->cluster[self->parent].w, w));
+    return ct_ex3_add(x, al, ct_ex3_cross(x, b->kinematics->cluster[self->parent].w, w));
 }
 
 ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level level)
 {
-    struct ct_cluster *self = &b->cluster[c];
+    struct ct_cluster_cache *self = &b->cache.cluster[c];
     if (c && !self->has_al[level]) {
-        self->al[level] = ct_ex3_add(b->x, ct_cluster_acceleration(b, self->parent, level),
+        const int parent = b->kinematics->cluster[c].parent;
+        self->al[level] = ct_ex3_add(b->x, ct_cluster_acceleration(b, parent, level),
                                      relative_acceleration(b, c, level));
         self->has_al[level] = true;
     }
@@ -532,17 +557,17 @@ ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to)
 {
     ct_ex3 sum = {{{0}, {0}, {0}}};
     int n = 0;
-    for (int c = to; c > 0 && n <= CT_LONG_PATH; c = b->cluster[c].parent)
+    for (int c = to; c > 0 && n <= CT_LONG_PATH; c = b->kinematics->cluster[c].parent)
         n++;
     if (from == 0 && n > CT_LONG_PATH)
         return ct_cluster_velocity(b, to);
     while (from != to) // numbers grow outwards: the larger one steps inwards
         if (to > from) {
             sum = ct_ex3_add(b->x, sum, relative_velocity(b, to));
-            to = b->cluster[to].parent;
+            to = b->kinematics->cluster[to].parent;
         } else {
             sum = ct_ex3_sub(b->x, sum, relative_velocity(b, from));
-            from = b->cluster[from].parent;
+            from = b->kinematics->cluster[from].parent;
         }
     return sum;
 }
@@ -553,39 +578,39 @@ ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum c
     while (from != to)
         if (to > from) {
             sum = ct_ex3_add(b->x, sum, relative_acceleration(b, to, level));
-            to = b->cluster[to].parent;
+            to = b->kinematics->cluster[to].parent;
         } else {
             sum = ct_ex3_sub(b->x, sum, relative_acceleration(b, from, level));
-            from = b->cluster[from].parent;
+            from = b->kinematics->cluster[from].parent;
         }
     return sum;
 }
 
 ct_ex33 ct_cluster_relative(struct ct_build *b, int c)
 {
-    const struct ct_cluster *self = &b->cluster[c];
-    return self->has_angle ? ct_ex33_axis_angle(b->x, b->rotation_axis[self->first_axis].local,
-                                                self->own_angle)
+    const struct ct_cluster *self = &b->kinematics->cluster[c];
+    return self->has_angle ? ct_ex33_axis_angle(
+               b->x, b->kinematics->rotation_axis[self->first_axis].local, self->own_angle)
                            : self->S;
 }
 
 ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local)
 {
-    return ct_ex33_apply(b->x, &b->cluster[c].R, local);
+    return ct_ex33_apply(b->x, &b->kinematics->cluster[c].R, local);
 }
 
 ct_ex3 ct_cluster_cross_velocity(struct ct_build *b, int c, ct_ex3 v)
 {
-    return ct_ex3_cross(b->x, b->cluster[c].w, v);
+    return ct_ex3_cross(b->x, b->kinematics->cluster[c].w, v);
 }
 
 ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
-    const ct_ex3 w = b->cluster[c].w;
-    if (!b->is_planar)
+    const ct_ex3 w = b->kinematics->cluster[c].w;
+    if (!b->topology->is_planar)
         return ct_ex3_cross(x, w, ct_ex3_cross(x, w, v));
-    const ct_ex omega = b->cluster[c].omega;
+    const ct_ex omega = b->kinematics->cluster[c].omega;
     return ct_ex3_neg(x, ct_ex3_scale(x, ct_ex_mul(x, omega, omega), ct_build_in_plane(b, v)));
 }
 
@@ -593,18 +618,19 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
 
 ct_ex33 ct_node_rotation(struct ct_build *b, int node)
 {
-    const struct ct_node_placement *p = &b->placement[node];
-    return ct_ex33_mul(b->x, &b->cluster[p->frame].R, &p->S);
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
+    return ct_ex33_mul(b->x, &b->kinematics->cluster[p->frame].R, &p->S);
 }
 
 ct_ex3 ct_node_turn(struct ct_build *b, int node, ct_ex3 v)
 {
-    const struct ct_node_placement *p = &b->placement[node];
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
     return ct_cluster_turn(b, p->frame, ct_ex33_apply(b->x, &p->S, v));
 }
 
 ct_ex3 ct_node_unturn(struct ct_build *b, int node, ct_ex3 v)
 {
-    const struct ct_node_placement *p = &b->placement[node];
-    return ct_ex33_apply_t(b->x, &p->S, ct_ex33_apply_t(b->x, &b->cluster[p->frame].R, v));
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
+    return ct_ex33_apply_t(b->x, &p->S,
+                           ct_ex33_apply_t(b->x, &b->kinematics->cluster[p->frame].R, v));
 }

@@ -25,25 +25,27 @@ static bool is_moving(const struct ct_build *b, ct_ex3 v)
 
 // ---- anchors --------------------------------------------------------------------------------------
 
-static int add_anchor(struct ct_build *b, int parent, int cluster, ct_ex3 local)
+static int add_anchor(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
+                      int cluster, ct_ex3 local)
 {
     const struct ct_anchor a = {.parent = parent, .cluster = cluster, .local = local};
-    CT_PUSH(b->arena, b->anchor, b->nanchor, b->anchor_cap, a);
-    return (int)b->nanchor - 1;
+    CT_PUSH(b->arena, kinematics->anchor, kinematics->nanchor, kinematics->anchor_cap, a);
+    return (int)kinematics->nanchor - 1;
 }
 
 // The anchor at a place; one that stands there already is used again.
-static int anchor_at(struct ct_build *b, const struct ct_node_placement *p)
+static int anchor_at(struct ct_build *b, struct ct_kinematics *kinematics,
+                     const struct ct_node_placement *p)
 {
     if (ct_ex3_is_zero(p->local))
         return p->anchor;
-    for (size_t i = b->nanchor; i-- > 1;) {
-        const struct ct_anchor *a = &b->anchor[i];
+    for (size_t i = kinematics->nanchor; i-- > 1;) {
+        const struct ct_anchor *a = &kinematics->anchor[i];
         if (a->parent == p->anchor && a->cluster == p->cluster && !a->moves
             && same3(a->local, p->local))
             return (int)i;
     }
-    return add_anchor(b, p->anchor, p->cluster, p->local);
+    return add_anchor(b, kinematics, p->anchor, p->cluster, p->local);
 }
 
 static void add_translation_axis(struct ct_build *b, struct ct_anchor *a, int speed, int driver,
@@ -62,34 +64,36 @@ static void add_translation_axis(struct ct_build *b, struct ct_anchor *a, int sp
 static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
                           const struct ct_node_placement *tail, int sign, struct ct_anchor *a)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_edge_kinematics *kin = ct_edge_kinematics(b, e);
     a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, f->nelastic + 1);
     a->ntranslation_axis = 0;
     for (int k = 0; k < f->nelastic; k++) {
-        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, e->translation[k]);
+        const ct_ex3 along = ct_ex33_apply(b->x, &tail->S, kin->translation[k]);
         ct_ex3 extra = zero3;
-        if (e->foreshortened)
-            extra = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, e->foreshortened[k]), along);
+        if (kin->foreshortened)
+            extra
+                = ct_ex3_sub(b->x, ct_ex33_apply(b->x, &tail->S, kin->foreshortened[k]), along);
         add_translation_axis(b, a, f->elastic[k].u, -1, sign, along, extra);
     }
 }
 
 // Node beyond a branch that slides: an anchor of its own.
-static void place_translating(struct ct_build *b, const struct ct_edge_info *e,
-                              const struct ct_node_placement *p,
+static void place_translating(struct ct_build *b, struct ct_kinematics *kinematics,
+                              const struct ct_edge_info *e, const struct ct_node_placement *p,
                               const struct ct_node_placement *tail, int sign, ct_ex3 vector,
                               struct ct_node_placement *self)
 {
     const int cluster = tail->frame;
     const bool goes_on = p->cluster == cluster;
     const ct_ex3 fixed = goes_on ? p->local : zero3;
-    const int parent = goes_on ? p->anchor : anchor_at(b, p);
-    const int i = add_anchor(b, parent, cluster, ct_ex3_add(b->x, fixed, vector));
-    struct ct_anchor *a = &b->anchor[i];
+    const int parent = goes_on ? p->anchor : anchor_at(b, kinematics, p);
+    const int i = add_anchor(b, kinematics, parent, cluster, ct_ex3_add(b->x, fixed, vector));
+    struct ct_anchor *a = &kinematics->anchor[i];
     a->moves = true;
     a->fixed = fixed;
     a->sliding = vector;
-    if (e->flexible)
+    if (e->beam >= 0)
         slide_section(b, e, tail, sign, a);
     else
         a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, e->ncoordinate + 1);
@@ -111,36 +115,36 @@ static void place_translating(struct ct_build *b, const struct ct_edge_info *e,
 // The place whose axes the branch to a node has.
 static const struct ct_node_placement *tail_of(const struct ct_build *b, int node)
 {
-    return &b->placement[b->T.sign[node] > 0 ? b->T.parent[node] : node];
+    return &b->kinematics->placement[b->T.sign[node] > 0 ? b->T.parent[node] : node];
 }
 
 // Along the branch to a node, in axes of its cluster.
 static ct_ex3 branch_vector(struct ct_build *b, int node)
 {
-    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d,
+    const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
+    const ct_ex3 d = ct_edge_motion(b, e)->d,
                  vector = ct_ex33_apply(b->x, &tail_of(b, node)->S, d);
     return b->T.sign[node] < 0 ? ct_ex3_neg(b->x, vector) : vector;
 }
 
-void ct_translation_slide_sections(struct ct_build *b)
+void ct_translation_slide_sections(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    for (int node = 1; node < (int)b->nnode; node++) {
-        const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-        if (e->flexible && is_moving(b, branch_vector(b, node)))
+    for (int node = 1; node < (int)b->topology->nnode; node++) {
+        const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
+        if (e->beam >= 0 && is_moving(b, branch_vector(b, node)))
             slide_section(b, e, tail_of(b, node), b->T.sign[node],
-                          &b->anchor[b->placement[node].anchor]);
+                          &kinematics->anchor[kinematics->placement[node].anchor]);
     }
 }
 
 // (4.1): r_c = r_p + sign R_tail d, d in axes of the branch's tail.
-static void place_node(struct ct_build *b, int node)
+static void place_node(struct ct_build *b, struct ct_kinematics *kinematics, int node)
 {
     const int parent = b->T.parent[node], sign = b->T.sign[node];
-    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
+    const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
     const struct ct_node_placement *tail = tail_of(b, node);
-    const struct ct_node_placement p = b->placement[parent];
-    struct ct_node_placement *self = &b->placement[node];
+    const struct ct_node_placement p = kinematics->placement[parent];
+    struct ct_node_placement *self = &kinematics->placement[node];
     const ct_ex3 vector = branch_vector(b, node);
     self->anchor = p.anchor;
     self->cluster = p.cluster;
@@ -148,26 +152,27 @@ static void place_node(struct ct_build *b, int node)
     if (ct_ex3_is_zero(vector))
         return;
     if (is_moving(b, vector)) {
-        place_translating(b, e, &p, tail, sign, vector, self);
+        place_translating(b, kinematics, e, &p, tail, sign, vector, self);
     } else if (p.cluster == tail->frame || ct_ex3_is_zero(p.local)) {
         self->cluster = tail->frame;
         self->local = ct_ex3_add(b->x, p.local, vector);
     } else {
-        self->anchor = anchor_at(b, &p);
+        self->anchor = anchor_at(b, kinematics, &p);
         self->cluster = tail->frame;
         self->local = vector;
     }
 }
 
-static void number_anchors(struct ct_build *b)
+static void number_anchors(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    int *size = CT_NEWN(b->arena, int, b->nanchor), *next = CT_NEWN(b->arena, int, b->nanchor);
-    for (size_t a = b->nanchor; a-- > 1;)
-        size[b->anchor[a].parent] += ++size[a];
-    b->anchor[0].leave = size[0];
+    int *size = CT_NEWN(b->arena, int, kinematics->nanchor),
+        *next = CT_NEWN(b->arena, int, kinematics->nanchor);
+    for (size_t a = kinematics->nanchor; a-- > 1;)
+        size[kinematics->anchor[a].parent] += ++size[a];
+    kinematics->anchor[0].leave = size[0];
     next[0] = 1;
-    for (size_t a = 1; a < b->nanchor; a++) {
-        struct ct_anchor *self = &b->anchor[a];
+    for (size_t a = 1; a < kinematics->nanchor; a++) {
+        struct ct_anchor *self = &kinematics->anchor[a];
         self->enter = next[self->parent];
         self->leave = self->enter + size[a] - 1;
         next[self->parent] += size[a];
@@ -176,40 +181,42 @@ static void number_anchors(struct ct_build *b)
 }
 
 // The base of a beam is at an anchor, so that its masses are seen from there.
-static void anchor_base(struct ct_build *b, int node)
+static void anchor_base(struct ct_build *b, struct ct_kinematics *kinematics, int node)
 {
-    struct ct_node_placement *p = &b->placement[node];
-    p->anchor = anchor_at(b, p);
+    struct ct_node_placement *p = &kinematics->placement[node];
+    p->anchor = anchor_at(b, kinematics, p);
     p->cluster = p->frame;
     p->local = zero3;
 }
 
-void ct_translation_derive(struct ct_build *b)
+void ct_translation_derive(struct ct_build *b, struct ct_kinematics *kinematics)
 {
-    add_anchor(b, -1, 0, zero3);
-    for (size_t i = 1; i < b->nnode; i++) {
-        place_node(b, b->T.order[i]);
-        const struct ct_flexible *f = ct_flexible_of(b, b->node[b->T.order[i]].body);
+    add_anchor(b, kinematics, -1, 0, zero3);
+    for (size_t i = 1; i < b->topology->nnode; i++) {
+        place_node(b, kinematics, b->T.order[i]);
+        const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[b->T.order[i]].body);
         if (f && f->base == b->T.order[i])
-            anchor_base(b, b->T.order[i]);
+            anchor_base(b, kinematics, b->T.order[i]);
     }
-    number_anchors(b);
+    number_anchors(b, kinematics);
+    b->cache.anchor = CT_NEWN(b->arena, struct ct_anchor_cache, kinematics->nanchor);
 }
 
 // ---- links ----------------------------------------------------------------------------------------
 
 ct_ex3 ct_link_vector(struct ct_build *b, int i)
 {
-    struct ct_anchor *a = &b->anchor[i];
-    if (!a->has_d)
-        a->d = ct_cluster_turn(b, a->cluster, a->local);
-    a->has_d = true;
-    return a->d;
+    struct ct_anchor_cache *c = &b->cache.anchor[i];
+    const struct ct_anchor *a = &b->kinematics->anchor[i];
+    if (!c->has_d)
+        c->d = ct_cluster_turn(b, a->cluster, a->local);
+    c->has_d = true;
+    return c->d;
 }
 
 ct_ex3 ct_link_velocity(struct ct_build *b, int i)
 {
-    struct ct_anchor *a = &b->anchor[i];
+    const struct ct_anchor *a = &b->kinematics->anchor[i];
     const ct_ex3 v = ct_cluster_cross_velocity(b, a->cluster, ct_link_vector(b, i));
     return a->moves ? ct_ex3_add(b->x, v, ct_cluster_turn(b, a->cluster, a->drift)) : v;
 }
@@ -224,7 +231,7 @@ static ct_ex3 carried_acceleration(struct ct_build *b, int cluster, ct_ex3 d,
 
 ct_ex3 ct_link_sliding_acceleration(struct ct_build *b, int i, enum ct_level level)
 {
-    struct ct_anchor *a = &b->anchor[i];
+    const struct ct_anchor *a = &b->kinematics->anchor[i];
     struct ct_exs *x = b->x;
     if (!a->moves)
         return zero3;
@@ -242,8 +249,8 @@ ct_ex3 ct_link_sliding_acceleration(struct ct_build *b, int i, enum ct_level lev
 
 ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
 {
-    const ct_ex3 carried
-        = carried_acceleration(b, b->anchor[i].cluster, ct_link_vector(b, i), level);
+    const ct_ex3 carried = carried_acceleration(b, b->kinematics->anchor[i].cluster,
+                                                ct_link_vector(b, i), level);
     return ct_ex3_add(b->x, carried, ct_link_sliding_acceleration(b, i, level));
 }
 
@@ -251,29 +258,36 @@ ct_ex3 ct_link_acceleration(struct ct_build *b, int i, enum ct_level level)
 
 static ct_ex3 anchor_position(struct ct_build *b, int i)
 {
-    return i ? ct_ex3_add(b->x, anchor_position(b, b->anchor[i].parent), ct_link_vector(b, i))
-             : zero3;
+    struct ct_anchor_cache *c = &b->cache.anchor[i];
+    if (i && !c->has_p) {
+        c->p = ct_ex3_add(b->x, anchor_position(b, b->kinematics->anchor[i].parent),
+                          ct_link_vector(b, i));
+        c->has_p = true;
+    }
+    return c->p;
 }
 
 static ct_ex3 anchor_velocity(struct ct_build *b, int i)
 {
-    struct ct_anchor *a = &b->anchor[i];
-    if (i && !a->has_v) {
-        a->v = ct_ex3_add(b->x, anchor_velocity(b, a->parent), ct_link_velocity(b, i));
-        a->has_v = true;
+    struct ct_anchor_cache *c = &b->cache.anchor[i];
+    if (i && !c->has_v) {
+        const int parent = b->kinematics->anchor[i].parent;
+        c->v = ct_ex3_add(b->x, anchor_velocity(b, parent), ct_link_velocity(b, i));
+        c->has_v = true;
     }
-    return a->v;
+    return c->v;
 }
 
 ct_ex3 ct_anchor_acceleration(struct ct_build *b, int i, enum ct_level level)
 {
-    struct ct_anchor *a = &b->anchor[i];
-    if (i && !a->has_a[level]) {
-        a->a[level] = ct_ex3_add(b->x, ct_anchor_acceleration(b, a->parent, level),
+    struct ct_anchor_cache *c = &b->cache.anchor[i];
+    if (i && !c->has_a[level]) {
+        const int parent = b->kinematics->anchor[i].parent;
+        c->a[level] = ct_ex3_add(b->x, ct_anchor_acceleration(b, parent, level),
                                  ct_link_acceleration(b, i, level));
-        a->has_a[level] = true;
+        c->has_a[level] = true;
     }
-    return a->a[level];
+    return c->a[level];
 }
 
 static ct_ex3 offset(struct ct_build *b, const struct ct_node_placement *p)
@@ -283,20 +297,20 @@ static ct_ex3 offset(struct ct_build *b, const struct ct_node_placement *p)
 
 ct_ex3 ct_node_position(struct ct_build *b, int node)
 {
-    const struct ct_node_placement *p = &b->placement[node];
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
     return ct_ex3_add(b->x, anchor_position(b, p->anchor), offset(b, p));
 }
 
 ct_ex3 ct_node_velocity(struct ct_build *b, int node)
 {
-    const struct ct_node_placement *p = &b->placement[node];
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
     return ct_ex3_add(b->x, anchor_velocity(b, p->anchor),
                       ct_cluster_cross_velocity(b, p->cluster, offset(b, p)));
 }
 
 ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level)
 {
-    const struct ct_node_placement *p = &b->placement[node];
+    const struct ct_node_placement *p = &b->kinematics->placement[node];
     return ct_ex3_add(b->x, ct_anchor_acceleration(b, p->anchor, level),
                       carried_acceleration(b, p->cluster, offset(b, p), level));
 }
@@ -318,10 +332,11 @@ static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 
 // sought: there are as many as pairs of a row and a speed.
 static struct path find_path(struct ct_build *b, int tail, int head)
 {
-    const struct ct_node_placement *t = &b->placement[tail], *h = &b->placement[head];
-    if (!b->piece)
-        b->piece = CT_NEWN(b->arena, struct ct_piece, b->nanchor + 2);
-    struct path p = {b->piece, 0};
+    const struct ct_node_placement *t = &b->kinematics->placement[tail],
+                                   *h = &b->kinematics->placement[head];
+    if (!b->cache.piece)
+        b->cache.piece = CT_NEWN(b->arena, struct ct_piece, b->kinematics->nanchor + 2);
+    struct path p = {b->cache.piece, 0};
     if (t->anchor == h->anchor && t->cluster == h->cluster) {
         add_piece(&p, -1, h->cluster, 1, ct_ex3_sub(b->x, h->local, t->local));
         return p;
@@ -331,11 +346,13 @@ static struct path find_path(struct ct_build *b, int tail, int head)
     int i = h->anchor, j = t->anchor;
     while (i != j) // numbers grow outwards: the larger one steps inwards
         if (i > j) {
-            add_piece(&p, i, b->anchor[i].cluster, 1, b->anchor[i].local);
-            i = b->anchor[i].parent;
+            add_piece(&p, i, b->kinematics->anchor[i].cluster, 1,
+                      b->kinematics->anchor[i].local);
+            i = b->kinematics->anchor[i].parent;
         } else {
-            add_piece(&p, j, b->anchor[j].cluster, -1, b->anchor[j].local);
-            j = b->anchor[j].parent;
+            add_piece(&p, j, b->kinematics->anchor[j].cluster, -1,
+                      b->kinematics->anchor[j].local);
+            j = b->kinematics->anchor[j].parent;
         }
     return p;
 }
@@ -364,18 +381,24 @@ static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
     return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
 }
 
-// From ground over many pieces: places and velocities that nodes on the way share cost less than a sum of one's own.
-static bool is_long(const struct path *p, int tail)
+// From ground over many pieces: places and velocities that nodes on the way share cost less than a sum
+// of one's own.
+static bool is_long(const struct ct_build *b, int tail, int head)
 {
-    return tail == 0 && p->n > CT_LONG_PATH;
+    const struct ct_kinematics *k = b->kinematics;
+    int n = !ct_ex3_is_zero(k->placement[head].local);
+    for (int a = k->placement[head].anchor; tail == 0 && a > 0 && n <= CT_LONG_PATH;
+         a = k->anchor[a].parent)
+        n += !ct_ex3_is_zero(k->anchor[a].local);
+    return n > CT_LONG_PATH;
 }
 
 ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
 {
+    if (is_long(b, tail, head))
+        return ct_node_position(b, head);
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
-    if (is_long(&p, tail))
-        return ct_node_position(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_vector(b, &p.piece[i]));
     return sum;
@@ -383,10 +406,10 @@ ct_ex3 ct_path_position(struct ct_build *b, int tail, int head)
 
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head)
 {
+    if (is_long(b, tail, head))
+        return ct_node_velocity(b, head);
     const struct path p = find_path(b, tail, head);
     ct_ex3 sum = zero3;
-    if (is_long(&p, tail))
-        return ct_node_velocity(b, head);
     for (size_t i = 0; i < p.n; i++)
         sum = accumulate(b, sum, p.piece[i].sign, piece_velocity(b, &p.piece[i]));
     return sum;
@@ -406,7 +429,7 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
 static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
                     const struct ct_piece *p, ct_ex3 *fixed, ct_ex3 *slid)
 {
-    const struct ct_anchor *a = p->anchor >= 0 ? &b->anchor[p->anchor] : NULL;
+    const struct ct_anchor *a = p->anchor >= 0 ? &b->kinematics->anchor[p->anchor] : NULL;
     if (p->cluster != t->frame)
         return false;
     const bool moves = a && a->moves;
@@ -419,7 +442,7 @@ static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
 ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
-    const struct ct_node_placement *t = &b->placement[tail];
+    const struct ct_node_placement *t = &b->kinematics->placement[tail];
     const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
     ct_ex3 sum = zero3, fixed = zero3, slid = zero3;
     for (size_t i = 0; i < p.n; i++)
@@ -432,7 +455,7 @@ ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
 ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
-    const struct ct_node_placement *t = &b->placement[tail];
+    const struct ct_node_placement *t = &b->kinematics->placement[tail];
     const ct_ex33 to_axes = ct_ex33_transpose(&t->S);
     ct_ex3 sum = zero3, carried = zero3, own = zero3;
     for (size_t i = 0; i < p.n; i++) {
@@ -440,8 +463,8 @@ ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
         if (piece->cluster != t->frame) {
             sum = accumulate(b, sum, piece->sign, piece_velocity(b, piece));
             carried = accumulate(b, carried, piece->sign, piece_vector(b, piece));
-        } else if (piece->anchor >= 0 && b->anchor[piece->anchor].moves) {
-            own = accumulate(b, own, piece->sign, b->anchor[piece->anchor].drift);
+        } else if (piece->anchor >= 0 && b->kinematics->anchor[piece->anchor].moves) {
+            own = accumulate(b, own, piece->sign, b->kinematics->anchor[piece->anchor].drift);
         }
     }
     sum = ct_ex3_sub(b->x, sum, ct_cluster_cross_velocity(b, t->frame, carried));
@@ -457,7 +480,7 @@ static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct
     bool any_zero = false;
     for (int i = 0; i < 3; i++)
         any_zero = any_zero || ct_ex_is_zero(local.e[i]);
-    if (b->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
+    if (b->topology->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
         return false;
     *sweep = ct_cluster_turn(b, s->cluster, local);
     return true;
@@ -466,11 +489,11 @@ static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct
 void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked)
 {
     const struct path p = find_path(b, tail, head);
-    int end[2] = {b->placement[tail].frame, b->placement[head].frame};
-    memset(marked, 0, b->ncluster * sizeof *marked);
+    int end[2] = {b->kinematics->placement[tail].frame, b->kinematics->placement[head].frame};
+    memset(marked, 0, b->kinematics->ncluster * sizeof *marked);
     for (size_t i = 0; i < p.n + COUNT(end); i++)
         for (int c = i < p.n ? p.piece[i].cluster : end[i - p.n]; c > 0 && !marked[c];
-             c = b->cluster[c].parent)
+             c = b->kinematics->cluster[c].parent)
             marked[c] = true;
 }
 
@@ -478,8 +501,10 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
                    ct_ex3 *sweep)
 {
     const struct path p = find_path(b, tail, head);
-    const struct ct_rotation_axis *s = &b->rotation_axis[r];
-    const int base = carried && ct_cluster_is_outboard(b, s->cluster, b->placement[tail].frame);
+    const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[r];
+    const int base
+        = carried
+       && ct_cluster_is_outboard(b, s->cluster, b->kinematics->placement[tail].frame);
     bool any = false, is_own = true;
     ct_ex3 reach = zero3, own = zero3;
     for (size_t i = 0; i < p.n; i++) {
@@ -501,9 +526,10 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
 // Does some spin turn a vector of `cluster` in the sweep of a row?
 static bool is_swept(const struct ct_build *b, int tail, int head, bool carried, int cluster)
 {
-    const int from = b->placement[tail].frame, to = b->placement[head].frame;
-    for (size_t r = 0; r < b->nrotation_axis; r++) {
-        const int c = b->rotation_axis[r].cluster;
+    const int from = b->kinematics->placement[tail].frame,
+              to = b->kinematics->placement[head].frame;
+    for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
+        const int c = b->kinematics->rotation_axis[r].cluster;
         const bool is_base = carried && ct_cluster_is_outboard(b, c, from);
         if (ct_cluster_is_outboard(b, c, cluster) != is_base
             && (carried || !ct_cluster_is_outboard(b, c, from)
@@ -520,8 +546,8 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
     *n = 0;
     for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
         int *const k = T->depth[i] > T->depth[j] ? &i : &j;
-        const struct ct_edge_info *e = &b->edge[T->parent_edge[*k]];
-        const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
+        const struct ct_edge_info *e = &b->topology->edge[T->parent_edge[*k]];
+        const ct_ex3 d = ct_edge_motion(b, e)->d;
         if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
             lever[(*n)++] = d;
         *k = T->parent[*k];
@@ -531,7 +557,9 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
 
 int ct_path_translation_side(struct ct_build *b, int tail, int head, int anchor)
 {
-    const bool at_head = ct_anchor_is_outboard(b, anchor, b->placement[head].anchor);
-    const bool at_tail = ct_anchor_is_outboard(b, anchor, b->placement[tail].anchor);
+    const bool at_head
+        = ct_anchor_is_outboard(b, anchor, b->kinematics->placement[head].anchor);
+    const bool at_tail
+        = ct_anchor_is_outboard(b, anchor, b->kinematics->placement[tail].anchor);
     return (int)at_head - (int)at_tail;
 }

@@ -29,7 +29,7 @@ static const double same_place = 1e-9; // of the beam's length
 static struct cut cut_at(struct ct_build *b, const struct ct_flexible *f, ct_ex x)
 {
     struct cut c = {.f = f};
-    const int frame = b->placement[f->base].frame;
+    const int frame = b->kinematics->placement[f->base].frame;
     ct_flexible_station(b, f, x, f->kinematics, &c.s);
     c.x = ct_ex_value(b->x, x, b->value);
     c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
@@ -162,8 +162,8 @@ static void add_inertia(struct ct_build *b, struct cut *c)
 
 static bool is_beyond(const struct ct_build *b, const struct cut *c, int edge)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
-    if (e->flexible != c->f)
+    const struct ct_edge_info *e = &b->topology->edge[edge];
+    if (ct_flexible_of_edge(b, e) != c->f)
         return false;
     const double x = ct_ex_value(b->x, e->along, b->value);
     return x >= c->x + (c->is_start ? c->tolerance : -c->tolerance);
@@ -171,13 +171,13 @@ static bool is_beyond(const struct ct_build *b, const struct cut *c, int edge)
 
 static void add_arms(struct ct_build *b, struct cut *c)
 {
-    for (size_t i = 0; i < b->nedge; i++) {
+    for (size_t i = 0; i < b->topology->nedge; i++) {
         ct_ex3 force, torque;
         if (!is_beyond(b, c, (int)i))
             continue;
         ct_reaction_of_edge(b, (int)i, &force, &torque);
         add_wrench(b, c, ct_node_unturn(b, c->f->base, force),
-                   ct_node_unturn(b, c->f->base, torque), b->edge[i].at);
+                   ct_node_unturn(b, c->f->base, torque), b->kinematics->edge[i].motion.d);
     }
 }
 
@@ -198,7 +198,7 @@ bool ct_beam_load_is_known(const struct ct_build *b, int frame, bool is_force, i
         = {.f = f, .x = ct_ex_value(b->x, ct_beam_signal_place(b, frame).e[0], b->value)};
     c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
     c.is_start = c.x < c.tolerance;
-    for (size_t e = 0; e < b->nedge; e++)
+    for (size_t e = 0; e < b->topology->nedge; e++)
         if (is_beyond(b, &c, (int)e) && !ct_reaction_of_edge_is_known(b, (int)e, is_force, i))
             return false;
     return true;

@@ -10,7 +10,7 @@
 static bool reaction(struct ct_build *b, const struct ct_signal *s, ct_ex *out)
 {
     const bool is_force = !strcmp(s->property, "force");
-    const int tail = b->wiring[b->edge_of_joint[s->number]].tail,
+    const int tail = b->topology->wiring[b->topology->edge_of_joint[s->number]].tail,
               i = ct_signal_component_index(s);
     ct_ex3 force, torque;
     ct_reaction_derive(b, s->number, &force, &torque);

@@ -144,10 +144,10 @@ static bool coordinate_columns(struct ct_build *b, const struct ct_instance *joi
 static bool effort_columns(struct ct_build *b, size_t j)
 {
     const struct ct_instance *joint = &b->model->joint[j];
-    const int edge = b->edge_of_joint[j];
+    const int edge = b->topology->edge_of_joint[j];
     bool ok = true;
     for (int k = 0; edge >= 0 && joint->cls->motion && k < joint->nfree; k++)
-        if (b->coordinate[b->edge[edge].first_coordinate + k].is_driven) {
+        if (b->coordinate[b->topology->edge[edge].first_coordinate + k].is_driven) {
             const char *number
                 = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
             ok &= new_columns(b, ct_arena_printf(b->arena, "%s.effort%s", joint->name, number),
@@ -159,11 +159,11 @@ static bool effort_columns(struct ct_build *b, size_t j)
 static bool reaction_columns(struct ct_build *b, size_t j)
 {
     const struct ct_instance *joint = &b->model->joint[j];
-    const int edge = b->edge_of_joint[j];
+    const int edge = b->topology->edge_of_joint[j];
     if (edge < 0) // a gear: its effort on the first of its joints
         return new_columns(b, ct_arena_printf(b->arena, "%s.effort", joint->name), joint->mark);
     return new_columns(b, ct_arena_printf(b->arena, "%s.force", joint->name), joint->mark)
-        && (!b->edge[edge].has_rotation
+        && (!b->topology->edge[edge].has_rotation
             || new_columns(b, ct_arena_printf(b->arena, "%s.torque", joint->name),
                            joint->mark));
 }
@@ -184,5 +184,25 @@ bool ct_outputs_add(struct ct_build *b, enum ct_more_outputs more)
     for (size_t j = 0; j < n && more == CT_MORE_EFFORTS; j++)
         ok &= reaction_columns(b, j);
     b->signals.in_outputs = false;
+    return ok;
+}
+
+bool ct_outputs_list_reactions(struct ct_build *b, struct ct_result **list, size_t *n)
+{
+    struct ct_equations *e = b->eqs;
+    struct ct_result *const before = e->result;
+    const size_t nbefore = e->nresult, cap = e->result_cap;
+    bool ok = true;
+    e->result = NULL;
+    e->nresult = e->result_cap = 0;
+    b->signals.in_outputs = true;
+    for (size_t j = 0; j < b->model->njoint; j++)
+        ok &= reaction_columns(b, j);
+    b->signals.in_outputs = false;
+    *list = e->result;
+    *n = e->nresult;
+    e->result = before;
+    e->nresult = nbefore;
+    e->result_cap = cap;
     return ok;
 }

@@ -78,10 +78,10 @@ static void add_own(struct ct_articulated *w, int i)
         for (int c = 0; c <= r; c++)
             ct_articulated_set(k, r, c,
                                ct_ex_add(x, ct_articulated_entry(k, r, c), m->J.e[r + 3 * c]));
-        if (!w->b->is_planar || r < 2)
+        if (!w->b->topology->is_planar || r < 2)
             ct_articulated_set(k, 3 + r, 3 + r,
                                ct_ex_add(x, ct_articulated_entry(k, 3 + r, 3 + r), m->mass));
-        if (!w->b->is_planar || r == 2) { // (h x a)_r = h_p a_q - h_q a_p
+        if (!w->b->topology->is_planar || r == 2) { // (h x a)_r = h_p a_q - h_q a_p
             ct_articulated_set(k, r, 3 + q,
                                ct_ex_add(x, ct_articulated_entry(k, r, 3 + q), h->e[p]));
             ct_articulated_set(k, r, 3 + p,

@@ -13,22 +13,22 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 ct_ex3 ct_member_express(struct ct_build *b, int cluster, ct_ex3 local)
 {
-    if (!b->is_planar)
+    if (!b->topology->is_planar)
         return local;
     const ct_ex3 v = ct_cluster_turn(b, cluster, local);
     ct_ex3 out = zero3;
     for (int i = 0; i < 2; i++)
-        out.e[i] = ct_ex3_dot(b->x, b->plane[i], v);
+        out.e[i] = ct_ex3_dot(b->x, b->topology->plane[i], v);
     return out;
 }
 
 ct_ex3 ct_member_express_ground(struct ct_build *b, int cluster, ct_ex3 v)
 {
-    if (!b->is_planar)
-        return ct_ex33_apply_t(b->x, &b->cluster[cluster].R, v);
+    if (!b->topology->is_planar)
+        return ct_ex33_apply_t(b->x, &b->kinematics->cluster[cluster].R, v);
     ct_ex3 out;
     for (int i = 0; i < 3; i++)
-        out.e[i] = ct_ex3_dot(b->x, b->plane[i], v);
+        out.e[i] = ct_ex3_dot(b->x, b->topology->plane[i], v);
     return out;
 }
 
@@ -68,8 +68,9 @@ static ct_ex3 rotation_axis_of(struct ct_member_build *w, const struct ct_member
                                const struct ct_rotation_axis *s, const ct_ex33 *S, int i)
 {
     struct ct_build *b = w->b;
-    if (b->is_planar) {
-        const bool positive = ct_rotation_axis_is_positive(b, (size_t)(s - b->rotation_axis));
+    if (b->topology->is_planar) {
+        const bool positive
+            = ct_rotation_axis_is_positive(b, (size_t)(s - b->kinematics->rotation_axis));
         return (ct_ex3){
             {CT_EX_ZERO, CT_EX_ZERO, positive ? CT_EX_ONE : ct_ex_neg(b->x, CT_EX_ONE)}};
     }
@@ -84,8 +85,8 @@ struct ct_member *ct_member_take_cluster(struct ct_member_build *w, int member, 
 {
     struct ct_member *m = &w->s->member[member];
     m->rotates = true;
-    m->has_axes = !w->b->is_planar;
-    if (!w->b->is_planar)
+    m->has_axes = !w->b->topology->is_planar;
+    if (!w->b->topology->is_planar)
         m->R = ct_cluster_relative(w->b, cluster);
     m->cluster = cluster;
     w->of_cluster[cluster] = member;
@@ -97,8 +98,8 @@ ct_ex3 ct_member_rotation_axis(struct ct_member_build *w, struct ct_member *m, c
                                int i)
 {
     struct ct_build *b = w->b;
-    const struct ct_cluster *c = &b->cluster[m->cluster];
-    const struct ct_rotation_axis *s = &b->rotation_axis[c->first_axis + i];
+    const struct ct_cluster *c = &b->kinematics->cluster[m->cluster];
+    const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[c->first_axis + i];
     const ct_ex3 axis = rotation_axis_of(w, m, s, S, i);
     if (c->naxis == 1)
         m->axis = coordinate_axis(b, axis);
@@ -119,9 +120,9 @@ static void add_turn(struct ct_member_build *w, int member, int cluster, const c
 {
     struct ct_build *b = w->b;
     struct ct_member *m = ct_member_take_cluster(w, member, cluster);
-    for (int i = 0; i < b->cluster[cluster].naxis; i++) {
+    for (int i = 0; i < b->kinematics->cluster[cluster].naxis; i++) {
         const struct ct_rotation_axis *s
-            = &b->rotation_axis[b->cluster[cluster].first_axis + i];
+            = &b->kinematics->rotation_axis[b->kinematics->cluster[cluster].first_axis + i];
         const ct_ex3 axis = ct_member_rotation_axis(w, m, S, i);
         for (int k = 0; k < s->nterm; k++)
             if (s->term[k].speed >= 0)
@@ -175,9 +176,9 @@ static bool moves_slide(const struct ct_build *b, const struct ct_edge_info *e,
 static bool is_coupled(const struct ct_build *b, const struct ct_passage *p)
 {
     for (int i = 0; i < p->ncluster; i++) {
-        const struct ct_cluster *c = &b->cluster[p->cluster[i]];
+        const struct ct_cluster *c = &b->kinematics->cluster[p->cluster[i]];
         for (int k = 0; k < c->naxis; k++) {
-            const struct ct_rotation_axis *s = &b->rotation_axis[c->first_axis + k];
+            const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[c->first_axis + k];
             for (int j = 0; j < s->nterm; j++)
                 if (moves_slide(b, p->e, &s->term[j]))
                     return true;
@@ -192,8 +193,10 @@ static bool turns_share(const struct ct_build *b, const struct ct_passage *p)
     for (int i = 0; i < p->ncluster; i++)
         for (int j = 0; j < i; j++) {
             const struct ct_rotation_axis *s
-                = &b->rotation_axis[b->cluster[p->cluster[i]].first_axis],
-                *t = &b->rotation_axis[b->cluster[p->cluster[j]].first_axis];
+                = &b->kinematics
+                       ->rotation_axis[b->kinematics->cluster[p->cluster[i]].first_axis],
+                *t = &b->kinematics
+                          ->rotation_axis[b->kinematics->cluster[p->cluster[j]].first_axis];
             for (int k = 0; k < s->nterm; k++)
                 for (int l = 0; l < t->nterm; l++)
                     if (s->term[k].speed >= 0 && s->term[k].speed == t->term[l].speed)
@@ -269,13 +272,14 @@ static bool find_clusters(struct ct_member_build *w, int from, int to, struct ct
 {
     const struct ct_build *b = w->b;
     int list[CT_MAX_COORD], n = 0;
-    for (; to != from && to != 0 && w->of_cluster[to] < 0; to = b->cluster[to].parent) {
+    for (; to != from && to != 0 && w->of_cluster[to] < 0;
+         to = b->kinematics->cluster[to].parent) {
         if (n == CT_MAX_COORD)
             return false;
         list[n++] = to;
     }
     p->is_absolute = to != from;
-    if (to != from && (to != 0 || !b->is_planar || n != 1))
+    if (to != from && (to != 0 || !b->topology->is_planar || n != 1))
         return false;
     for (p->ncluster = 0; p->ncluster < n; p->ncluster++)
         p->cluster[p->ncluster] = list[n - 1 - p->ncluster];
@@ -286,7 +290,8 @@ static bool find_clusters(struct ct_member_build *w, int from, int to, struct ct
 static bool place_particle(struct ct_member_build *w, struct ct_passage *p, int parent,
                            int *member, ct_ex3 *offset)
 {
-    if (w->b->node[parent].is_particle || (p->vector_last && !ct_ex3_is_zero(p->vector)))
+    if (w->b->topology->node[parent].is_particle
+        || (p->vector_last && !ct_ex3_is_zero(p->vector)))
         return false;
     *member = pass_translations(w, *member, p, offset);
     return true;
@@ -296,27 +301,29 @@ static bool place_node(struct ct_member_build *w, int node)
 {
     struct ct_build *b = w->b;
     const int parent = b->T.parent[node], sign = b->T.sign[node];
-    const struct ct_edge_info *e = &b->edge[b->T.parent_edge[node]];
-    const struct ct_node_placement *tail = &b->placement[sign > 0 ? parent : node];
-    const ct_ex3 d = e->kind == CT_EDGE_ARM ? e->at : e->motion.d;
-    struct ct_passage p = {.e = e, .vector_last = sign < 0, .S = &b->placement[parent].S};
+    const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
+    const struct ct_node_placement *tail = &b->kinematics->placement[sign > 0 ? parent : node];
+    const ct_ex3 d = ct_edge_motion(b, e)->d;
+    struct ct_passage p
+        = {.e = e, .vector_last = sign < 0, .S = &b->kinematics->placement[parent].S};
     int member = w->of_node[parent];
     ct_ex3 offset = w->offset[parent];
     p.vector = ct_ex33_apply(b->x, &tail->S, d);
     if (sign < 0)
         p.vector = ct_ex3_neg(b->x, p.vector);
-    if (b->node[node].is_particle) {
+    if (b->topology->node[node].is_particle) {
         if (!place_particle(w, &p, parent, &member, &offset))
             return false;
-    } else if (b->node[parent].is_particle
-               || !find_clusters(w, b->placement[parent].frame, b->placement[node].frame, &p)
-               || !(e->flexible ? ct_member_pass_section(w, &p, sign, &member, &offset)
-                                : pass(w, &p, &member, &offset))) {
+    } else if (b->topology->node[parent].is_particle
+               || !find_clusters(w, b->kinematics->placement[parent].frame,
+                                 b->kinematics->placement[node].frame, &p)
+               || !(e->beam >= 0 ? ct_member_pass_section(w, &p, sign, &member, &offset)
+                                 : pass(w, &p, &member, &offset))) {
         return false;
     }
     w->of_node[node] = member;
     w->offset[node] = offset;
-    const struct ct_flexible *f = ct_flexible_of(b, b->node[node].body);
+    const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[node].body);
     if (f && f->base == node)
         ct_member_attach_base(w, f, member, offset);
     return true;
@@ -325,13 +332,13 @@ static bool place_node(struct ct_member_build *w, int node)
 static bool place_nodes(struct ct_member_build *w)
 {
     const struct ct_build *b = w->b;
-    w->of_node = CT_NEWN(b->arena, int, b->nnode);
-    w->offset = CT_NEWN(b->arena, ct_ex3, b->nnode);
-    w->of_cluster = CT_NEWN(b->arena, int, b->ncluster);
-    for (size_t c = 1; c < b->ncluster; c++)
+    w->of_node = CT_NEWN(b->arena, int, b->topology->nnode);
+    w->offset = CT_NEWN(b->arena, ct_ex3, b->topology->nnode);
+    w->of_cluster = CT_NEWN(b->arena, int, b->kinematics->ncluster);
+    for (size_t c = 1; c < b->kinematics->ncluster; c++)
         w->of_cluster[c] = -1;
     ct_member_add(w, -1, 0, zero3);
-    for (size_t i = 1; i < b->nnode; i++)
+    for (size_t i = 1; i < b->topology->nnode; i++)
         if (!place_node(w, b->T.order[i]))
             return false;
     return true;
@@ -368,8 +375,8 @@ static void find_axes(struct ct_member_build *w, struct ct_member *m)
     m->drift = ct_member_express(b, cluster, m->drift);
     m->drift_bias = ct_member_express(b, cluster, m->drift_bias);
     m->moment = ct_member_express(b, m->cluster, m->moment);
-    if (b->is_planar) {
-        const ct_ex3 n = b->plane[2];
+    if (b->topology->is_planar) {
+        const ct_ex3 n = b->topology->plane[2];
         const ct_ex about = ct_ex3_dot(b->x, n, ct_ex33_apply(b->x, &m->J, n));
         m->J = (ct_ex33){{{0}}};
         m->J.e[8] = about;
@@ -391,7 +398,7 @@ static void find_axes(struct ct_member_build *w, struct ct_member *m)
 static void flatten(struct ct_member_build *w)
 {
     struct ct_build *b = w->b;
-    for (size_t i = 0; i < b->nnode; i++)
+    for (size_t i = 0; i < b->topology->nnode; i++)
         w->offset[i] = ct_build_in_plane(b, w->offset[i]);
     for (size_t i = 1; i < w->s->n; i++)
         if (!w->s->member[i].is_ready)

@@ -49,14 +49,14 @@ void ct_members_add_bodies(struct ct_member_build *w)
     struct ct_build *b = w->b;
     for (size_t i = 1; i < b->model->nbody; i++) {
         const struct ct_body *body = &b->model->body[i];
-        const int node = b->node_of_com[i];
+        const int node = b->topology->node_of_com[i];
         if (body->beam)
             continue;
         const ct_ex *I = body->inertia;
         ct_ex33 turned = {{{0}}};
         if (!body->is_particle) {
             const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-            const ct_ex33 *S = &b->placement[node].S, t = ct_ex33_transpose(S);
+            const ct_ex33 *S = &b->kinematics->placement[node].S, t = ct_ex33_transpose(S);
             const ct_ex33 half = ct_ex33_mul(b->x, &own, &t);
             turned = ct_ex33_mul(b->x, S, &half);
         }
@@ -86,7 +86,7 @@ static void lump(struct ct_member_build *w, struct ct_member *m)
     if (m->rotates && !m->translates) { // the origin is a point of the parent
         mass = m->mass;
         m->mass = CT_EX_ZERO;
-        if (m->axis >= 0 && !w->b->is_planar)
+        if (m->axis >= 0 && !w->b->topology->is_planar)
             take_off_axis(w->b, m, &h, &J);
     } else if (!m->rotates) {
         J = m->J;
@@ -116,7 +116,7 @@ void ct_members_add_beams(struct ct_member_build *w)
         const ct_ex33 J = ct_ex33_mul(b->x, &at->A, &half);
         ct_ex3 moment = ct_ex33_apply(b->x, &at->A, I->moment);
         m->mass = ct_ex_add(b->x, m->mass, I->mass);
-        if (b->is_planar) {
+        if (b->topology->is_planar) {
             moment.e[2] = CT_EX_ZERO;
             m->J.e[8] = ct_ex_add(b->x, m->J.e[8], J.e[8]);
         } else {
@@ -137,7 +137,7 @@ static void apply_at(struct ct_member_build *w, int node, ct_ex3 force, ct_ex3 t
                  arm = ct_member_express(b, m->cluster, w->offset[node]);
     m->force = ct_ex3_add(x, m->force, f);
     m->torque = ct_ex3_add(x, m->torque, ct_ex3_cross(x, arm, f));
-    if (!b->node[node].is_particle)
+    if (!b->topology->node[node].is_particle)
         m->torque = ct_ex3_add(x, m->torque, ct_member_express_ground(b, m->cluster, torque));
 }
 
@@ -145,8 +145,8 @@ void ct_members_load(struct ct_member_build *w)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    for (size_t i = 0; i < b->nload; i++) {
-        const struct ct_load *l = &b->load[i];
+    for (size_t i = 0; i < b->dynamics.nload; i++) {
+        const struct ct_load *l = &b->dynamics.load[i];
         ct_ex3 back = l->torque;
         apply_at(w, l->head, l->force, l->torque);
         if (l->tail == 0)

@@ -16,9 +16,10 @@ static int beam_of(const struct ct_build *b, const struct ct_flexible *f)
 // Axes of the beam -> those of its base: its cluster's, in a plane (x, n x x, n).
 static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
 {
-    if (!b->is_planar)
-        return b->placement[f->base].S;
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->upright[f->base], b->plane[2]);
+    if (!b->topology->is_planar)
+        return b->kinematics->placement[f->base].S;
+    const ct_ex3 n
+        = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->plane[2]);
     ct_ex33 A = {{{0}}};
     double v[3]; // one of the beam's axes, but for round-off
     for (int i = 0; i < 3; i++) {
@@ -34,7 +35,7 @@ static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
 // In a plane: axes of the beam's base -> those of the plane.
 static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
 {
-    const struct ct_node_placement *p = &b->placement[f->base];
+    const struct ct_node_placement *p = &b->kinematics->placement[f->base];
     const ct_ex3 x = {{CT_EX_ONE, CT_EX_ZERO, CT_EX_ZERO}};
     const ct_ex3 v = ct_member_express(b, p->frame, ct_ex33_apply(b->x, &p->S, x));
     return (ct_ex33){{v.e[0], v.e[1], CT_EX_ZERO, ct_ex_neg(b->x, v.e[1]), v.e[0], CT_EX_ZERO,
@@ -68,7 +69,7 @@ void ct_member_attach_base(struct ct_member_build *w, const struct ct_flexible *
         return;
     beam->A = base_axes(w->b, f);
     beam->base = beam->root = rigid_member(w, member, f, offset);
-    if (w->b->is_planar)
+    if (w->b->topology->is_planar)
         change_axes(w, beam->base, f, true);
 }
 
@@ -82,12 +83,13 @@ struct section_partials {
 static struct section_partials section_partials(struct ct_build *b,
                                                 const struct ct_edge_info *e)
 {
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_edge_kinematics *k = ct_edge_kinematics(b, e);
     if (!ct_flexible_is_nodal(f))
-        return (struct section_partials){f->nelastic, e->translation, e->rotation};
+        return (struct section_partials){f->nelastic, k->translation, k->rotation};
     const int n = f->nelastic + ct_condensation_count(f);
     ct_ex3 *slide = CT_NEWN(b->arena, ct_ex3, n + 1), *turn = CT_NEWN(b->arena, ct_ex3, n + 1);
-    ct_station_own_partials(b, f, e->station, slide, turn);
+    ct_station_own_partials(b, f, k->station, slide, turn);
     return (struct section_partials){n, slide, turn};
 }
 
@@ -102,20 +104,21 @@ static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
                          const struct ct_edge_info *e, int sign)
 {
     struct ct_build *b = w->b;
-    const struct ct_flexible *f = e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, e);
+    const struct ct_station *s = ct_edge_kinematics(b, e)->station;
     const ct_ex33 *A = &w->s->beam[beam_of(b, f)].A;
-    ct_ex3 place = ct_ex33_apply(b->x, A, e->at);
+    ct_ex3 place = ct_ex33_apply(b->x, A, ct_edge_motion(b, e)->d);
     place = sign > 0 ? place : ct_ex3_neg(b->x, place);
-    const int i
-        = ct_member_add(w, from, b->placement[f->base].frame, ct_ex3_add(b->x, r, place));
+    const int i = ct_member_add(w, from, b->kinematics->placement[f->base].frame,
+                                ct_ex3_add(b->x, r, place));
     struct ct_member *m = &w->s->member[i];
     m->beam = beam_of(b, f) + 1;
     m->translates = m->is_ready = true;
     m->drift = ct_build_rate3(b, place);
     m->drift_bias = ct_build_rate3(b, m->drift);
-    if (ct_flexible_is_augmented(f) && e->station->element) {
+    if (ct_flexible_is_augmented(f) && s->element) {
         const ct_ex3 along = {{A->e[0], A->e[1], A->e[2]}};
-        ct_member_screw(b, m, -e->station->element)->translation
+        ct_member_screw(b, m, -s->element)->translation
             = sign > 0 ? along : ct_ex3_neg(b->x, along);
     }
     const struct section_partials by = section_partials(b, e);
@@ -133,10 +136,10 @@ static int add_section_turn(struct ct_member_build *w, int from, ct_ex3 r,
                             const struct ct_passage *p, int i, int sign)
 {
     struct ct_build *b = w->b;
-    const struct ct_flexible *f = p->e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, p->e);
     const struct section_partials by = section_partials(b, p->e);
     struct ct_section_turn turn[4];
-    const int nturn = ct_section_turns(p->e->station->angle, turn),
+    const int nturn = ct_section_turns(ct_edge_kinematics(b, p->e)->station->angle, turn),
               k = sign > 0 ? i : nturn - 1 - i, new = ct_member_add(w, from, -1, r);
     struct ct_member *m = ct_member_take_cluster(w, new, p->cluster[i]);
     const ct_ex3 axis = ct_member_rotation_axis(w, m, p->S, 0);
@@ -154,11 +157,11 @@ static int add_section_turn(struct ct_member_build *w, int from, ct_ex3 r,
 static int turn_section(struct ct_member_build *w, int from, ct_ex3 r,
                         const struct ct_passage *p, int sign)
 {
-    const struct ct_flexible *f = p->e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(w->b, p->e);
     int m = from;
     for (int i = 0; i < p->ncluster; i++, r = zero3)
         m = add_section_turn(w, m, r, p, i, sign);
-    if (!w->b->is_planar)
+    if (!w->b->topology->is_planar)
         return m;
     if (!p->ncluster)
         m = rigid_member(w, m, f, r);
@@ -170,7 +173,7 @@ bool ct_member_pass_section(struct ct_member_build *w, const struct ct_passage *
                             int *member, ct_ex3 *offset)
 {
     struct ct_build *b = w->b;
-    const struct ct_flexible *f = p->e->flexible;
+    const struct ct_flexible *f = ct_flexible_of_edge(b, p->e);
     struct ct_member_beam *beam = &w->s->beam[beam_of(b, f)];
     if (p->is_absolute || (sign < 0 && beam->base))
         return false;
@@ -185,7 +188,7 @@ bool ct_member_pass_section(struct ct_member_build *w, const struct ct_passage *
         *member = slide_section(w, turned, is_new ? zero3 : *offset, p->e, sign);
         beam->root = (int)first;
         beam->base = *member;
-        if (b->is_planar) { // what else the base carries
+        if (b->topology->is_planar) { // what else the base carries
             *member = rigid_member(w, *member, f, zero3);
             change_axes(w, *member, f, false);
         }

@@ -167,7 +167,7 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
 {
     const size_t n = b->eqs->nu;
     ct_ex *H = CT_NEWN(b->arena, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
-    ct_composite_derive(b, s, b->effort, H, Q);
+    ct_composite_derive(b, s, b->dynamics.effort, H, Q);
     struct trial t = try_matrix(b, H, Q);
     if (!t.solution)
         t.cost = INFINITY; // a call of a solver takes M and Q of the equations
@@ -177,7 +177,7 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
 static struct trial try_articulated(struct ct_build *b, const struct ct_members *s)
 {
     ct_ex *pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1),
-          *u = ct_articulated_solve(b, s, b->effort, pivot);
+          *u = ct_articulated_solve(b, s, b->dynamics.effort, pivot);
     return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 
@@ -214,7 +214,8 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
         t[CT_FORMULATION_ARTICULATED] = try_articulated(b, s);
     const double known = t[CT_FORMULATION_ARTICULATED].cost;
     const bool by_matrix = e->nu <= CT_SMALL_SYSTEM || !s || least_matrix_cost(b, s) < known;
-    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED && !b->is_planar)
+    if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED
+        && !b->topology->is_planar)
         t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
     // in space axes of the bodies always need fewer operations than those of ground
     if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))

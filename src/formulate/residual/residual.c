@@ -88,13 +88,14 @@ static void assemble_rows(struct ct_build *b, ct_ex *r)
 static void derive_rows(struct ct_build *b, ct_ex *r)
 {
     const size_t n = b->eqs->nu;
-    const struct ct_members *s = b->is_planar || b->nflexible ? NULL : ct_members_derive(b);
+    const struct ct_members *s
+        = b->topology->is_planar || b->nflexible ? NULL : ct_members_derive(b);
     for (size_t k = 0; k < n; k++)
         r[k] = ct_sweep_residual(b, (int)k);
     if (!s)
         return;
     ct_ex *by_members = CT_NEWN(b->ctx->scratch, ct_ex, n + 1);
-    ct_composite_residual(b, s, b->effort, by_members);
+    ct_composite_residual(b, s, b->dynamics.effort, by_members);
     const struct ct_tape_counts swept = ct_ex_count(b->ctx->scratch, b->x, r, n),
                                 other = ct_ex_count(b->ctx->scratch, b->x, by_members, n);
     for (size_t k = 0; k < n && ct_counted_cost(&other) < ct_counted_cost(&swept); k++)

@@ -7,18 +7,20 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 static ct_ex3 body_momentum(struct ct_build *b, size_t i)
 {
-    return ct_ex3_scale(b->x, b->model->body[i].mass, ct_node_velocity(b, b->node_of_com[i]));
+    return ct_ex3_scale(b->x, b->model->body[i].mass,
+                        ct_node_velocity(b, b->topology->node_of_com[i]));
 }
 
 ct_ex3 ct_body_angular_momentum(struct ct_build *b, size_t i)
 {
     const struct ct_body *body = &b->model->body[i];
-    const int node = b->node_of_com[i];
+    const int node = b->topology->node_of_com[i];
     if (body->is_particle)
         return zero3;
     const ct_ex *I = body->inertia;
     const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
-    const ct_ex3 w = ct_node_unturn(b, node, ct_cluster_velocity(b, b->placement[node].frame));
+    const ct_ex3 w
+        = ct_node_unturn(b, node, ct_cluster_velocity(b, b->kinematics->placement[node].frame));
     return ct_node_turn(b, node, ct_ex33_apply(b->x, &own, w));
 }
 
@@ -42,7 +44,7 @@ ct_ex3 ct_system_total_vector(struct ct_build *b, enum ct_system_total property)
     ct_ex3 sum = zero3;
     ct_ex mass = CT_EX_ZERO;
     for (size_t i = 1; i < b->model->nbody; i++) {
-        const ct_ex3 r = ct_node_position(b, b->node_of_com[i]);
+        const ct_ex3 r = ct_node_position(b, b->topology->node_of_com[i]);
         const ct_ex m = b->model->body[i].mass;
         struct ct_flexible *f = ct_flexible_of(b, (int)i);
         mass = ct_ex_add(x, mass, m);

@@ -46,7 +46,7 @@ static const char *const vector_properties[]
 
 static ct_ex3 frame_vector(struct ct_build *b, int node, int property)
 {
-    const int frame = b->placement[node].frame;
+    const int frame = b->kinematics->placement[node].frame;
     switch (property) {
     case 0:
         return ct_node_position(b, node);
@@ -68,7 +68,7 @@ static bool in_axes(struct ct_build *b, const struct ct_signal *s, ct_ex3 *v)
     const int f = ct_model_find_frame(b->model, s->axes);
     if (f < 0)
         return ct_signal_unknown(b, s, ct_arena_printf(b->arena, "no frame '%s'", s->axes));
-    *v = ct_node_unturn(b, b->node_of_frame[f], *v);
+    *v = ct_node_unturn(b, b->topology->node_of_frame[f], *v);
     return true;
 }
 
@@ -102,11 +102,12 @@ bool ct_signal_component(struct ct_build *b, const struct ct_signal *s, ct_ex3 v
 static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
 {
     if (!b->signals.quaternion)
-        b->signals.quaternion = CT_NEWN(b->arena, struct ct_kept_quaternion, b->nnode);
+        b->signals.quaternion
+            = CT_NEWN(b->arena, struct ct_kept_quaternion, b->topology->nnode);
     struct ct_kept_quaternion *q = &b->signals.quaternion[node];
     if (!q->made) {
         const ct_ex33 R = ct_node_rotation(b, node);
-        ct_quaternion_follow(b, b->node[node].name, &R, q->p);
+        ct_quaternion_follow(b, b->topology->node[node].name, &R, q->p);
         q->made = true;
     }
     return q->p[i];
@@ -117,7 +118,7 @@ static bool frame_signal(struct ct_build *b, int frame, const struct ct_signal *
     static const char *const entries[]
         = {"xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz"}; // column-major
     static const char *const numbers[] = {"0", "1", "2", "3"};
-    const int node = b->node_of_frame[frame];
+    const int node = b->topology->node_of_frame[frame];
     const int property = index_of(s->property, vector_properties, COUNT(vector_properties));
     if (property >= 0)
         return ct_signal_component(b, s, frame_vector(b, node, property), out);
@@ -178,7 +179,8 @@ static bool effort_signal(struct ct_build *b, int joint, int k, struct ct_signal
     }
     if (k >= self->nfree)
         return ct_signal_unknown(b, s, coordinates_of(b, self, "effort", false));
-    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + k;
+    const int coordinate
+        = b->topology->edge[b->topology->edge_of_joint[joint]].first_coordinate + k;
     if (b->coordinate[coordinate].is_driven)
         return leave_to_dynamics(s, CT_DYNAMIC_DRIVER, coordinate);
     const struct ct_value *effort = ct_instance_value(self, "effort");
@@ -218,7 +220,8 @@ static bool coordinate_signal(struct ct_build *b, int joint, struct ct_signal *s
         return effort_signal(b, joint, number - 1, s, out);
     if (self->from < 0 || number > n)
         return ct_signal_unknown(b, s, coordinates_of(b, self, kind, stored));
-    const int coordinate = b->edge[b->edge_of_joint[joint]].first_coordinate + number - 1;
+    const int coordinate
+        = b->topology->edge[b->topology->edge_of_joint[joint]].first_coordinate + number - 1;
     if (stored)
         *out = ct_coordinate_value(b, coordinate);
     else if (!strcmp(kind, "u"))
@@ -232,7 +235,7 @@ static bool joint_signal(struct ct_build *b, int joint, struct ct_signal *s, ct_
 {
     static const char *const kinds[] = {"q", "u", "a", "effort"};
     if ((!strcmp(s->property, "force") || !strcmp(s->property, "torque"))
-        && b->edge_of_joint[joint] >= 0)
+        && b->topology->edge_of_joint[joint] >= 0)
         return leave_to_dynamics(s, CT_DYNAMIC_REACTION, joint);
     const size_t letters = strcspn(s->property, "0123456789");
     for (size_t i = 0; i < COUNT(kinds); i++)
@@ -308,7 +311,7 @@ static bool global_signal(struct ct_build *b, struct ct_signal *s, ct_ex *out)
 static ct_ex3 body_com(struct ct_build *b, int body)
 {
     struct ct_flexible *f = ct_flexible_of(b, body);
-    const ct_ex3 r = ct_node_position(b, b->node_of_com[body]);
+    const ct_ex3 r = ct_node_position(b, b->topology->node_of_com[body]);
     if (!f)
         return r;
     ct_flexible_inertia_derive(b, f);

@@ -10,26 +10,28 @@
 
 #include <string.h>
 
-static int add_node(struct ct_build *b, const char *name, struct ct_mark mark, int body)
+static int add_node(struct ct_build *b, struct ct_topology *t, const char *name,
+                    struct ct_mark mark, int body)
 {
     const struct ct_node_info n = {.name = name,
                                    .mark = mark,
                                    .body = body,
                                    .is_particle = b->model->body[body].is_particle};
-    CT_PUSH(b->arena, b->node, b->nnode, b->node_cap, n);
-    return (int)b->nnode - 1;
+    CT_PUSH(b->arena, t->node, t->nnode, t->node_cap, n);
+    return (int)t->nnode - 1;
 }
 
-static struct ct_edge_info *add_edge(struct ct_build *b, enum ct_edge_kind kind,
-                                     const char *name, struct ct_mark mark, int tail, int head)
+static struct ct_edge_info *add_edge(struct ct_build *b, struct ct_topology *t,
+                                     enum ct_edge_kind kind, const char *name,
+                                     struct ct_mark mark, int tail, int head)
 {
     const struct ct_edge_info e
-        = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity()};
+        = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity(), .beam = -1};
     const struct ct_edge w = {tail, head};
-    size_t nwiring = b->nedge;
-    CT_PUSH(b->arena, b->wiring, nwiring, b->wiring_cap, w);
-    CT_PUSH(b->arena, b->edge, b->nedge, b->edge_cap, e);
-    return &b->edge[b->nedge - 1];
+    size_t nwiring = t->nedge;
+    CT_PUSH(b->arena, t->wiring, nwiring, t->wiring_cap, w);
+    CT_PUSH(b->arena, t->edge, t->nedge, t->edge_cap, e);
+    return &t->edge[t->nedge - 1];
 }
 
 // ---- frames and bodies ------------------------------------------------------------------------
@@ -45,13 +47,13 @@ static ct_ex33 turns_to_matrix(struct ct_exs *x, const struct ct_turn *turn, int
 }
 
 // Arm of a beam, from its base to the section at x.
-static struct ct_edge_info *add_section(struct ct_build *b, struct ct_flexible *f,
-                                        const char *name, struct ct_mark mark, int node,
-                                        ct_ex x)
+static struct ct_edge_info *add_section(struct ct_build *b, struct ct_topology *t,
+                                        struct ct_flexible *f, const char *name,
+                                        struct ct_mark mark, int node, ct_ex x)
 {
-    struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, name, mark, f->base, node);
+    struct ct_edge_info *e = add_edge(b, t, CT_EDGE_ARM, name, mark, f->base, node);
     e->index = -1;
-    e->flexible = f;
+    e->beam = (int)(f - b->flexible);
     e->along = x;
     e->at = (ct_ex3){{x, CT_EX_ZERO, CT_EX_ZERO}};
     e->has_rotation = e->must_be_branch = true;
@@ -59,22 +61,23 @@ static struct ct_edge_info *add_section(struct ct_build *b, struct ct_flexible *
 }
 
 // A point of a beam turns with its section; one off the axis hangs on it by a rigid arm.
-static void add_beam_point(struct ct_build *b, struct ct_flexible *f, size_t frame)
+static void add_beam_point(struct ct_build *b, struct ct_topology *t, struct ct_flexible *f,
+                           size_t frame)
 {
     const struct ct_frame *p = &b->model->frame[frame];
     const ct_ex3 across = {{CT_EX_ZERO, p->at.e[1], p->at.e[2]}};
     const ct_ex33 S = turns_to_matrix(b->x, p->turn, p->nturn);
-    const int node = b->node_of_frame[frame];
+    const int node = t->node_of_frame[frame];
     if (ct_ex3_is_zero(across)) {
-        struct ct_edge_info *e = add_section(b, f, p->name, p->mark, node, p->at.e[0]);
+        struct ct_edge_info *e = add_section(b, t, f, p->name, p->mark, node, p->at.e[0]);
         e->index = (int)frame;
         e->S = S;
         return;
     }
     const char *name = ct_arena_printf(b->arena, "%s.section", p->name);
-    const int section = add_node(b, name, p->mark, p->body);
-    add_section(b, f, name, p->mark, section, p->at.e[0]);
-    struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, p->name, p->mark, section, node);
+    const int section = add_node(b, t, name, p->mark, p->body);
+    add_section(b, t, f, name, p->mark, section, p->at.e[0]);
+    struct ct_edge_info *e = add_edge(b, t, CT_EDGE_ARM, p->name, p->mark, section, node);
     e->index = (int)frame;
     e->at = across;
     e->S = S;
@@ -82,28 +85,29 @@ static void add_beam_point(struct ct_build *b, struct ct_flexible *f, size_t fra
 }
 
 // The base of a beam is its own frame; with a frame on the chord the section at x = 0 turns against that.
-static void add_base(struct ct_build *b, struct ct_flexible *f)
+static void add_base(struct ct_build *b, struct ct_topology *t, struct ct_flexible *f)
 {
     const struct ct_body *body = &b->model->body[f->body];
-    const int own = b->node_of_frame[body->frame];
+    const int own = t->node_of_frame[body->frame];
     f->base = own;
     if (!f->beam->is_chord)
         return;
     const char *name = body->instance.name;
-    f->base = add_node(b, ct_arena_printf(b->arena, "%s.chord", name), body->instance.mark,
+    f->base = add_node(b, t, ct_arena_printf(b->arena, "%s.chord", name), body->instance.mark,
                        f->body);
-    add_section(b, f, ct_arena_printf(b->arena, "%s.start", name), body->instance.mark, own,
+    add_section(b, t, f, ct_arena_printf(b->arena, "%s.start", name), body->instance.mark, own,
                 CT_EX_ZERO);
 }
 
-static void add_frames(struct ct_build *b)
+static void add_frames(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
-    b->node_of_frame = CT_NEWN(b->arena, int, m->nframe);
+    t->node_of_frame = CT_NEWN(b->arena, int, m->nframe);
     for (size_t i = 0; i < m->nframe; i++)
-        b->node_of_frame[i] = add_node(b, m->frame[i].name, m->frame[i].mark, m->frame[i].body);
+        t->node_of_frame[i]
+            = add_node(b, t, m->frame[i].name, m->frame[i].mark, m->frame[i].body);
     for (size_t i = 0; i < b->nflexible; i++)
-        add_base(b, &b->flexible[i]);
+        add_base(b, t, &b->flexible[i]);
     for (size_t i = 0; i < m->nframe; i++) {
         const struct ct_frame *f = &m->frame[i];
         const int own = m->body[f->body].frame;
@@ -111,11 +115,11 @@ static void add_frames(struct ct_build *b)
             continue;
         struct ct_flexible *beam = ct_flexible_of(b, f->body);
         if (beam) {
-            add_beam_point(b, beam, i);
+            add_beam_point(b, t, beam, i);
             continue;
         }
-        struct ct_edge_info *e = add_edge(b, CT_EDGE_ARM, f->name, f->mark,
-                                          b->node_of_frame[own], b->node_of_frame[i]);
+        struct ct_edge_info *e = add_edge(b, t, CT_EDGE_ARM, f->name, f->mark,
+                                          t->node_of_frame[own], t->node_of_frame[i]);
         e->index = (int)i;
         e->at = f->at;
         e->S = turns_to_matrix(b->x, f->turn, f->nturn);
@@ -124,33 +128,33 @@ static void add_frames(struct ct_build *b)
 }
 
 // The body edge runs from ground to the centre of mass; in absolute coordinates it is the branch.
-static void add_bodies(struct ct_build *b)
+static void add_bodies(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
-    b->node_of_com = CT_NEWN(b->arena, int, m->nbody);
-    b->edge_of_body = CT_NEWN(b->arena, int, m->nbody);
-    b->edge_of_body[0] = -1;
+    t->node_of_com = CT_NEWN(b->arena, int, m->nbody);
+    t->edge_of_body = CT_NEWN(b->arena, int, m->nbody);
+    t->edge_of_body[0] = -1;
     for (size_t i = 1; i < m->nbody; i++) {
         const struct ct_body *body = &m->body[i];
         const struct ct_flexible *f = ct_flexible_of(b, (int)i);
-        const int own = f ? f->base : b->node_of_frame[body->frame];
-        b->node_of_com[i] = own;
+        const int own = f ? f->base : t->node_of_frame[body->frame];
+        t->node_of_com[i] = own;
         if (!ct_ex3_is_zero(body->com)) {
             const char *name = ct_arena_printf(b->arena, "%s.com", body->instance.name);
-            const int com = add_node(b, name, body->instance.mark, (int)i);
+            const int com = add_node(b, t, name, body->instance.mark, (int)i);
             struct ct_edge_info *arm
-                = add_edge(b, CT_EDGE_ARM, name, body->instance.mark, own, com);
+                = add_edge(b, t, CT_EDGE_ARM, name, body->instance.mark, own, com);
             arm->index = -1;
             arm->at = body->com;
             arm->has_rotation = arm->must_be_branch = true;
-            b->node_of_com[i] = com;
+            t->node_of_com[i] = com;
         }
-        struct ct_edge_info *e = add_edge(b, CT_EDGE_BODY, body->instance.name,
-                                          body->instance.mark, 0, b->node_of_com[i]);
+        struct ct_edge_info *e = add_edge(b, t, CT_EDGE_BODY, body->instance.name,
+                                          body->instance.mark, 0, t->node_of_com[i]);
         e->index = (int)i;
         e->self = &body->instance;
         e->has_rotation = true;
-        b->edge_of_body[i] = (int)b->nedge - 1;
+        t->edge_of_body[i] = (int)t->nedge - 1;
     }
 }
 
@@ -169,57 +173,58 @@ static bool is_motionless(const struct ct_instance *joint)
     return !joint->cls->motion;
 }
 
-static void add_joints(struct ct_build *b)
+static void add_joints(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
-    b->edge_of_joint = CT_NEWN(b->arena, int, m->njoint + 1);
-    int *set = CT_NEWN(b->arena, int, b->nnode + m->njoint);
-    for (size_t i = 0; i < b->nnode + m->njoint; i++)
+    t->edge_of_joint = CT_NEWN(b->arena, int, m->njoint + 1);
+    int *set = CT_NEWN(b->arena, int, t->nnode + m->njoint);
+    for (size_t i = 0; i < t->nnode + m->njoint; i++)
         set[i] = (int)i;
-    for (size_t e = 0; e < b->nedge; e++)
-        if (b->edge[e].must_be_branch)
-            set[find(set, b->wiring[e].tail)] = find(set, b->wiring[e].head);
+    for (size_t e = 0; e < t->nedge; e++)
+        if (t->edge[e].must_be_branch)
+            set[find(set, t->wiring[e].tail)] = find(set, t->wiring[e].head);
     for (size_t j = 0; j < m->njoint; j++) {
         const struct ct_instance *joint = &m->joint[j];
-        b->edge_of_joint[j] = -1;
+        t->edge_of_joint[j] = -1;
         if (joint->from < 0)
             continue; // a gear couples coordinates, it joins no frames
-        const int from = b->node_of_frame[joint->from];
-        int to = b->node_of_frame[joint->to], closure = -1;
+        const int from = t->node_of_frame[joint->from];
+        int to = t->node_of_frame[joint->to], closure = -1;
         if (joint->cls->always_branch) {
             if (find(set, from) == find(set, to)) {
                 // the loop is closed by a weld behind the joint
                 closure = to;
-                to = add_node(b, ct_arena_printf(b->arena, "%s.end", joint->name), joint->mark,
-                              b->node[to].body);
+                to = add_node(b, t, ct_arena_printf(b->arena, "%s.end", joint->name),
+                              joint->mark, t->node[to].body);
             }
             set[find(set, from)] = find(set, to);
         }
-        struct ct_edge_info *e = add_edge(b, CT_EDGE_JOINT, joint->name, joint->mark, from, to);
+        struct ct_edge_info *e
+            = add_edge(b, t, CT_EDGE_JOINT, joint->name, joint->mark, from, to);
         e->index = (int)j;
         e->self = joint;
-        e->has_rotation = !b->node[from].is_particle && !b->node[to].is_particle;
+        e->has_rotation = !t->node[from].is_particle && !t->node[to].is_particle;
         e->must_be_branch = joint->cls->always_branch;
         e->never_branch = is_motionless(joint);
-        b->edge_of_joint[j] = (int)b->nedge - 1;
+        t->edge_of_joint[j] = (int)t->nedge - 1;
         if (closure >= 0) {
-            e = add_edge(b, CT_EDGE_CLOSURE,
+            e = add_edge(b, t, CT_EDGE_CLOSURE,
                          ct_arena_printf(b->arena, "%s.closure", joint->name), joint->mark, to,
                          closure);
             e->index = (int)j;
-            e->has_rotation = !b->node[closure].is_particle;
+            e->has_rotation = !t->node[closure].is_particle;
         }
     }
 }
 
-static void add_forces(struct ct_build *b)
+static void add_forces(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
     for (size_t i = 0; i < m->nforce; i++) {
         const struct ct_instance *f = &m->force[i];
-        const int from = f->from < 0 ? 0 : b->node_of_frame[f->from];
+        const int from = f->from < 0 ? 0 : t->node_of_frame[f->from];
         struct ct_edge_info *e
-            = add_edge(b, CT_EDGE_FORCE, f->name, f->mark, from, b->node_of_frame[f->to]);
+            = add_edge(b, t, CT_EDGE_FORCE, f->name, f->mark, from, t->node_of_frame[f->to]);
         e->index = (int)i;
         e->self = f;
         e->never_branch = true;
@@ -233,12 +238,15 @@ static void add_forces(struct ct_build *b)
 static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
 {
     struct ct_exs *x = b->x;
-    if (b->is_planar) {
-        m->d = ct_ex3_add(x, ct_ex3_scale(x, b->layer[b->node_of_com[e->index]], b->plane[2]),
-                          ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], b->plane[0]),
-                                     ct_ex3_scale(x, m->coord[1], b->plane[1])));
-        ct_motion_measure_length(m, b->plane[0]);
-        ct_motion_measure_length(m, b->plane[1]);
+    if (b->topology->is_planar) {
+        m->d
+            = ct_ex3_add(x,
+                         ct_ex3_scale(x, b->topology->layer[b->topology->node_of_com[e->index]],
+                                      b->topology->plane[2]),
+                         ct_ex3_add(x, ct_ex3_scale(x, m->coord[0], b->topology->plane[0]),
+                                    ct_ex3_scale(x, m->coord[1], b->topology->plane[1])));
+        ct_motion_measure_length(m, b->topology->plane[0]);
+        ct_motion_measure_length(m, b->topology->plane[1]);
     } else {
         m->d = (ct_ex3){{m->coord[0], m->coord[1], m->coord[2]}};
         for (int i = 0; i < 3; i++) {
@@ -249,10 +257,10 @@ static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct
     }
     if (b->model->body[e->index].is_particle)
         return;
-    if (b->is_planar) {
-        ct_motion_add_rotation(m, b->plane[2], m->coord[2]);
-        ct_motion_measure_angle(m, b->plane[2], b->plane[0]);
-        m->measure[2].w = ct_ex33_apply_t(x, &e->S, b->plane[0]);
+    if (b->topology->is_planar) {
+        ct_motion_add_rotation(m, b->topology->plane[2], m->coord[2]);
+        ct_motion_measure_angle(m, b->topology->plane[2], b->topology->plane[0]);
+        m->measure[2].w = ct_ex33_apply_t(x, &e->S, b->topology->plane[0]);
     } else {
         m->quaternion = 3;
         m->measure[m->nmeasure++].kind = CT_MEASURE_QUATERNION;
@@ -265,8 +273,8 @@ static void count_coordinates(const struct ct_build *b, const struct ct_edge_inf
     const bool is_particle = e->kind == CT_EDGE_BODY && b->model->body[e->index].is_particle;
     *ncoord = *nfree = 0;
     if (e->kind == CT_EDGE_BODY) {
-        *ncoord = b->is_planar ? 3 - is_particle : is_particle ? 3 : 7;
-        *nfree = b->is_planar ? *ncoord : is_particle ? 3 : 6;
+        *ncoord = b->topology->is_planar ? 3 - is_particle : is_particle ? 3 : 7;
+        *nfree = b->topology->is_planar ? *ncoord : is_particle ? 3 : 6;
     } else if (e->kind == CT_EDGE_JOINT) {
         *ncoord = e->self->ncoord;
         *nfree = e->self->nfree;
@@ -309,6 +317,8 @@ void ct_linear_graph_edge_motion(struct ct_build *b, const struct ct_edge_info *
         ct_motion_lock_rotation(b->x, m);
         break;
     case CT_EDGE_ARM:
+        m->d = e->at;
+        break;
     case CT_EDGE_FORCE:
         break;
     }
@@ -319,20 +329,20 @@ static const char *coordinate_name(struct ct_build *b, const struct ct_edge_info
                                    const struct ct_motion *m, int k)
 {
     static const char *const orientation[] = {"p0", "p1", "p2", "p3"};
-    const int nplace = b->is_planar ? 2 : 3;
+    const int nplace = b->topology->is_planar ? 2 : 3;
     if (e->kind == CT_EDGE_BODY)
         return ct_arena_printf(b->arena, "%s.%s", e->name,
-                               k < nplace     ? ct_plane_axis_name(b, k)
-                               : b->is_planar ? "angle"
-                                              : orientation[k - nplace]);
+                               k < nplace               ? ct_plane_axis_name(b, k)
+                               : b->topology->is_planar ? "angle"
+                                                        : orientation[k - nplace]);
     return m->ncoord == 1 ? ct_arena_printf(b->arena, "%s.q", e->name)
                           : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
 }
 
 // Coordinates of an edge with trial symbols, to learn which graph each belongs to.
-static void add_coordinates(struct ct_build *b, int edge)
+static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
 {
-    struct ct_edge_info *e = &b->edge[edge];
+    struct ct_edge_info *e = &t->edge[edge];
     struct ct_motion m = {0};
     count_coordinates(b, e, &m.ncoord, &m.nfree);
     for (int k = 0; k < m.ncoord; k++)
@@ -364,32 +374,33 @@ static void add_coordinates(struct ct_build *b, int edge)
 // ---- the stage ------------------------------------------------------------------------------------
 
 // Rooms for what most models have, so that nothing is copied as the list grows: edges are large.
-static void reserve_edges(struct ct_build *b)
+static void reserve_edges(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
-    b->edge_cap = m->nframe + m->nbody + m->njoint + m->nforce; // a body has an arm and an edge
-    b->edge = CT_NEWN(b->arena, struct ct_edge_info, b->edge_cap);
+    t->edge_cap = m->nframe + m->nbody + m->njoint + m->nforce; // a body has an arm and an edge
+    t->edge = CT_NEWN(b->arena, struct ct_edge_info, t->edge_cap);
 }
 
-bool ct_linear_graph_derive(struct ct_build *b, bool planar_allowed)
+void ct_linear_graph_derive(struct ct_build *b, bool planar_allowed)
 {
+    struct ct_topology *t = CT_NEW(b->arena, struct ct_topology);
+    b->topology = t;
     ct_flexible_create(b);
-    reserve_edges(b);
-    add_frames(b);
-    add_bodies(b);
-    add_joints(b);
-    add_forces(b);
-    for (size_t e = 0; e < b->nedge; e++) // joints first: they decide whether all is planar
-        if (b->edge[e].kind == CT_EDGE_JOINT || b->edge[e].kind == CT_EDGE_CLOSURE)
-            add_coordinates(b, (int)e);
-    ct_planarity_detect(b, planar_allowed);
+    reserve_edges(b, t);
+    add_frames(b, t);
+    add_bodies(b, t);
+    add_joints(b, t);
+    add_forces(b, t);
+    for (size_t e = 0; e < t->nedge; e++) // joints first: they decide whether all is planar
+        if (t->edge[e].kind == CT_EDGE_JOINT || t->edge[e].kind == CT_EDGE_CLOSURE)
+            add_coordinates(b, t, (int)e);
+    ct_planarity_detect(b, t, planar_allowed);
     ct_flexible_choose_deformation(b);
-    for (size_t e = 0; e < b->nedge; e++)
-        if (b->edge[e].kind == CT_EDGE_BODY) {
-            if (b->is_planar && !b->node[b->wiring[e].head].is_particle)
-                b->edge[e].S = b->upright[b->wiring[e].head];
-            add_coordinates(b, (int)e);
+    for (size_t e = 0; e < t->nedge; e++)
+        if (t->edge[e].kind == CT_EDGE_BODY) {
+            if (t->is_planar && !t->node[t->wiring[e].head].is_particle)
+                t->edge[e].S = t->upright[t->wiring[e].head];
+            add_coordinates(b, t, (int)e);
         }
-    b->graph = (struct ct_graph){(int)b->nnode, (int)b->nedge, b->wiring};
-    return true;
+    t->graph = (struct ct_graph){(int)t->nnode, (int)t->nedge, t->wiring};
 }

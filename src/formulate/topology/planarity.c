@@ -71,11 +71,13 @@ static bool holds_axes(const struct ct_edge_info *e)
 // Edges that hold axes, in the order in which they take them from known nodes to others; turning: only those with rotation.
 static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
 {
-    const struct ct_graph g = {(int)b->nnode, (int)b->nedge, b->wiring};
-    bool *usable = CT_NEWN(b->arena, bool, b->nedge + 1);
-    for (size_t i = 0; i < b->nedge; i++)
-        usable[i] = holds_axes(&b->edge[i]) && (!turning || b->edge[i].has_rotation);
-    int *order = CT_NEWN(b->arena, int, b->nnode);
+    const struct ct_graph g
+        = {(int)b->topology->nnode, (int)b->topology->nedge, b->topology->wiring};
+    bool *usable = CT_NEWN(b->arena, bool, b->topology->nedge + 1);
+    for (size_t i = 0; i < b->topology->nedge; i++)
+        usable[i] = holds_axes(&b->topology->edge[i])
+                 && (!turning || b->topology->edge[i].has_rotation);
+    int *order = CT_NEWN(b->arena, int, b->topology->nnode);
     *n = ct_graph_spread(b->arena, &g, usable, known, order);
     return order;
 }
@@ -84,10 +86,11 @@ static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
 // normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
 static ct_ex33 **upright_axes(struct ct_build *b)
 {
-    ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->nnode);
-    bool *known = CT_NEWN(b->arena, bool, b->nnode);
-    for (size_t i = 0; i < b->nnode; i++)
-        if (i == 0 || b->node[i].is_particle) { // axes of particles stay those of ground
+    ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->topology->nnode);
+    bool *known = CT_NEWN(b->arena, bool, b->topology->nnode);
+    for (size_t i = 0; i < b->topology->nnode; i++)
+        if (i == 0
+            || b->topology->node[i].is_particle) { // axes of particles stay those of ground
             U[i] = CT_NEW(b->arena, ct_ex33);
             *U[i] = ct_ex33_identity();
             known[i] = true;
@@ -95,8 +98,8 @@ static ct_ex33 **upright_axes(struct ct_build *b)
     int n;
     const int *order = spread_axes(b, true, known, &n);
     for (int k = 0; k < n; k++) {
-        const struct ct_edge_info *e = &b->edge[order[k]];
-        const struct ct_edge ends = b->wiring[order[k]];
+        const struct ct_edge_info *e = &b->topology->edge[order[k]];
+        const struct ct_edge ends = b->topology->wiring[order[k]];
         const int from = U[ends.tail] ? ends.tail : ends.head,
                   to = from == ends.tail ? ends.head : ends.tail;
         const ct_ex33 S = from == ends.tail ? e->S : ct_ex33_transpose(&e->S);
@@ -109,13 +112,13 @@ static ct_ex33 **upright_axes(struct ct_build *b)
 // How far an arm or a joint reaches out of the plane [m]; the coordinates of a joint keep to it.
 static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
 {
-    const struct ct_edge_info *e = &b->edge[edge];
+    const struct ct_edge_info *e = &b->topology->edge[edge];
     const ct_ex zero[CT_MAX_COORD] = {{0}};
     ct_ex3 d = e->at;
     for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
         d.e[i]
             = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
-    return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->plane[2]), d);
+    return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->topology->plane[2]), d);
 }
 
 static const double layer_tolerance
@@ -126,8 +129,8 @@ static double longest_arm(const struct ct_build *b)
     double longest = 0, at[3];
     unsigned char *decided = b->x->decided;
     b->x->decided = NULL; // a scale of round-off errors: the equations do not depend on it
-    for (size_t i = 0; i < b->nedge; i++) {
-        value3(b, b->edge[i].at, at);
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        value3(b, b->topology->edge[i].at, at);
         longest = fmax(longest, sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
     }
     b->x->decided = decided;
@@ -135,43 +138,43 @@ static double longest_arm(const struct ct_build *b)
 }
 
 // Places of the nodes along the normal, where joints keep to the plane.
-static void find_layers(struct ct_build *b, ct_ex33 *const *U)
+static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
-    bool *known = CT_NEWN(b->arena, bool, b->nnode),
-         *placed = CT_NEWN(b->arena, bool, b->nnode);
-    b->layer = CT_NEWN(b->arena, ct_ex, b->nnode);
+    bool *known = CT_NEWN(b->arena, bool, t->nnode),
+         *placed = CT_NEWN(b->arena, bool, t->nnode);
+    t->layer = CT_NEWN(b->arena, ct_ex, t->nnode);
     known[0] = placed[0] = true;
     int n;
     const int *order = spread_axes(b, false, known, &n);
     for (int k = 0; k < n; k++) {
-        const int tail = b->wiring[order[k]].tail, head = b->wiring[order[k]].head;
+        const int tail = t->wiring[order[k]].tail, head = t->wiring[order[k]].head;
         const ct_ex up = reach_out(b, order[k], U[tail]);
         if (placed[tail])
-            b->layer[head] = ct_ex_add(b->x, b->layer[tail], up);
+            t->layer[head] = ct_ex_add(b->x, t->layer[tail], up);
         else
-            b->layer[tail] = ct_ex_sub(b->x, b->layer[head], up);
+            t->layer[tail] = ct_ex_sub(b->x, t->layer[head], up);
         placed[tail] = placed[head] = true;
     }
 }
 
 // Does every joint keep to the plane, and do its loops close out of it? Every body must hang on joints.
-static bool is_plane(struct ct_build *b, ct_ex33 *const *U)
+static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
-    double(*n)[3] = ct_arena_calloc(b->arena, b->nnode, sizeof *n);
+    double(*n)[3] = ct_arena_calloc(b->arena, t->nnode, sizeof *n);
     const double allowed = layer_tolerance * longest_arm(b);
-    for (size_t i = 0; i < b->nnode; i++) {
+    for (size_t i = 0; i < t->nnode; i++) {
         if (!U[i])
             return false;
-        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n[i]);
+        value3(b, ct_ex33_apply_t(b->x, U[i], t->plane[2]), n[i]);
     }
-    find_layers(b, U);
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
-        const int tail = b->wiring[i].tail, head = b->wiring[i].head;
+    find_layers(b, t, U);
+    for (size_t i = 0; i < t->nedge; i++) {
+        const struct ct_edge_info *e = &t->edge[i];
+        const int tail = t->wiring[i].tail, head = t->wiring[i].head;
         if (!holds_axes(e))
             continue;
-        const ct_ex end = ct_ex_add(b->x, b->layer[tail], reach_out(b, (int)i, U[tail]));
-        if (fabs(ct_ex_value(b->x, end, b->value) - ct_ex_value(b->x, b->layer[head], b->value))
+        const ct_ex end = ct_ex_add(b->x, t->layer[tail], reach_out(b, (int)i, U[tail]));
+        if (fabs(ct_ex_value(b->x, end, b->value) - ct_ex_value(b->x, t->layer[head], b->value))
             > allowed)
             return false;
         if (e->kind != CT_EDGE_ARM && e->has_rotation && !is_same(n[tail], n[head]))
@@ -183,46 +186,46 @@ static bool is_plane(struct ct_build *b, ct_ex33 *const *U)
 }
 
 // Nodes that see the normal as ground does need no rotation of their own.
-static void keep_uprights(struct ct_build *b, ct_ex33 **U)
+static void keep_uprights(struct ct_build *b, struct ct_topology *t, ct_ex33 **U)
 {
     double g[3], n[3];
-    value3(b, b->plane[2], g);
-    b->upright = CT_NEWN(b->arena, ct_ex33, b->nnode);
-    for (size_t i = 0; i < b->nnode; i++) {
-        value3(b, ct_ex33_apply_t(b->x, U[i], b->plane[2]), n);
-        b->upright[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
+    value3(b, t->plane[2], g);
+    t->upright = CT_NEWN(b->arena, ct_ex33, t->nnode);
+    for (size_t i = 0; i < t->nnode; i++) {
+        value3(b, ct_ex33_apply_t(b->x, U[i], t->plane[2]), n);
+        t->upright[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
     }
 }
 
 // Does everything keep to the plane across an axis (ground components)? The sense does not matter; prefer the one along
 // +z, +y, +x, so that coordinates read as usual.
-static bool takes_normal(struct ct_build *b, ct_ex33 **U, ct_ex3 axis)
+static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U, ct_ex3 axis)
 {
     double n[3];
     value3(b, axis, n);
     const int most = fabs(n[2]) > 0.5 ? 2 : fabs(n[1]) > 0.5 ? 1 : 0;
-    b->plane[2] = n[most] < 0 ? ct_ex3_neg(b->x, axis) : axis;
-    if (!is_plane(b, U) || !ct_deformation_keeps_plane(b, U))
+    t->plane[2] = n[most] < 0 ? ct_ex3_neg(b->x, axis) : axis;
+    if (!is_plane(b, t, U) || !ct_deformation_keeps_plane(b, U, &t->is_spatial_for_beams))
         return false;
-    keep_uprights(b, U);
+    keep_uprights(b, t, U);
     return true;
 }
 
 // The normal can only be the axis of the first joint that turns, as ground sees it; where none does, an axis that a beam
 // bends about.
-static bool find_normal(struct ct_build *b)
+static bool find_normal(struct ct_build *b, struct ct_topology *t)
 {
     ct_ex33 **U = upright_axes(b);
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
-        const ct_ex33 *A = U[b->wiring[i].tail];
+    for (size_t i = 0; i < t->nedge; i++) {
+        const struct ct_edge_info *e = &t->edge[i];
+        const ct_ex33 *A = U[t->wiring[i].tail];
         if (e->kind == CT_EDGE_JOINT && e->has_rotation && e->trial.nturn)
-            return A && takes_normal(b, U, ct_ex33_apply(b->x, A, e->trial.turn[0].axis));
+            return A && takes_normal(b, t, U, ct_ex33_apply(b->x, A, e->trial.turn[0].axis));
     }
     for (int axis = 2; axis > 0 && b->nflexible; axis--) {
         const ct_ex33 *A = U[b->flexible[0].base];
         if (A
-            && takes_normal(b, U,
+            && takes_normal(b, t, U,
                             (ct_ex3){{A->e[3 * axis], A->e[1 + 3 * axis], A->e[2 + 3 * axis]}}))
             return true;
     }
@@ -232,33 +235,33 @@ static bool find_normal(struct ct_build *b)
 const char *ct_plane_axis_name(const struct ct_build *b, int i)
 {
     static const char *const letter[] = {"x", "y", "z"}, *const own[] = {"e1", "e2", "e3"};
-    if (!b->is_planar)
+    if (!b->topology->is_planar)
         return letter[i];
     for (int k = 0; k < 3; k++) {
         double axis[3] = {0}, v[3];
         axis[k] = 1;
-        value3(b, b->plane[i], v);
+        value3(b, b->topology->plane[i], v);
         if (is_same(v, axis))
             return letter[k];
     }
     return own[i];
 }
 
-void ct_planarity_detect(struct ct_build *b, bool allowed)
+void ct_planarity_detect(struct ct_build *b, struct ct_topology *t, bool allowed)
 {
     const double axes[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int i = 0; i < 3; i++)
-        b->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
-    b->keeps_plane = find_normal(b);
-    b->normal = b->plane[2];
-    if (!allowed || !b->keeps_plane) {
-        b->plane[2] = ct_ex3_const(b->x, axes + 6);
+        t->plane[i] = ct_ex3_const(b->x, axes + 3 * i);
+    t->keeps_plane = find_normal(b, t);
+    t->normal = t->plane[2];
+    if (!allowed || !t->keeps_plane) {
+        t->plane[2] = ct_ex3_const(b->x, axes + 6);
         return;
     }
-    b->is_planar = b->eqs->is_planar = true;
-    ct_axes_normal(b->x, b->plane[2], b->value, &b->plane[0], &b->plane[1]);
+    t->is_planar = b->eqs->is_planar = true;
+    ct_axes_normal(b->x, t->plane[2], b->value, &t->plane[0], &t->plane[1]);
     double v[3];
-    value3(b, b->plane[2], v);
+    value3(b, t->plane[2], v);
     const char *why = ct_arena_printf(
         b->arena, "every joint turns about (%.6g, %.6g, %.6g) or slides across it", v[0], v[1],
         v[2]);

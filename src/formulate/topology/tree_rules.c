@@ -10,14 +10,16 @@
 // Distance of each node from ground over edges that can be branches: in edges, or in rotational freedoms.
 static int *node_depths(struct ct_build *b, bool by_rotation)
 {
-    int *depth = CT_NEWN(b->arena, int, b->nnode), *length = CT_NEWN(b->arena, int, b->nedge);
-    bool *usable = CT_NEWN(b->arena, bool, b->nedge);
-    for (size_t e = 0; e < b->nedge; e++) {
-        usable[e] = b->edge[e].kind != CT_EDGE_BODY && !b->edge[e].never_branch;
-        length[e] = by_rotation ? b->edge[e].weight_r : 1;
+    int *depth = CT_NEWN(b->arena, int, b->topology->nnode),
+        *length = CT_NEWN(b->arena, int, b->topology->nedge);
+    bool *usable = CT_NEWN(b->arena, bool, b->topology->nedge);
+    for (size_t e = 0; e < b->topology->nedge; e++) {
+        usable[e]
+            = b->topology->edge[e].kind != CT_EDGE_BODY && !b->topology->edge[e].never_branch;
+        length[e] = by_rotation ? b->topology->edge[e].weight_r : 1;
     }
-    ct_graph_distances(b->arena, &b->graph, usable, length, (int)b->nnode * CT_MAX_COORD,
-                       depth);
+    ct_graph_distances(b->arena, &b->topology->graph, usable, length,
+                       (int)b->topology->nnode * CT_MAX_COORD, depth);
     return depth;
 }
 
@@ -25,9 +27,9 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
 // such a section moves with all of them, and fills the mass matrix. The start of a clamped beam does not follow.
 static bool turns_follower(const struct ct_build *b, size_t i)
 {
-    const int end[2] = {b->wiring[i].tail, b->wiring[i].head};
+    const int end[2] = {b->topology->wiring[i].tail, b->topology->wiring[i].head};
     for (int k = 0; k < 2; k++) {
-        const struct ct_flexible *f = ct_flexible_of(b, b->node[end[k]].body);
+        const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[end[k]].body);
         if (f && (f->beam->is_chord || end[k] != f->base)
             && (f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO)
             && (ct_ex_is_zero(ct_flexible_rotary(f, 1).value)
@@ -40,22 +42,22 @@ static bool turns_follower(const struct ct_build *b, size_t i)
 // Does no edge that can be a branch close a loop, and is no joint a constraint alone?
 static bool is_without_loops(const struct ct_build *b)
 {
-    int *weight = CT_NEWN(b->ctx->scratch, int, b->nedge + 1),
-        *piece = CT_NEWN(b->ctx->scratch, int, b->nnode + 1), npiece = 1;
+    int *weight = CT_NEWN(b->ctx->scratch, int, b->topology->nedge + 1),
+        *piece = CT_NEWN(b->ctx->scratch, int, b->topology->nnode + 1), npiece = 1;
     size_t nusable = 0;
     struct ct_tree unused;
-    for (size_t e = 0; e < b->nedge; e++) {
-        const enum ct_edge_kind kind = b->edge[e].kind;
-        if (b->edge[e].never_branch && kind != CT_EDGE_FORCE)
+    for (size_t e = 0; e < b->topology->nedge; e++) {
+        const enum ct_edge_kind kind = b->topology->edge[e].kind;
+        if (b->topology->edge[e].never_branch && kind != CT_EDGE_FORCE)
             return false;
         const bool usable = kind != CT_EDGE_BODY && kind != CT_EDGE_FORCE;
         weight[e] = usable ? 0 : -1;
         nusable += usable;
     }
-    ct_tree_kruskal(b->arena, &b->graph, weight, NULL, &unused, piece);
-    for (size_t i = 0; i < b->nnode; i++)
+    ct_tree_kruskal(b->arena, &b->topology->graph, weight, NULL, &unused, piece);
+    for (size_t i = 0; i < b->topology->nnode; i++)
         npiece = piece[i] >= npiece ? piece[i] + 1 : npiece;
-    return nusable + (size_t)npiece == b->nnode;
+    return nusable + (size_t)npiece == b->topology->nnode;
 }
 
 // Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be articulated bodies (6.9b)?
@@ -71,9 +73,9 @@ static bool fills_matrix(const struct ct_build *b)
 // of articulated bodies only if what it hangs on turns it: an angle from ground is that of its frame.
 static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 {
-    const int tail = b->wiring[i].tail, head = b->wiring[i].head,
+    const int tail = b->topology->wiring[i].tail, head = b->topology->wiring[i].head,
               end = depth[head] > depth[tail] ? head : tail;
-    const struct ct_flexible *f = ct_flexible_of(b, b->node[end].body);
+    const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[end].body);
     return f && end != f->base;
 }
 
@@ -83,15 +85,16 @@ static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
                     enum ct_tree_choice choice, bool fills)
 {
-    const struct ct_edge_info *e = &b->edge[i];
-    const int tail = b->wiring[i].tail, head = b->wiring[i].head, last = 2 * (int)b->nedge;
+    const struct ct_edge_info *e = &b->topology->edge[i];
+    const int tail = b->topology->wiring[i].tail, head = b->topology->wiring[i].head,
+              last = 2 * (int)b->topology->nedge;
     if (e->kind == CT_EDGE_ARM)
         return -1;
     if (e->kind == CT_EDGE_BODY)
-        return b->is_planar && choice == CT_TREE_AUTO ? 1 : last;
+        return b->topology->is_planar && choice == CT_TREE_AUTO ? 1 : last;
     const bool enters = enters_section(b, i, depth),
                is_first = turned[tail] == 0 || turned[head] == 0 || enters;
-    if ((is_first && !(b->is_planar && turns_follower(b, i) && !(enters && fills)))
+    if ((is_first && !(b->topology->is_planar && turns_follower(b, i) && !(enters && fills)))
         || (e->kind == CT_EDGE_JOINT && ct_joint_is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);
@@ -101,18 +104,18 @@ static int order_names(const void *build, const void *left, const void *right)
 {
     const struct ct_build *b = build;
     const int *i = left, *k = right;
-    return strcmp(b->edge[*i].name, b->edge[*k].name);
+    return strcmp(b->topology->edge[*i].name, b->topology->edge[*k].name);
 }
 
 // Equal ranks in the order of names: the trees of assembly, and with them the assembly found where there
 // are several, do not depend on the order of the file.
 static void rank_by_name(const struct ct_build *b, int *rank)
 {
-    const int n = (int)b->nedge;
+    const int n = (int)b->topology->nedge;
     int *sorted = CT_NEWN(b->arena, int, n + 1), place = 0;
     for (int i = 0; i < n; i++)
         sorted[i] = i;
-    ct_sort(b->arena, sorted, b->nedge, sizeof *sorted, order_names, b);
+    ct_sort(b->arena, sorted, b->topology->nedge, sizeof *sorted, order_names, b);
     for (int k = 0; k < n; k++) { // place: how many names come before
         if (k && order_names(b, &sorted[k - 1], &sorted[k]) != 0)
             place = k;
@@ -124,7 +127,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
                                         const struct ct_formulate_options *o)
 {
     const enum ct_tree_choice choice = o->tree;
-    const size_t n = b->nedge;
+    const size_t n = b->topology->nedge;
     struct ct_pair_rules r = {.weight_t = CT_NEWN(b->arena, int, n),
                               .weight_r = CT_NEWN(b->arena, int, n),
                               .rank = CT_NEWN(b->arena, int, n),
@@ -136,7 +139,7 @@ struct ct_pair_rules ct_pair_rules_make(struct ct_build *b,
     const int *depth = node_depths(b, false), *turned = node_depths(b, true);
     const bool fills = fills_matrix(b);
     for (size_t i = 0; i < n; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+        const struct ct_edge_info *e = &b->topology->edge[i];
         const bool is_body = e->kind == CT_EDGE_BODY;
         const bool is_particle = is_body && b->model->body[e->index].is_particle;
         const bool dear = choice == CT_TREE_ABSOLUTE ? !is_body : is_body;

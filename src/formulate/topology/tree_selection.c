@@ -10,11 +10,12 @@
 // Is every chord of the least-weight trees a body edge, a force or a rod? Then there is no loop to cut.
 static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
 {
-    for (size_t i = 0; i < b->nedge; i++) {
-        const enum ct_edge_kind kind = b->edge[i].kind;
-        if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE) && !b->edge[i].never_branch
-            && (!p->trans[i] || (b->edge[i].has_rotation && !p->rot[i]))
-            && b->edge[i].trial.quaternion != 3)
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const enum ct_edge_kind kind = b->topology->edge[i].kind;
+        if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE)
+            && !b->topology->edge[i].never_branch
+            && (!p->trans[i] || (b->topology->edge[i].has_rotation && !p->rot[i]))
+            && b->topology->edge[i].trial.quaternion != 3)
             return false;
     }
     return true;
@@ -24,10 +25,10 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
 static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
                           int *nu)
 {
-    const int directions[2] = {b->is_planar ? 2 : 3, b->is_planar ? 1 : 3};
+    const int directions[2] = {b->topology->is_planar ? 2 : 3, b->topology->is_planar ? 1 : 3};
     *nrow = *nu = 0;
-    for (size_t i = 0; i < b->nedge; i++) {
-        const struct ct_edge_info *e = &b->edge[i];
+    for (size_t i = 0; i < b->topology->nedge; i++) {
+        const struct ct_edge_info *e = &b->topology->edge[i];
         const bool is_joint = e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE;
         const int weight[2] = {e->weight_t, e->weight_r};
         const bool branch[2] = {p->trans[i], p->rot[i] || !e->has_rotation};
@@ -50,16 +51,16 @@ static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p
 static bool least_weight(struct ct_build *b, const struct ct_pair_rules *r,
                          struct ct_tree_pair *p)
 {
-    int *w = CT_NEWN(b->arena, int, b->nedge);
+    int *w = CT_NEWN(b->arena, int, b->topology->nedge);
     struct ct_tree t;
     bool **out[] = {&p->trans, &p->rot};
     for (int k = 0; k < 2; k++) {
         const bool *forced = k ? r->forced_r : r->forced_t,
                    *banned = k ? r->banned_r : r->banned_t;
         const int *weight = k ? r->weight_r : r->weight_t;
-        for (size_t i = 0; i < b->nedge; i++)
+        for (size_t i = 0; i < b->topology->nedge; i++)
             w[i] = banned[i] ? -1 : forced[i] ? 0 : weight[i] + 2;
-        if (!ct_tree_kruskal(b->arena, &b->graph, w, r->rank, &t, NULL))
+        if (!ct_tree_kruskal(b->arena, &b->topology->graph, w, r->rank, &t, NULL))
             return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                             "the model's graph has no spanning tree");
         *out[k] = t.is_branch;
@@ -78,8 +79,8 @@ static void improve(struct ct_build *b, const struct ct_pair_rules *r,
 {
     struct ct_search_stats stats;
     struct ct_tree T, R;
-    ct_tree_from_branches(b->arena, &b->graph, p->trans, &T);
-    ct_tree_from_branches(b->arena, &b->graph, p->rot, &R);
+    ct_tree_from_branches(b->arena, &b->topology->graph, p->trans, &T);
+    ct_tree_from_branches(b->arena, &b->topology->graph, p->rot, &R);
     const double first = trials->cost(trials->stage, &T, &R);
     const double pairs = floor(search_nodes / fmax(first, 100));
     const struct ct_search_options o
@@ -90,7 +91,8 @@ static void improve(struct ct_build *b, const struct ct_pair_rules *r,
            .budget = (int)fmax(1, fmin(pairs, 400)),
            .excess = 2};
     if (pairs < fewest_pairs
-        || !ct_tree_search(b->arena, &b->graph, &o, trials->cost, trials->stage, p, &stats)) {
+        || !ct_tree_search(b->arena, &b->topology->graph, &o, trials->cost, trials->stage, p,
+                           &stats)) {
         report->how = "least weight";
         report->cost = report->cost_least_weight = first;
         return;
@@ -105,11 +107,11 @@ static void improve(struct ct_build *b, const struct ct_pair_rules *r,
 
 static const char *near_edge(struct ct_build *b, const char *name)
 {
-    const char **names = CT_NEWN(b->arena, const char *, b->nedge);
+    const char **names = CT_NEWN(b->arena, const char *, b->topology->nedge);
     size_t n = 0;
-    for (size_t i = 0; i < b->nedge; i++)
-        if (b->edge[i].kind != CT_EDGE_ARM)
-            names[n++] = b->edge[i].name;
+    for (size_t i = 0; i < b->topology->nedge; i++)
+        if (b->topology->edge[i].kind != CT_EDGE_ARM)
+            names[n++] = b->topology->edge[i].name;
     const char *near = ct_nearest(name, names, n);
     return near ? ct_arena_printf(b->arena, "; did you mean '%s'?", near) : "";
 }
@@ -117,13 +119,13 @@ static const char *near_edge(struct ct_build *b, const char *name)
 static bool mark_named(struct ct_build *b, const char *const *names, const struct ct_mark *mark,
                        size_t n, const bool *forced, bool *branch)
 {
-    memcpy(branch, forced, b->nedge * sizeof *branch);
+    memcpy(branch, forced, b->topology->nedge * sizeof *branch);
     bool ok = true;
     for (size_t k = 0; k < n; k++) {
         size_t i = 0;
-        while (i < b->nedge && strcmp(b->edge[i].name, names[k]) != 0)
+        while (i < b->topology->nedge && strcmp(b->topology->edge[i].name, names[k]) != 0)
             i++;
-        if (i == b->nedge)
+        if (i == b->topology->nedge)
             ok = ct_error(b->ctx, mark ? mark[k] : (struct ct_mark){0}, CT_E_TREE,
                           "tree: there is no edge '%s'%s", names[k], near_edge(b, names[k]));
         else
@@ -135,16 +137,16 @@ static bool mark_named(struct ct_build *b, const char *const *names, const struc
 static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o,
                         const struct ct_pair_rules *r, struct ct_tree_pair *p)
 {
-    p->trans = CT_NEWN(b->arena, bool, b->nedge);
-    p->rot = CT_NEWN(b->arena, bool, b->nedge);
+    p->trans = CT_NEWN(b->arena, bool, b->topology->nedge);
+    p->rot = CT_NEWN(b->arena, bool, b->topology->nedge);
     if (!mark_named(b, o->trans, o->trans_mark, o->ntrans, r->forced_t, p->trans)
         || !mark_named(b, o->rot, o->rot_mark, o->nrot, r->forced_r, p->rot))
         return false;
     bool ok = true;
-    for (size_t i = 0; i < b->nedge; i++)
+    for (size_t i = 0; i < b->topology->nedge; i++)
         if ((p->trans[i] && r->banned_t[i]) || (p->rot[i] && r->banned_r[i]))
             ok = ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
-                          "tree: '%s' cannot be a branch", b->edge[i].name);
+                          "tree: '%s' cannot be a branch", b->topology->edge[i].name);
     return ok;
 }
 
@@ -159,14 +161,14 @@ static double own_unknowns(const struct ct_build *b, size_t body)
 static double coupling(struct ct_build *b, const bool *branch)
 {
     struct ct_tree t;
-    ct_tree_from_branches(b->arena, &b->graph, branch, &t);
-    double *inboard = CT_NEWN(b->ctx->scratch, double, b->nnode), sum = 0;
-    for (size_t k = 0; k < b->nnode; k++) { // in the order from ground
+    ct_tree_from_branches(b->arena, &b->topology->graph, branch, &t);
+    double *inboard = CT_NEWN(b->ctx->scratch, double, b->topology->nnode), sum = 0;
+    for (size_t k = 0; k < b->topology->nnode; k++) { // in the order from ground
         const int v = t.order[k], from = t.parent[v];
         if (from < 0)
             continue;
-        const int body = b->node[v].body;
-        const bool enters = body > 0 && b->node[from].body != body;
+        const int body = b->topology->node[v].body;
+        const bool enters = body > 0 && b->topology->node[from].body != body;
         const double own = enters ? own_unknowns(b, (size_t)body) : 0;
         sum += own * inboard[from];
         inboard[v] = inboard[from] + own;
@@ -222,8 +224,8 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
     struct ct_tree T, R;
     if (!has_loops_of_beams(b) || !absolute_trees(b, o, &q))
         return;
-    ct_tree_from_branches(b->arena, &b->graph, q.trans, &T);
-    ct_tree_from_branches(b->arena, &b->graph, q.rot, &R);
+    ct_tree_from_branches(b->arena, &b->topology->graph, q.trans, &T);
+    ct_tree_from_branches(b->arena, &b->topology->graph, q.rot, &R);
     const double cost = trials->cost(trials->stage, &T, &R);
     if (!(cost < clearly * report->cost))
         return;
@@ -231,6 +233,27 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
     report->cost = cost;
     report->how
         = "absolute coordinates: through the joints the beams would fill the mass matrix";
+}
+
+// A pair that is asked for by its number among those weighed.
+static bool pick(struct ct_build *b, int number, struct ct_tree_pair *p,
+                 struct ct_tree_report *report)
+{
+    const size_t size = b->topology->nedge * sizeof(bool);
+    if (number > report->ncandidate && report->ncandidate)
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: there is no pair %d, %d are listed by 'cotree graph --trees'",
+                        number, report->ncandidate);
+    if (number > report->ncandidate)
+        return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
+                        "tree: there is no pair %d, as none was searched (%s)", number,
+                        report->how);
+    const struct ct_tree_candidate *c = &report->candidate[number - 1];
+    memcpy(p->trans, c->trans, size);
+    memcpy(p->rot, c->rot, size);
+    report->cost = c->cost;
+    report->how = ct_arena_printf(b->arena, "number %d of the pairs weighed", number);
+    return true;
 }
 
 bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options *o,
@@ -256,10 +279,12 @@ bool ct_tree_selection_run(struct ct_build *b, const struct ct_formulate_options
         improve(b, &r, trials, &p, report);
         count_from_ground(b, o, trials, &p, report);
     }
-    if (!ct_tree_from_branches(b->arena, &b->graph, p.trans, &b->T))
+    if (o->tree == CT_TREE_AUTO && o->pick && !pick(b, o->pick, &p, report))
+        return false;
+    if (!ct_tree_from_branches(b->arena, &b->topology->graph, p.trans, &b->T))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                         "tree: the translational branches are no spanning tree");
-    if (!ct_tree_from_branches(b->arena, &b->graph, p.rot, &b->R))
+    if (!ct_tree_from_branches(b->arena, &b->topology->graph, p.rot, &b->R))
         return ct_error(b->ctx, (struct ct_mark){0}, CT_E_TREE,
                         "tree: the rotational branches are no spanning tree");
     return true;

@@ -53,6 +53,7 @@ static void prepare_all(struct ct_batch *s)
     for (int kind = 0; kind < CT_OUTPUT_KINDS; kind++)
         prepare(&s->output[kind].program, s->input);
     prepare(&s->root, s->input);
+    prepare(&s->take.program, s->input);
     for (size_t i = 0; i < s->nsolver; i++)
         prepare_solver(s->solver[i], s->input);
 }
@@ -88,7 +89,7 @@ static void make_room(struct ct_arena *a, struct ct_batch *s)
     for (size_t i = 0; i < COUNT(one); i++)
         *one[i] = CT_NEWN(a, double, ny);
     s->input = CT_NEWN(a, vec, s->m->ninput);
-    s->k = CT_NEWN(a, vec, ny * CT_MOST_STAGES);
+    s->k = CT_NEWN(a, vec, ny * CT_MOST_DENSE_STAGES);
     s->group_size = CT_NEWN(a, vec, (size_t)(s->groups ? s->groups->n : 0) + 1);
     s->stage = CT_NEWN(a, struct ct_lane_sum, CT_MOST_STAGES);
     s->coordinate_of = CT_NEWN(a, int, n + 1);
@@ -121,8 +122,31 @@ static void make_outputs(struct ct_batch *s, enum ct_output_kind kind)
         s->lane[l].outputs[kind] = ct_output_error_record(s->arena, kind, n);
 }
 
+static void make_takes(struct ct_batch *s, size_t n)
+{
+    struct ct_lane_takes *k = &s->take;
+    struct ct_arena *a = s->arena;
+    ct_ex *function = CT_NEWN(a, ct_ex, n + 1);
+    struct ct_program program;
+    k->n = n;
+    if (!n)
+        return;
+    for (size_t i = 0; i < n; i++) {
+        const size_t result = s->e->nresult - n + i;
+        function[i] = s->e->result[result].value;
+        k->needs_accelerations |= ct_output_error_needs_accelerations(s->e, result);
+        k->needs_lam |= ct_ex_kinds(s->e->x, function[i]) & 1u << CT_SYM_LAM;
+    }
+    ct_evaluator_add_program(a, s->m, s->e->x, function, n, &program);
+    make_program(s, &k->program, &program);
+    ct_evaluator_remove_program(s->m, &program);
+    k->F = CT_NEWN(a, vec, s->ny * CT_DENSE_CORRECTIONS);
+    k->dy = CT_NEWN(a, vec, s->ny);
+    k->one = CT_NEWN(a, double, n);
+}
+
 struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *e,
-                                 struct ct_run *run)
+                                 struct ct_run *run, size_t ntake)
 {
     struct ct_batch *s = CT_NEW(a, struct ct_batch);
     struct ct_evaluator *m = ct_run_evaluator(run);
@@ -147,6 +171,7 @@ struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *
         make_outputs(s, kind);
     make_program(s, &s->root, &m->root);
     make_room(a, s);
+    make_takes(s, ntake);
     ct_lane_make_events(s);
     return s;
 }
@@ -303,6 +328,12 @@ static void take_method(struct ct_batch *s, const struct ct_method *method)
         s->stage[i] = sum_of(s, b->A + b->stride * i, i);
     s->error = sum_of(s, b->E, b->nerror);
     s->third = b->B3 ? sum_of(s, b->B3, b->nerror) : (struct ct_lane_sum){0};
+    const struct ct_dense_tableau *d = method->dense_tableau;
+    for (int i = b->stages; i < d->stages; i++)
+        s->take.stage[i] = sum_of(s, d->A + d->stride * (i - b->stages), i);
+    for (int j = 0; j < CT_DENSE_CORRECTIONS; j++)
+        s->take.correction[j] = j < d->corrections ? sum_of(s, d->D + d->stride * j, d->stages)
+                                                   : (struct ct_lane_sum){0};
 }
 
 // ---- members come and go ----------------------------------------------------------------------------
@@ -337,6 +368,15 @@ void ct_lane_limit_turn(struct ct_batch *s, int l, double t, const double *y)
     ct_evaluator_set(s->m, t, y);
     if (turning > 0)
         lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);
+}
+
+static void start_take(struct ct_batch *s, int l, const struct ct_run_options *o)
+{
+    if (!s->take.n)
+        return;
+    if (!s->take.scan[l])
+        s->take.scan[l] = ct_run_take_create(s->arena, o);
+    ct_run_take_begin(s->take.scan[l], o);
 }
 
 static void start_lane(struct ct_batch *s, struct ct_lane *lane, const struct ct_run_options *o)
@@ -420,6 +460,7 @@ bool ct_batch_load(struct ct_batch *s, int l, const struct ct_run_options *o)
     s->pivot_most[l] = 0;
     s->near_singular &= ~(1u << l);
     start_lane(s, &s->lane[l], o);
+    start_take(s, l, o);
     ct_evaluator_set(s->m, 0, y);
     if (!ct_lane_begin_events(s, l, o) || !ct_lane_choose(s, l)
         || ct_run_rhs(s->run, 0, y, s->one_dy) != CT_EVAL_OK)
@@ -449,6 +490,8 @@ bool ct_batch_results(struct ct_batch *s, int l, double *out)
     for (size_t i = 0; i < s->e->nresult; i++)
         if (!isfinite(out[i]))
             return false;
+    if (s->take.n)
+        ct_take_scan_results(s->take.scan[l], out + s->e->nresult - s->take.n);
     return true;
 }
 

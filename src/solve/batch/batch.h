@@ -26,10 +26,11 @@ struct ct_batch;
 
 /// Why runs with these options cannot be in lanes, or NULL when they can.
 const char *ct_batch_obstacle(const struct ct_run_options *o);
+/// What is taken over runs is taken from the last ntake results.
 /// Programs compiled for lanes, by the back end that the run uses. All in a; run must live as long, and from now on
 /// solves by matrices, so that what it does for one member does not depend on the members before.
 struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *e,
-                                 struct ct_run *run);
+                                 struct ct_run *run, size_t ntake);
 
 /// The run has just been started with the file's own values: closed forms get the order of their pivots there, whoever
 /// needs them, so that a member gets the same bits after any others. Without it closed systems cannot be in lanes.
@@ -41,7 +42,7 @@ bool ct_batch_load(struct ct_batch *s, int lane, const struct ct_run_options *o)
 enum ct_lane_state ct_batch_state(const struct ct_batch *s, int lane);
 /// One try in every running lane.
 void ct_batch_step(struct ct_batch *s);
-/// Results (nresult, out) of a lane that has arrived. False: it has to be run alone.
+/// Results (nresult, out) of a lane that has arrived, as the last row of a run alone. False: it has to be run alone.
 bool ct_batch_results(struct ct_batch *s, int lane, double *out);
 /// The lane is idle again.
 void ct_batch_free(struct ct_batch *s, int lane);

@@ -3,6 +3,7 @@
 //     batch.c        members come and go
 //     batch_step.c    a try in all lanes: stages, error, projection, step control
 //     batch_solver.h    of that, closed forms and the projection by them
+//     batch_take.h    what is taken over steps
 //     batch_event.c   events of one lane: where they are, what they change; batch_event_location.h: is there one in any?
 //     batch_single.c   one lane as a run alone: what is rare, by the run's own functions
 #ifndef CT_SOLVE_BATCH_BATCH_INTERNAL_H
@@ -52,8 +53,20 @@ struct ct_lane_solver {
 // The stages of a method without the zeros of its table: sum over i of a[i] k[at[i]].
 struct ct_lane_sum {
     int n;
-    size_t at[CT_MOST_STAGES]; // in the vectors of all stages, as doubles
-    double a[CT_MOST_STAGES];
+    size_t at[CT_MOST_DENSE_STAGES]; // in the vectors of all stages, as doubles
+    double a[CT_MOST_DENSE_STAGES];
+};
+
+// What is taken over runs, by the functions that are its outputs; see integrate/take.h.
+struct ct_lane_takes {
+    size_t n;                       // 0: nothing
+    struct ct_lane_program program; // (n)
+    bool needs_accelerations, needs_lam;
+    struct ct_take_scan *scan[CT_LANES]; // made by the first member
+    struct ct_lane_sum stage[CT_MOST_DENSE_STAGES], correction[CT_DENSE_CORRECTIONS];
+    vec *F,
+        *dy; // corrections of the interpolant (ny x CT_DENSE_CORRECTIONS), a derivative (ny)
+    double *one; // values of one lane  (n)
 };
 
 // A lane as the user of a problem: its root functions.
@@ -118,6 +131,7 @@ struct ct_batch {
     int whose; // the lane whose parameters the run has for matrices; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
     struct ct_lane_outputs output[CT_OUTPUT_KINDS];
+    struct ct_lane_takes take;
     struct ct_lane_program root; // of all modes
     struct ct_lane lane[W];
     struct ct_batch_counts count;
@@ -148,7 +162,7 @@ struct ct_batch {
     set unsettled;  // lanes in which one rests on zero or has just fired
     vec rtol, atol; // of the steps
     vec *input;
-    // states (ny), stages (ny x stages)
+    // states (ny), stages (ny x stages), with those of the interpolant
     vec *start, *y, *dy, *y1, *dy1, *end, *dend, *point, *late, *weight, *k;
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
 };

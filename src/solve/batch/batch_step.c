@@ -2,6 +2,7 @@
 // projection those of run.c and projection.c, so that a lane ends where a run alone ends, to round-off.
 #include "integrate/stepper.h"
 #include "solve/batch/batch_event_location.h"
+#include "solve/batch/batch_take.h"
 
 #include <limits.h>
 #include <math.h>
@@ -439,6 +440,67 @@ static void detect_stiffness(struct ct_batch *s, set wanted)
     }
 }
 
+// ---- what is taken over the step ----------------------------------------------------------------------
+
+// Further stages and corrections of the interpolant; the step ends on the constraints. Returns the lanes that have it.
+static set prepare_dense(struct ct_batch *s, set wanted)
+{
+    const struct ct_dense_tableau *d = s->method->dense_tableau;
+    const int n = s->ny, first = s->method->tableau->stages;
+    copy(s->k + n * (first - 1), s->dend, n);
+    for (int i = first; i < d->stages && wanted; i++) {
+        combine(s, s->point, s->y, &s->take.stage[i]);
+        wanted = derive(s, s->t + d->C[i - first] * s->h, s->point, s->k + n * i, wanted);
+    }
+    for (int j = 0; j < CT_DENSE_CORRECTIONS; j++)
+        combine(s, s->take.F + n * j, NULL, &s->take.correction[j]);
+    return wanted;
+}
+
+// The functions at (t, y).
+static void evaluate_takes(struct ct_batch *s, vec t, const vec *y, set lanes)
+{
+    struct ct_lane_takes *k = &s->take;
+    if (k->needs_accelerations) {
+        const set found = derive(s, t, y, k->dy, lanes);
+        vec *a = s->input + s->m->at_a;
+        for (int i = 0; i < s->nu; i++)
+            a[i] = choose(mask_of(found), k->dy[s->nq + i], all_lanes(NAN));
+        for (int i = 0; i < s->nrow; i++)
+            s->input[s->m->at_lam + (size_t)i] = all_lanes(NAN);
+        if (k->needs_lam)
+            find_multipliers(s, t, y, k->dy, found);
+    } else {
+        set_input(s, t, y);
+    }
+    ct_lane_run(&k->program, s->input);
+}
+
+// Over the steps of these lanes, which are accepted and end at `end`. A lane for which that cannot be done is given up.
+static void take_over_step(struct ct_batch *s, vec end, set wanted)
+{
+    set begun = 0, lost = 0;
+    vec t;
+    for (int l = 0; l < W && s->take.n; l++)
+        if (ct_has_lane(wanted, l) && s->lane[l].state == CT_LANE_RUNNING) {
+            ct_take_scan_step(s->take.scan[l], s->t[l], end[l]);
+            begun |= 1u << l;
+        }
+    t = end;
+    if (!ask_scans(s, begun, &t))
+        return;
+    lost = begun & ~prepare_dense(s, begun);
+    for (set asked; (asked = ask_scans(s, begun & ~lost, &t)) != 0;) {
+        interpolate_step(s, choose(end > s->t, (t - s->t) / (end - s->t), all_lanes(0)),
+                         s->point);
+        evaluate_takes(s, t, s->point, asked);
+        lost |= answer_scans(s, asked);
+    }
+    for (int l = 0; l < W; l++)
+        if (ct_has_lane(lost, l))
+            ct_lane_give_up(s, l);
+}
+
 // ---- after a try ------------------------------------------------------------------------------------
 
 // Lanes in which something turns too fast to be followed by steps of this length.
@@ -598,6 +660,7 @@ step(struct ct_batch *s)
     adapt(s, tried & ~again, wanted);
     predict_singular(s, end, s->end, wanted);
     detect_stiffness(s, wanted);
+    take_over_step(s, end, wanted);
     commit(s, wanted);
 }
 

@@ -98,6 +98,9 @@ void ct_evaluator_add_residual(struct ct_arena *a, struct ct_evaluator *m);
 /// available; the tape is run then. Not for the inner loop: a must be the evaluator's arena.
 bool ct_evaluator_use(struct ct_arena *a, struct ct_evaluator *m, enum ct_backend backend);
 
+/// Listing of n expressions of x, a copy of the equations' store that may have grown, on the evaluator's input.
+const struct ct_listing *ct_evaluator_list(struct ct_arena *a, const struct ct_evaluator *m,
+                                           const struct ct_exs *x, const ct_ex *out, size_t n);
 /// A further program on the evaluator's input: out (n) from x, a copy of the equations' store that may have grown. It runs
 /// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
 void ct_evaluator_add_program(struct ct_arena *a, struct ct_evaluator *m,

@@ -78,6 +78,13 @@ static struct inputs list_inputs(struct ct_arena *a, const struct ct_evaluator *
     return in;
 }
 
+const struct ct_listing *ct_evaluator_list(struct ct_arena *a, const struct ct_evaluator *m,
+                                           const struct ct_exs *x, const ct_ex *out, size_t n)
+{
+    const struct inputs in = list_inputs(a, m, x);
+    return ct_listing_create(a, x, out, n, in.symbol, in.slot, in.n, CT_FUSE_NO);
+}
+
 static void compile_from(struct ct_arena *a, const struct ct_exs *x, const struct inputs *in,
                          const ct_ex *out, size_t n, enum ct_fuse fuse, struct ct_program *p)
 {

@@ -65,7 +65,7 @@ bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
         return true;
     }
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    const int k = c->index - s->e->build->edge[c->edge].trial.quaternion;
+    const int k = c->index - s->e->build->topology->edge[c->edge].trial.quaternion;
     if (k == 3)
         return false;
     *r = quaternion_error(s, i - (size_t)k, k);
@@ -447,15 +447,14 @@ static void start_near_targets(struct ct_assembler *s, int try)
     ct_evaluator_normalise(s->m, s->y);
     draw_motion(s, try);
     ct_evaluator_retract(s->m, s->y, s->b);
-    for (size_t i = 0; i < s->e->nmemory; i++)
-        for (size_t k = 0; k < s->e->ncoordinate && s->e->memory[i].kind == CT_MEMORY_ANGLE;
-             k++) {
-            const struct ct_coordinate *c = &s->e->coordinate[k];
-            const struct ct_edge_info *e = &s->e->build->edge[c->edge];
-            if (e->kind == CT_EDGE_JOINT && e->index == s->e->memory[i].joint
-                && c->index == s->e->memory[i].index)
-                memory[i] = s->q[k].value;
-        }
+    const struct ct_topology *t = s->e->build->topology;
+    for (size_t i = 0; i < s->e->nmemory; i++) {
+        const struct ct_memory *angle = &s->e->memory[i];
+        const int joint = angle->kind == CT_MEMORY_ANGLE ? angle->joint : -1,
+                  edge = joint >= 0 ? t->edge_of_joint[joint] : -1;
+        if (edge >= 0 && angle->index < t->edge[edge].ncoordinate)
+            memory[i] = s->q[t->edge[edge].first_coordinate + angle->index].value;
+    }
     ct_evaluator_set(s->m, 0, s->y);
     ct_switches_start(s->m, 0, s->y, NULL);
     ct_memory_start(s->m);
@@ -490,7 +489,7 @@ static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
 {
     const struct ct_target *t = &s->q[i];
     return t->wanted && !t->is_given && !t->is_guessed && s->e->coordinate[i].u >= 0
-        && s->e->build->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
+        && s->e->build->topology->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
 }
 
 // A small motion into s->b from the targets to a position to look from: what has no guess goes anywhere within half a turn or the

@@ -16,7 +16,7 @@ static double missed(const struct ct_assembler *s, size_t i, bool is_speed)
 
 static struct ct_mark initial_mark(const struct ct_assembler *s, size_t i, bool is_speed)
 {
-    const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
+    const struct ct_edge_info *e = &s->e->build->topology->edge[s->e->coordinate[i].edge];
     const struct ct_value *turns = &e->self->initial.rotate;
     const bool is_turn = !is_speed && s->q[i].in_quaternion && turns->given;
     return is_turn ? turns->mark : ct_initial_value(e, is_speed)->mark;
@@ -40,7 +40,7 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
              "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g "
              "(demanded %.6g, found %.6g); mark what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
-             s->e->build->edge[c[worst].edge].self->name, most,
+             s->e->build->topology->edge[c[worst].edge].self->name, most,
              is_speed ? s->u[worst].value : s->q[worst].value,
              ct_start_shown(s->m->result.out[2 * worst + is_speed]));
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -53,7 +53,7 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
         const bool is_last = ++n == MOST_NOTES && nmissed > MOST_NOTES;
         ct_note(s->ctx, initial_mark(s, i, is_speed), "and %s'%s' of joint '%s', by %.3g%s",
                 is_speed ? "the rate of " : "", c[i].name,
-                s->e->build->edge[c[i].edge].self->name, missed(s, i, is_speed),
+                s->e->build->topology->edge[c[i].edge].self->name, missed(s, i, is_speed),
                 is_last
                     ? ct_arena_printf(s->e->build->arena, "; %zu more", nmissed - MOST_NOTES)
                     : "");
@@ -124,7 +124,7 @@ bool ct_assembler_check_drivers(struct ct_assembler *s)
     bool ok = true;
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
-        const struct ct_edge_info *e = &b->edge[c->edge];
+        const struct ct_edge_info *e = &b->topology->edge[c->edge];
         if (!c->is_driven || e->self->initial.guess)
             continue;
         for (int k = 0; k < 2; k++) {

@@ -36,25 +36,32 @@ bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, i
 
 // ---- natural scales -----------------------------------------------------------------------------------------
 
-// The largest distance between two points of one body, the ground included, at which joints act; 1 m if there is none. It does
-// not change when the mechanism is moved or turned.
+static double square_distance(const double a[3], const double b[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+        square += (a[k] - b[k]) * (a[k] - b[k]);
+    return square;
+}
+
+// The largest distance between two points of one body, the ground included, at which joints act; 1 m
+// if there is none. It does not change when the mechanism is moved or turned.
 static double natural_length(const struct ct_assembler *s, const struct ct_model *model)
 {
     double largest = 0;
-    for (size_t i = 0; i < s->nframe; i++)
+    // frames of a body, chained; numbers plus one
+    size_t *last = CT_NEWN(s->ctx->scratch, size_t, model->nbody + 1),
+           *before = CT_NEWN(s->ctx->scratch, size_t, s->nframe + 1);
+    for (size_t i = 0; i < s->nframe; i++) {
+        const int body = model->frame[s->frame[i]].body;
         for (int k = 0; k < 3; k++)
             s->point[3 * i + (size_t)k]
                 = ct_model_number(model, model->frame[s->frame[i]].at.e[k]);
-    for (size_t i = 0; i < s->nframe; i++)
-        for (size_t j = 0; j < i; j++) {
-            double square = 0;
-            for (size_t k = 0; k < 3; k++) {
-                const double d = s->point[3 * i + k] - s->point[3 * j + k];
-                square += d * d;
-            }
-            if (model->frame[s->frame[i]].body == model->frame[s->frame[j]].body)
-                largest = fmax(largest, square);
-        }
+        before[i] = last[body];
+        last[body] = i + 1;
+        for (size_t j = before[i]; j > 0; j = before[j - 1])
+            largest = fmax(largest, square_distance(s->point + 3 * i, s->point + 3 * (j - 1)));
+    }
     return largest > 0 ? sqrt(largest) : 1;
 }
 
@@ -77,7 +84,7 @@ void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
 bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+    const struct ct_edge_info *e = &s->e->build->topology->edge[c->edge];
     return e->kind == CT_EDGE_JOINT && !c->in_translation && c->index < e->trial.nmeasure
         && e->trial.measure[c->index].kind == CT_MEASURE_ANGLE;
 }
@@ -86,9 +93,9 @@ bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i)
 static bool is_length(const struct ct_equations *eqs, size_t i)
 {
     const struct ct_coordinate *c = &eqs->coordinate[i];
-    const struct ct_edge_info *e = &eqs->build->edge[c->edge];
+    const struct ct_edge_info *e = &eqs->build->topology->edge[c->edge];
     if (e->kind == CT_EDGE_BODY)
-        return c->index < (eqs->build->is_planar ? 2 : 3);
+        return c->index < (eqs->build->topology->is_planar ? 2 : 3);
     if (c->index < e->trial.nmeasure)
         return e->trial.measure[c->index].kind == CT_MEASURE_LENGTH;
     return !c->in_rotation;
@@ -109,7 +116,7 @@ static double weight_of(const struct ct_target *t, double unit)
 static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model *model)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_edge_info *e = &s->e->build->edge[c->edge];
+    const struct ct_edge_info *e = &s->e->build->topology->edge[c->edge];
     const struct ct_initial *initial = &e->self->initial;
     const int k = e->trial.quaternion;
     struct ct_target *q = &s->q[i], *u = &s->u[i];
@@ -139,7 +146,7 @@ static void body_target(struct ct_assembler *s, size_t i, const struct ct_model 
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
     const struct ct_build *b = s->e->build;
-    const struct ct_edge_info *e = &b->edge[c->edge];
+    const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const int k = e->trial.quaternion;
     struct ct_target *q = &s->q[i], *u = &s->u[i];
     if (c->q < 0)
@@ -147,15 +154,15 @@ static void body_target(struct ct_assembler *s, size_t i, const struct ct_model 
     q->in_quaternion = k >= 0 && c->index >= k;
     q->wanted = true;
     u->wanted = c->u >= 0;
-    const int lengths = b->is_planar ? 2 : 3;
+    const int lengths = b->topology->is_planar ? 2 : 3;
     if (q->in_quaternion)
         q->value = c->index == k;
     else if (c->index < lengths)
         for (int j = 0; j < 3; j++)
-            q->value
-                += ct_model_number(model, model->body[e->index].com.e[j])
-                 * ct_model_number(model, b->is_planar ? b->plane[c->index].e[j]
-                                                       : (ct_ex){(uint32_t)(j == c->index)});
+            q->value += ct_model_number(model, model->body[e->index].com.e[j])
+                      * ct_model_number(model, b->topology->is_planar
+                                                   ? b->topology->plane[c->index].e[j]
+                                                   : (ct_ex){(uint32_t)(j == c->index)});
 }
 
 // Quaternions need not be given with length one.
@@ -171,7 +178,7 @@ static void normalise_target(struct ct_target *q)
 void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *model)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
-        const struct ct_edge_info *e = &s->e->build->edge[s->e->coordinate[i].edge];
+        const struct ct_edge_info *e = &s->e->build->topology->edge[s->e->coordinate[i].edge];
         if (e->kind == CT_EDGE_JOINT)
             joint_target(s, i, model);
         else if (e->kind == CT_EDGE_BODY)
@@ -179,7 +186,8 @@ void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *mo
     }
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
-        if (s->q[i].in_quaternion && c->index == s->e->build->edge[c->edge].trial.quaternion)
+        if (s->q[i].in_quaternion
+            && c->index == s->e->build->topology->edge[c->edge].trial.quaternion)
             normalise_target(&s->q[i]);
     }
     s->length = natural_length(s, model);

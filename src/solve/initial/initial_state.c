@@ -33,7 +33,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
     memset(y, 0, (m->nq + m->nu + 1) * sizeof *y);
     for (size_t i = 0; i < s->n; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
-        const struct ct_edge_info *edge = &e->build->edge[c->edge];
+        const struct ct_edge_info *edge = &e->build->topology->edge[c->edge];
         if (c->q >= 0)
             y[c->q] = s->q[i];
         if (c->u >= 0)

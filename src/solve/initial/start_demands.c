@@ -35,7 +35,7 @@ static bool report(struct ct_ctx *ctx, const struct ct_initial_state *s, size_t 
                    bool is_speed, double found)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    const struct ct_instance *joint = s->e->build->edge[c->edge].self;
+    const struct ct_instance *joint = s->e->build->topology->edge[c->edge].self;
     const struct ct_target *t = is_speed ? &s->u_target[i] : &s->q_target[i];
     const struct ct_value *v = is_speed ? &joint->initial.u : &joint->initial.q;
     const bool is_turn = !is_speed && t->in_quaternion && joint->initial.rotate.given;

@@ -89,6 +89,15 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
     return true;
 }
 
+// Speeds have jumped, past roots of switches maybe.
+static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
+{
+    const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+    if (e == CT_EVAL_OK)
+        ct_switches_start(r->m, t, y, r->dy);
+    return e;
+}
+
 // Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
 static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const double *before,
                                   const double *momentum)
@@ -112,7 +121,8 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const d
     if (worst <= ct_run_jump_tolerance)
         return CT_EVAL_OK;
     r->has_jumped = true;
-    return ct_impulse_apply(r, momentum, y + m->nq);
+    const enum ct_eval e = ct_impulse_apply(r, momentum, y + m->nq);
+    return e == CT_EVAL_OK ? switch_at_new_speeds(r, t, y) : e;
 }
 
 // With the modes set: a force that on both sides of its switch leads back to it (dry friction at rest) has no

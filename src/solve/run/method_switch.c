@@ -146,6 +146,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
     trial_io.nsample = 0;
+    trial_io.over_step = NULL;
     trial_io.first_step = first_step;
     trial_io.at_step = at_trial_step;
     r->trial = &trial;

@@ -434,6 +434,51 @@ bool ct_run_at_step(void *user, double t, const double *y)
     return !r->is_suspect;
 }
 
+// ---- what is taken over the run -------------------------------------------------------------------------
+
+struct ct_take_scan *ct_run_take_create(struct ct_arena *a, const struct ct_run_options *o)
+{
+    return o->ntake ? ct_take_scan_create(a, o->take, o->ntake) : NULL;
+}
+
+void ct_run_take_begin(struct ct_take_scan *s, const struct ct_run_options *o)
+{
+    ct_take_scan_begin(s, o->output_rtol, o->rtol > 0 ? o->atol / o->rtol * o->output_rtol : 0);
+}
+
+static bool results_inside(struct ct_run *r, const struct ct_step_view *step, double t)
+{
+    struct ct_gap_interpolation gap;
+    if (!ct_step_state(step, t, r->inside, &gap))
+        return false;
+    const double before = ct_run_time_before_event(r, t);
+    const bool ok = gap.n ? ct_singular_dense_output(r->singular_dense_output, t, r->inside,
+                                                     &gap, r->taken)
+                          : ct_run_results(r, before, r->inside, r->taken) == CT_EVAL_OK;
+    if (!ok)
+        return singular_at(r, t);
+    for (size_t i = r->e->nresult - r->o->ntake; i < r->e->nresult; i++)
+        if (!isfinite(r->taken[i]))
+            return report_not_finite(r, r->e->result[i].name, t, r->inside);
+    return true;
+}
+
+static bool over_step(void *user, const struct ct_step_view *step)
+{
+    struct ct_run *r = user;
+    const double t0 = fmax(step->t0, 0);
+    double t;
+    if (!(step->t1 > t0)) // before the start
+        return true;
+    ct_take_scan_step(r->take, t0, step->t1);
+    while (ct_take_scan_wants(r->take, &t)) {
+        if (!results_inside(r, step, t))
+            return false;
+        ct_take_scan_give(r->take, r->taken + r->e->nresult - r->o->ntake);
+    }
+    return true;
+}
+
 // Results along one vector z of null(J'): those that change depend on the choice of multipliers.
 static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
@@ -645,6 +690,12 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     if (r->output_error)
         ct_output_error_start(r->output_error, o->method);
     r->o = o;
+    r->take = ct_run_take_create(r->arena, o);
+    if (r->take) {
+        ct_run_take_begin(r->take, o);
+        r->taken = CT_NEWN(r->arena, double, r->e->nresult);
+        r->inside = CT_NEWN(r->arena, double, r->ny);
+    }
     r->method = o->method;
     r->last_event = -INFINITY;
     r->is_announced = r->has_jumped = false;
@@ -676,6 +727,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
            .nsample = n,
            .at_sample = ct_run_at_sample,
            .at_singular_sample = at_singular_sample,
+           .over_step = r->take ? over_step : NULL,
            .forecast = ct_run_forecast,
            .many_steps = ct_run_many_steps,
            .at_step = looks_at_steps(r) ? ct_run_at_step : NULL};
@@ -684,6 +736,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     ct_memory_update(r->m);
     if (!ok)
         ct_run_explain_end(r);
+    else if (r->take)
+        ct_take_scan_results(r->take, report->final + r->e->nresult - o->ntake);
     report->rank = r->s->rank;
     report->switches = r->s->switches;
     report->solves = r->s->solves;

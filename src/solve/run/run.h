@@ -4,6 +4,7 @@
 
 #include "beam_error/beam_error_modal.h"
 #include "integrate/problem.h"
+#include "integrate/take.h"
 #include "solve/initial/assembly.h"
 #include "solve/constraint/partition.h"
 
@@ -30,6 +31,8 @@ struct ct_run_options {
     double stiff_rtol, stiff_atol;
     void (*want_residual)(void *user); // it will be needed: the equations must get it
     size_t nsample;
+    const enum ct_take_kind *take; // what is taken over the run from the last results  (ntake)
+    size_t ntake;
     enum ct_rate_jumps rate_jumps;
     /// One row of results per sample; return false to stop.
     bool (*row)(void *user, double t, const double *value, size_t n);
@@ -78,8 +81,9 @@ struct ct_run_report {
     long factorizations;
     struct ct_solve_counts solves;
     const struct ct_rank_monitor *singular; // positions passed; NULL: nothing was integrated
-    double *final;                          // last row
-    double *y;                              // last state: q, u, work
+    double *
+        final; // last row; what is taken over the run instead of the results that it is taken from
+    double *y; // last state: q, u, work
 };
 
 /// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
@@ -125,6 +129,10 @@ void ct_run_find_undetermined(struct ct_run *r, double t, const double *y, bool 
 /// Errors: CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
 bool ct_run_kinematic(struct ct_run *r, const struct ct_run_options *o,
                       struct ct_run_report *report);
+
+/// A scan for these options, with the functions that it is given behind all results. All in a; NULL: nothing is taken.
+struct ct_take_scan *ct_run_take_create(struct ct_arena *a, const struct ct_run_options *o);
+void ct_run_take_begin(struct ct_take_scan *s, const struct ct_run_options *o);
 
 /// Integrate over the duration.
 bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,

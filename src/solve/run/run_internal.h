@@ -56,6 +56,8 @@ struct ct_run {
     // the choice of the method
     const struct ct_method *method;       // that steps now
     struct ct_integrate_stats stats;      // of it
+    struct ct_take_scan *take;            // of steps; NULL: nothing is taken
+    double *taken, *inside;               // results, a state in a step
     struct ct_stiffness *stiffness;       // watched for; NULL: not
     struct ct_stiffness *start_stiffness; // of starts, for ct_run_begins_implicit
     const struct ct_problem *problem;     // that is integrated

@@ -1,0 +1,490 @@
+// See loops.h.
+#include "analysis/loops.h"
+
+#include "formulate/build.h"
+#include "formulate/dynamics/reaction.h"
+#include "formulate/kinematics/kinematics.h"
+#include "numeric/dense.h"
+#include "sim/summary.h"
+#include "solve/run/run_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- what closes a loop -------------------------------------------------------------------------
+
+static bool closes(const struct ct_build *b, size_t edge, int joint)
+{
+    const struct ct_edge_info *e = &b->topology->edge[edge];
+    return (e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE) && e->index == joint
+        && (!b->T.is_branch[edge] || (e->has_rotation && !b->R.is_branch[edge]));
+}
+
+static void add_member(struct ct_arena *a, const char ***list, size_t *n, size_t *cap,
+                       const char *name)
+{
+    for (size_t i = 0; i < *n; i++)
+        if (!strcmp((*list)[i], name))
+            return;
+    CT_PUSH(a, *list, *n, *cap, name);
+}
+
+// Branches of the circuits of a joint, in the order in which they are passed.
+static void find_members(struct ct_arena *a, const struct ct_build *b, struct ct_loop *l)
+{
+    const char **list = NULL;
+    size_t n = 0, cap = 0;
+    int *branch = CT_NEWN(a, int, b->topology->nnode);
+    signed char *sign = CT_NEWN(a, signed char, b->topology->nnode);
+    add_member(a, &list, &n, &cap, l->name);
+    for (size_t i = 0; i < b->topology->nedge && l->joint >= 0; i++)
+        for (int k = 0; k < 2 && closes(b, i, l->joint); k++) {
+            const struct ct_tree *t = k ? &b->R : &b->T;
+            if (t->is_branch[i] || (k && !b->topology->edge[i].has_rotation))
+                continue;
+            const int m = ct_tree_circuit(&b->topology->graph, t, (int)i, branch, sign);
+            for (int j = 0; j < m; j++)
+                if (b->topology->edge[branch[j]].kind != CT_EDGE_ARM)
+                    add_member(a, &list, &n, &cap, b->topology->edge[branch[j]].name);
+        }
+    l->member = list;
+    l->nmember = n;
+}
+
+// Rows of one joint are a loop; a row of none is one by itself.
+static void list_loops(struct ct_arena *a, struct ct_loops *out)
+{
+    const struct ct_equations *e = &out->sim->system->equations;
+    const struct ct_model *m = &out->sim->system->model;
+    size_t cap = 0;
+    bool *is_listed = CT_NEWN(a, bool, e->nrow + 1);
+    for (size_t i = 0; i < e->nrow; i++) {
+        const int joint = e->row[i].joint;
+        struct ct_loop l
+            = {.name = joint >= 0 ? m->joint[joint].name : e->row[i].name, .joint = joint};
+        if (is_listed[i])
+            continue;
+        size_t *row = CT_NEWN(a, size_t, e->nrow);
+        for (size_t k = i; k < e->nrow; k++)
+            if (k == i || (joint >= 0 && e->row[k].joint == joint)) {
+                is_listed[k] = true;
+                row[l.nrow++] = k;
+            }
+        l.row = row;
+        find_members(a, e->build, &l);
+        CT_PUSH(a, out->loop, out->nloop, cap, l);
+    }
+}
+
+// ---- singular values ----------------------------------------------------------------------------
+
+static double entry(const struct ct_loops *l, size_t k)
+{
+    const struct ct_entry *J = &l->sim->system->equations.J[k];
+    return l->J.out[k] * l->speed_size[J->column] / l->row_size[J->row];
+}
+
+// Rows of K that are listed, as columns of A (nu x n, out).
+static void gather(const struct ct_loops *l, const size_t *row, size_t n, double *A)
+{
+    const struct ct_equations *e = &l->sim->system->equations;
+    memset(A, 0, e->nu * n * sizeof *A);
+    for (size_t k = 0; k < e->nJ; k++)
+        for (size_t i = 0; i < n; i++)
+            if ((size_t)e->J[k].row == row[i])
+                A[(size_t)e->J[k].column + e->nu * i] = entry(l, k);
+}
+
+// The smallest of the first `rank` singular values of the rows that are listed: by eigenvalues of K K', half the digits.
+static double smallest(const struct ct_loops *l, const size_t *row, size_t n, int rank)
+{
+    const size_t nu = l->sim->system->equations.nu;
+    double *K = l->A, *S = l->A + nu * n;
+    if (rank < 1 || n > CT_MOST_MEASURED_ROWS)
+        return rank < 1 ? 0 : NAN;
+    gather(l, row, n, K);
+    ct_matrix_multiply_transposed(S, K, K, (int)n, (int)nu, (int)n);
+    if (!ct_symmetric_eigenvalues(l->w, S, (int)n, (int)n, l->work))
+        return NAN;
+    return sqrt(fmax(0, l->w[n - (size_t)rank]));
+}
+
+static int rank_of(struct ct_arena *a, const struct ct_loops *l, const size_t *row, size_t n)
+{
+    const struct ct_evaluator *m = ct_run_evaluator(l->sim->run);
+    const size_t nu = m->nu, most = nu < n ? nu : n;
+    double *A = CT_NEWN(a, double, nu *n + 1), *tau = CT_NEWN(a, double, most + 1);
+    int *column = CT_NEWN(a, int, n + 1), rank = 0;
+    double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)nu, (int)n) + 1);
+    gather(l, row, n, A);
+    if (most)
+        ct_qr_pivot(A, column, tau, (int)nu, (int)n, (int)nu, 0, work);
+    while (rank < (int)most && fabs(A[(size_t)rank + nu * (size_t)rank]) > m->rank_tolerance)
+        rank++;
+    return rank;
+}
+
+void ct_loops_measure(struct ct_loops *l, double *near)
+{
+    const struct ct_sim *sim = l->sim;
+    const size_t nrow = sim->system->equations.nrow;
+    size_t all[CT_MOST_MEASURED_ROWS];
+    for (size_t i = 0; i < nrow && i < CT_MOST_MEASURED_ROWS; i++)
+        all[i] = i;
+    ct_program_run(&l->J, ct_run_evaluator(sim->run)->input);
+    near[0] = smallest(l, all, nrow, l->rank);
+    for (size_t i = 0; i < l->nloop; i++)
+        near[1 + i] = smallest(l, l->loop[i].row, l->loop[i].nrow, l->loop[i].rank);
+}
+
+static void prepare_measure(struct ct_arena *a, struct ct_loops *l)
+{
+    struct ct_evaluator *m = ct_run_evaluator(l->sim->run);
+    const struct ct_equations *e = m->e;
+    const size_t n = e->nrow < CT_MOST_MEASURED_ROWS ? e->nrow : CT_MOST_MEASURED_ROWS;
+    ct_ex *J = CT_NEWN(a, ct_ex, e->nJ + 1);
+    for (size_t k = 0; k < e->nJ; k++)
+        J[k] = e->J[k].value;
+    ct_evaluator_add_program(a, m, e->x, J, e->nJ, &l->J);
+    l->row_size = CT_NEWN(a, double, e->nrow + 1);
+    l->speed_size = CT_NEWN(a, double, e->nu + 1);
+    memcpy(l->row_size, m->row_size, e->nrow * sizeof *l->row_size);
+    memcpy(l->speed_size, m->speed_size, e->nu * sizeof *l->speed_size);
+    l->A = CT_NEWN(a, double, e->nu *n + n * n + 1);
+    l->w = CT_NEWN(a, double, n + 1);
+    l->work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n) + 1);
+}
+
+// ---- what to release ----------------------------------------------------------------------------
+
+// A freedom that may be released, and the reaction along it of each null vector.
+struct candidate {
+    struct ct_release release;
+    size_t at;     // of its expression, or the row that it stands for
+    double *share; // (nz)
+};
+
+struct releases {
+    struct ct_arena *a;
+    struct ct_loops *l;
+    struct candidate *candidate;
+    size_t n, cap;
+    ct_ex *reaction;
+    size_t nreaction, reaction_cap;
+    size_t nz;
+    double *z; // (nrow x nz): z'J = 0
+};
+
+static void add_candidate(struct releases *r, int joint, enum ct_release_kind kind, int axis,
+                          size_t at)
+{
+    const struct candidate c = {{joint, kind, axis, false}, at, CT_NEWN(r->a, double, r->nz)};
+    CT_PUSH(r->a, r->candidate, r->n, r->cap, c);
+}
+
+// Turns and slides in axes of `from`. Out of the plane of a planar model nothing is known.
+static void add_freedoms(struct releases *r, struct ct_build *b, int joint)
+{
+    const int tail = b->topology->wiring[b->topology->edge_of_joint[joint]].tail;
+    ct_ex3 force, torque;
+    ct_reaction_derive(b, joint, &force, &torque);
+    for (int turns = 1; turns >= 0; turns--) {
+        const ct_ex3 v = ct_node_unturn(b, tail, turns ? torque : force);
+        for (int i = 0; i < 3; i++) {
+            if (!ct_reaction_is_known(b, joint, !turns, i)
+                || !(ct_ex_kinds(b->x, v.e[i]) & 1u << CT_SYM_LAM))
+                continue;
+            add_candidate(r, joint, turns ? CT_RELEASE_TURN : CT_RELEASE_SLIDE, i,
+                          r->nreaction);
+            CT_PUSH(r->a, r->reaction, r->nreaction, r->reaction_cap, v.e[i]);
+        }
+    }
+}
+
+// Joints of loops that have a multiplier which is not unique.
+static bool *joints_concerned(const struct releases *r)
+{
+    const struct ct_loops *l = r->l;
+    const struct ct_model *m = &l->sim->system->model;
+    bool *is = CT_NEWN(r->a, bool, m->njoint + 1);
+    for (size_t i = 0; i < l->nloop; i++) {
+        const struct ct_loop *loop = &l->loop[i];
+        bool is_open = false;
+        for (size_t k = 0; k < loop->nrow; k++)
+            is_open |= l->is_open[loop->row[k]];
+        for (size_t k = 0; k < loop->nmember && is_open; k++) {
+            const int joint = ct_model_find_joint(m, loop->member[k]);
+            if (joint >= 0)
+                is[joint] = true;
+        }
+    }
+    return is;
+}
+
+static void list_candidates(struct releases *r)
+{
+    struct ct_equations *e = &r->l->sim->system->equations;
+    const struct ct_model *m = &r->l->sim->system->model;
+    const bool *is_concerned = joints_concerned(r);
+    for (size_t j = 0; j < m->njoint; j++) {
+        if (is_concerned[j] && m->joint[j].cls->motion)
+            add_freedoms(r, e->build, (int)j);
+        for (size_t i = 0; i < e->nrow && !m->joint[j].cls->motion; i++)
+            if (e->row[i].joint == (int)j)
+                add_candidate(r, (int)j, CT_RELEASE_REMOVE, 0, i);
+    }
+}
+
+static void find_null_vectors(struct releases *r)
+{
+    struct ct_partition *s = ct_run_partition(r->l->sim->run);
+    const size_t nrow = s->m->nrow;
+    r->nz = nrow - (size_t)s->rank;
+    r->z = CT_NEWN(r->a, double, nrow * r->nz + 1);
+    for (size_t k = 0; k < r->nz; k++)
+        ct_partition_null_vector(s, s->row[(size_t)s->rank + k], r->z + nrow * k);
+}
+
+// Reactions are linear in the multipliers: their difference with z and with none.
+static void find_shares(struct releases *r)
+{
+    struct ct_evaluator *m = ct_run_evaluator(r->l->sim->run);
+    double *lam = m->input + m->at_lam, *before = CT_NEWN(r->a, double, m->nrow + 1);
+    double *without = CT_NEWN(r->a, double, r->nreaction + 1);
+    struct ct_program p = {0};
+    ct_evaluator_add_program(r->a, m, m->e->build->x, r->reaction, r->nreaction, &p);
+    memcpy(before, lam, m->nrow * sizeof *lam);
+    memset(lam, 0, m->nrow * sizeof *lam);
+    ct_program_run(&p, m->input);
+    memcpy(without, p.out, r->nreaction * sizeof *without);
+    const double scale = 1 + ct_vector_largest(without, r->nreaction);
+    for (size_t k = 0; k < r->nz; k++) {
+        for (size_t i = 0; i < m->nrow; i++)
+            lam[i] = scale * r->z[i + m->nrow * k];
+        ct_program_run(&p, m->input);
+        for (size_t i = 0; i < r->n; i++) {
+            struct candidate *c = &r->candidate[i];
+            c->share[k] = c->release.kind == CT_RELEASE_REMOVE
+                            ? r->z[c->at + m->nrow * k]
+                            : (p.out[c->at] - without[c->at]) / scale;
+        }
+    }
+    memcpy(lam, before, m->nrow * sizeof *lam);
+    ct_evaluator_remove_program(m, &p);
+}
+
+static double norm(const double *v, size_t n)
+{
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += v[i] * v[i];
+    return sqrt(sum);
+}
+
+// Torques are compared with forces by the size of the mechanism.
+static void make_comparable(struct releases *r)
+{
+    const struct ct_equations *e = &r->l->sim->system->equations;
+    double length = 0;
+    for (size_t i = 0; i < e->nrow; i++)
+        length = e->row[i].is_length ? fmax(length, r->l->row_size[i]) : length;
+    for (size_t i = 0; i < r->n; i++)
+        for (size_t k = 0; k < r->nz && length > 0; k++)
+            if (r->candidate[i].release.kind == CT_RELEASE_TURN)
+                r->candidate[i].share[k] /= length;
+}
+
+// Round-off of sums of some hundred terms against the largest reaction of null vectors.
+static const double nothing = 1e-9;
+
+// The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
+static struct candidate *next(struct releases *r, double least)
+{
+    const double much = 0.5;
+    double most = 0;
+    for (size_t i = 0; i < r->n; i++)
+        most = fmax(most, norm(r->candidate[i].share, r->nz));
+    for (size_t i = 0; i < r->n && most > least; i++)
+        if (norm(r->candidate[i].share, r->nz) >= much * most)
+            return &r->candidate[i];
+    return NULL;
+}
+
+// One after the other: what a release takes away is taken off the shares of all.
+static void choose(struct releases *r, double least)
+{
+    double *v = CT_NEWN(r->a, double, r->nz);
+    for (size_t n = 0; n < r->nz; n++) {
+        struct candidate *c = next(r, least);
+        if (!c)
+            return;
+        c->release.is_chosen = true;
+        const double size = norm(c->share, r->nz);
+        for (size_t k = 0; k < r->nz; k++)
+            v[k] = c->share[k] / size;
+        for (size_t i = 0; i < r->n; i++) {
+            const double along = ct_vector_dot(r->candidate[i].share, v, r->nz);
+            for (size_t k = 0; k < r->nz; k++)
+                r->candidate[i].share[k] -= along * v[k];
+        }
+    }
+}
+
+static void find_releases(struct ct_arena *a, struct ct_loops *l)
+{
+    struct releases r = {.a = a, .l = l};
+    double most = 0;
+    find_null_vectors(&r);
+    if (!r.nz || ct_run_singular_joints(l->sim->run))
+        return;
+    list_candidates(&r);
+    find_shares(&r);
+    make_comparable(&r);
+    for (size_t i = 0; i < r.n; i++)
+        most = fmax(most, norm(r.candidate[i].share, r.nz));
+    size_t n = 0;
+    for (size_t i = 0; i < r.n; i++)
+        if (norm(r.candidate[i].share, r.nz) > nothing * most)
+            r.candidate[n++] = r.candidate[i];
+    r.n = n;
+    choose(&r, nothing * most);
+    l->release = CT_NEWN(a, struct ct_release, r.n + 1);
+    for (size_t i = 0; i < r.n; i++)
+        l->release[l->nrelease++] = r.candidate[i].release;
+}
+
+// ---- the entries --------------------------------------------------------------------------------
+
+void ct_loops_create(struct ct_arena *a, struct ct_sim *sim, struct ct_loops *out)
+{
+    struct ct_run *run = sim->run;
+    const struct ct_partition *s = ct_run_partition(run);
+    const size_t nrow = sim->system->equations.nrow;
+    *out = (struct ct_loops){.sim = sim, .is_open = sim->open.row, .rank = s->rank};
+    list_loops(a, out);
+    out->is_redundant = CT_NEWN(a, bool, nrow + 1);
+    for (size_t i = (size_t)s->rank; i < nrow; i++)
+        out->is_redundant[s->row[i]] = true;
+    if (!nrow)
+        return;
+    prepare_measure(a, out);
+    // the evaluator at the start, with multipliers
+    bool *unused = CT_NEWN(a, bool, nrow + sim->system->equations.nresult + 1);
+    ct_run_find_undetermined(run, 0, ct_run_state(run), unused, unused + nrow);
+    ct_evaluator_set(run->m, 0, ct_run_state(run));
+    ct_program_run(&out->J, run->m->input);
+    double *near = CT_NEWN(a, double, out->nloop + 1);
+    for (size_t i = 0; i < out->nloop; i++)
+        out->loop[i].rank = rank_of(a, out, out->loop[i].row, out->loop[i].nrow);
+    ct_loops_measure(out, near);
+    out->near = near[0];
+    for (size_t i = 0; i < out->nloop; i++)
+        out->loop[i].near = near[1 + i];
+    find_releases(a, out);
+}
+
+void ct_loops_forget(struct ct_loops *l)
+{
+    if (l->J.nout)
+        ct_evaluator_remove_program(ct_run_evaluator(l->sim->run), &l->J);
+}
+
+const char *ct_release_text(struct ct_arena *a, const struct ct_loops *l,
+                            const struct ct_release *r)
+{
+    const char *name = l->sim->system->model.joint[r->joint].name;
+    switch (r->kind) {
+    case CT_RELEASE_TURN:
+        return ct_arena_printf(a, "let %s turn about %c", name, "xyz"[r->axis]);
+    case CT_RELEASE_SLIDE:
+        return ct_arena_printf(a, "let %s slide along %c", name, "xyz"[r->axis]);
+    case CT_RELEASE_REMOVE:
+        return ct_arena_printf(a, "take out %s", name);
+    }
+    return name;
+}
+
+// ---- for people ---------------------------------------------------------------------------------
+
+struct printing {
+    struct ct_ctx *own;
+    struct ct_sim *sim;
+    FILE *out;
+};
+
+static const char *list_names(struct ct_arena *a, const struct ct_loop *l,
+                              const struct ct_equations *e, const bool *is)
+{
+    const char *text = "";
+    for (size_t i = 0; i < l->nrow; i++)
+        if (is[l->row[i]])
+            text
+                = ct_arena_printf(a, "%s%s%s", text, *text ? ", " : "", e->row[l->row[i]].name);
+    return text;
+}
+
+static void print_loop(const struct printing *p, const struct ct_loops *loops,
+                       const struct ct_loop *l)
+{
+    const struct ct_equations *e = &p->sim->system->equations;
+    struct ct_arena *a = p->own->scratch;
+    fprintf(p->out, "loop         %s", l->name);
+    for (size_t i = 1; i < l->nmember; i++)
+        fprintf(p->out, "%s%s", i == 1 ? " closes " : " - ", l->member[i]);
+    fprintf(p->out, ": %zu row%s, rank %d", l->nrow, l->nrow == 1 ? "" : "s", l->rank);
+    if (isfinite(l->near))
+        fprintf(p->out, ", smallest singular value %.3g", l->near);
+    const char *redundant = list_names(a, l, e, loops->is_redundant);
+    const char *open = list_names(a, l, e, loops->is_open);
+    if (*redundant)
+        fprintf(p->out, "; redundant %s", redundant);
+    if (*open)
+        fprintf(p->out, "; undetermined %s", open);
+    fputc('\n', p->out);
+}
+
+static void print_releases(const struct printing *p, const struct ct_loops *loops)
+{
+    struct ct_arena *a = p->own->scratch;
+    size_t nchosen = 0;
+    for (size_t i = 0; i < loops->nrelease; i++) {
+        const struct ct_release *r = &loops->release[i];
+        if (r->is_chosen)
+            fprintf(p->out, "%s%s", nchosen++ ? ", " : "release      ",
+                    ct_release_text(a, loops, r));
+    }
+    if (!nchosen)
+        return;
+    fprintf(p->out, ": then no constraint is redundant");
+    if (loops->nrelease > nchosen)
+        fprintf(p->out, " (%zu other freedoms would take away one each)",
+                loops->nrelease - nchosen);
+    fputc('\n', p->out);
+}
+
+static bool print_loops(void *task)
+{
+    const struct printing *p = task;
+    enum { MOST_SHOWN = 100 };
+    struct ct_loops l;
+    ct_loops_create(p->own->model, p->sim, &l);
+    for (size_t i = 0; i < l.nloop && i < MOST_SHOWN; i++)
+        print_loop(p, &l, &l.loop[i]);
+    if (l.nloop > MOST_SHOWN)
+        fprintf(p->out, "             %zu more\n", l.nloop - MOST_SHOWN);
+    if (l.nloop > 1 && isfinite(l.near))
+        fprintf(p->out, "all loops    %zu rows, rank %d, smallest singular value %.3g\n",
+                p->sim->system->equations.nrow, l.rank, l.near);
+    print_releases(p, &l);
+    ct_loops_forget(&l);
+    return true;
+}
+
+bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out)
+{
+    struct ct_ctx own = {0};
+    struct printing p = {&own, sim, out};
+    const bool ok = ctx && sim && out && ct_own_enter(ctx, &own, print_loops, &p);
+    ct_own_finish(&own);
+    return ok;
+}

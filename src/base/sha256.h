@@ -1,0 +1,14 @@
+// SHA-256 (FIPS 180-4): the fingerprint of a text.
+#ifndef CT_BASE_SHA256_H
+#define CT_BASE_SHA256_H
+
+#include <stddef.h>
+
+enum { CT_SHA256_SIZE = 32 };
+
+/// digest (out) of n bytes.
+void ct_sha256(const unsigned char *b, size_t n, unsigned char digest[CT_SHA256_SIZE]);
+/// The same as 64 hexadecimal digits and a NUL.
+void ct_sha256_text(const unsigned char *b, size_t n, char text[2 * CT_SHA256_SIZE + 1]);
+
+#endif

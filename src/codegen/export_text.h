@@ -1,0 +1,25 @@
+// Text of exported C under construction, and templates of it.
+#ifndef CT_CODEGEN_EXPORT_TEXT_H
+#define CT_CODEGEN_EXPORT_TEXT_H
+
+#include "base/ctx.h"
+
+struct ct_export_text {
+    struct ct_arena *arena;
+    const char *name; // of the model, a C identifier
+    char *s;
+    size_t n, cap;
+};
+
+void ct_export_put(struct ct_export_text *t, const char *s);
+void ct_export_putf(struct ct_export_text *t, const char *fmt, ...)
+    __attribute__((format(printf, 2, 3)));
+/// s with the name in place of each @, in capitals in place of each $.
+void ct_export_put_named(struct ct_export_text *t, const char *s);
+/// {1, 2, 3}: n numbers, never an empty list.
+void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n);
+void ct_export_put_integers(struct ct_export_text *t, const int *v, size_t n);
+/// The whole, which lives in the arena.
+const char *ct_export_finish(struct ct_export_text *t);
+
+#endif

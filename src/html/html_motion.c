@@ -1,0 +1,30 @@
+// Section `motion`: the mechanism at its start as a line drawing; the script puts the moving one in its place.
+#include "html/html.h"
+
+#include "draw/picture.h"
+
+// The motion takes half a megabyte of the page at most, at about a byte for each number.
+enum { MOST_NUMBERS = 500000, MOST_ROWS = 2001, LEAST_ROWS = 201 };
+
+static size_t most_rows(const struct ct_animation *m)
+{
+    const size_t n = MOST_NUMBERS / (m->ncolumn + 1);
+    return n < LEAST_ROWS ? LEAST_ROWS : n > MOST_ROWS ? MOST_ROWS : n;
+}
+
+void ct_html_motion(struct ct_html *h)
+{
+    const struct ct_recording *r = h->recording;
+    const struct ct_scene *scene = &r->animation.scene;
+    struct ct_picture p = {.scene = scene, .value = r->first, .title = h->sys->model.name};
+    struct ct_html_data d;
+    ct_view_choose(&p.view, scene, NULL);
+    ct_html_open_section(h, "motion", "Motion");
+    fputs("<div id=\"motion-panel\">\n", h->out);
+    ct_picture_print(h->out, h->a, &p);
+    fputs("</div>\n", h->out);
+    ct_html_open_data(h, &d, "data-motion");
+    ct_animation_write(h->a, &d.json, &r->animation, most_rows(&r->animation));
+    ct_html_close_data(&d);
+    ct_html_close_section(h);
+}

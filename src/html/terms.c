@@ -1,0 +1,48 @@
+// See terms.h.
+#include "html/terms.h"
+
+#include "solve/run/run_internal.h"
+
+#include <string.h>
+
+// A quarter of a megabyte of the page, at about a byte for each number.
+enum { MOST_NUMBERS = 250000, LEAST_ROWS = 51 };
+
+void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct_system *sys)
+{
+    struct ct_equations *e = &sys->equations;
+    *t = (struct ct_terms_recording){.stride = 1};
+    ct_derivation_init(&t->derivation, a, e, &sys->model, CT_LOOK_HTML);
+    ct_derivation_reduce(&t->derivation, &t->reduced);
+    ct_provenance_derive(&t->derivation, &t->reduced, &t->provenance);
+    if (t->provenance.nterm * LEAST_ROWS <= MOST_NUMBERS)
+        t->nvalue = t->provenance.nterm;
+    for (size_t i = 0; i < t->nvalue; i++)
+        t->uses_multipliers
+            |= (ct_ex_kinds(e->x, t->provenance.term[i].full) & 1u << CT_SYM_LAM) != 0;
+}
+
+void ct_terms_compile(struct ct_arena *a, struct ct_terms_recording *t, struct ct_run *run,
+                      size_t nrow)
+{
+    if (!t->nvalue)
+        return;
+    const size_t most = MOST_NUMBERS / t->nvalue;
+    if (nrow > most)
+        t->stride = (nrow + most - 3) / (most - 1);
+    ct_evaluator_add_program(a, ct_run_evaluator(run), t->derivation.e->x,
+                             ct_provenance_values(a, &t->provenance), t->nvalue, &t->program);
+}
+
+void ct_terms_keep(struct ct_arena *a, struct ct_terms_recording *t, struct ct_run *run,
+                   size_t i, bool is_last)
+{
+    if (!t->nvalue || (i % t->stride && !is_last))
+        return;
+    if (t->uses_multipliers)
+        ct_run_find_multipliers(run);
+    ct_program_run(&t->program, ct_run_evaluator(run)->input);
+    size_t n = t->nrow++ * t->nvalue;
+    for (size_t k = 0; k < t->nvalue; k++)
+        CT_PUSH(a, t->value, n, t->cap, t->program.out[k]);
+}

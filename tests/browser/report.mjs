@@ -1,0 +1,151 @@
+// The page of `cotree report` in a real browser: node report.mjs, with COTREE, CHROMIUM, WEB and SYSTEMS in the environment.
+import assert from "node:assert/strict";
+import { readFileSync, rmSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { cotree, folder, launch, open, report, simulate } from "./browser.mjs";
+import { checkClock, checkEquations, checkFile, checkGraph, checkLights, checkManifest, checkNoScripts, checkSections } from "./checks.mjs";
+
+const models = join(dirname(fileURLToPath(import.meta.url)), "models");
+const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
+
+// size: most [MB]; light: a component, and the sections it is lit in
+const cases = [
+  { name: "slider_crank", size: 1, light: ["crank", ["model", "graph", "equations"]], more: ["main", ["model", "graph", "equations", "plots"]] },
+  { name: "puma560", size: 2, light: ["j1", ["model", "graph", "equations"]] },
+  { name: "stewart", size: 2, light: ["platform", ["model", "graph"]] },
+  { name: "slider_crank_flexible", size: 2, light: ["rod", ["model", "graph"]] },
+  { name: "bricard", size: 2 },
+  { name: "chain40", size: 2 },
+];
+
+const pixels = (page) => page.locator("#motion-panel").screenshot();
+
+async function checkMotion(page, end) {
+  await page.evaluate(() => window.cotree.seek(0));
+  await page.waitForTimeout(100);
+  const before = await pixels(page);
+  await page.evaluate((t) => window.cotree.seek(t), 0.37 * end);
+  await page.waitForTimeout(100);
+  assert.ok(!before.equals(await pixels(page)), "the motion stands still");
+}
+
+async function checkModel({ name, size, light, more }, browser) {
+  const model = system(name);
+  const file = report(model, `${name}.html`);
+  const run = simulate(model);
+  const graph = JSON.parse(cotree(["graph", model, "--format", "json"]));
+  checkFile(file, size);
+  const { page, close } = await open(browser, file);
+  await checkSections(page);
+  await checkClock(page, run);
+  await checkGraph(page, graph);
+  await checkEquations(page, run.t[Math.floor(run.t.length / 2)]);
+  await checkMotion(page, run.t.at(-1));
+  if (light) await checkLights(page, ...light);
+  if (more) await checkLights(page, ...more);
+  await close();
+}
+
+// What does not depend on the model.
+async function checkControls(browser) {
+  const file = join(folder, "slider_crank.html");
+  const { header } = simulate(system("slider_crank"));
+  const { page, close } = await open(browser, file);
+  // the table that is saved
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "CSV" }).click()]);
+  const saved = readFileSync(await download.path(), "utf8");
+  assert.equal(saved.slice(0, saved.indexOf("\n")), header);
+  assert.equal(saved.trim().split("\n").length, 2002);
+  // the clock from the keyboard, from its slider and from a plot
+  await page.locator("h1").click(); // off the button
+  await page.keyboard.press(" ");
+  await page.waitForFunction(() => window.cotree.time > 0);
+  await page.keyboard.press(" ");
+  const stood = await page.evaluate(() => window.cotree.time);
+  await page.waitForTimeout(100);
+  assert.equal(await page.evaluate(() => window.cotree.time), stood);
+  await page.locator("#transport input").fill("1");
+  assert.equal(await page.evaluate(() => window.cotree.time), 1);
+  const chart = page.locator("#plots .u-over").first();
+  await chart.scrollIntoViewIfNeeded();
+  const box = await chart.boundingBox();
+  await chart.click({ position: { x: box.width / 4, y: 20 } });
+  assert.ok(Math.abs((await page.evaluate(() => window.cotree.time)) - 0.5) < 0.02);
+  await page.evaluate(() => (window.cotree.seek(0), window.cotree.play()));
+  await page.waitForFunction(() => window.cotree.time > 0.01);
+  await page.evaluate(() => window.cotree.pause());
+  // an edge from the keyboard
+  const edge = page.locator('#graph .edge[data-edge="guide"]');
+  await edge.focus();
+  assert.ok((await page.evaluate(() => document.body.dataset.lit)).split(" ").includes("guide"));
+  await page.keyboard.press("Enter");
+  assert.equal(await page.locator("#graph .equation[data-edge]:visible").count(), 2);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.evaluate(() => document.body.dataset.lit), "");
+  // zoom, and back
+  await chart.scrollIntoViewIfNeeded();
+  const over = await chart.boundingBox();
+  await page.mouse.move(over.x + 50, over.y + 30);
+  await page.mouse.down();
+  await page.mouse.move(over.x + 250, over.y + 30, { steps: 4 });
+  await page.mouse.up();
+  const [part] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "CSV" }).click()]);
+  assert.ok(readFileSync(await part.path(), "utf8").trim().split("\n").length < 1000);
+  await page.getByRole("button", { name: "Whole time" }).click();
+  await checkManifest(page, file, system("slider_crank"));
+  await close();
+  await checkNoScripts(browser, file);
+  // a phone, in the dark: nothing is wider than the screen
+  const phone = await open(browser, file, { viewport: { width: 390, height: 844 }, dark: true });
+  assert.ok((await phone.page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await phone.close();
+}
+
+async function checkHostile(browser) {
+  const model = join(models, "hostile.yaml");
+  const file = report(model, "it's; $(touch taken) & \"quoted\".html");
+  const run = simulate(model);
+  checkFile(file, 1);
+  const { page, close } = await open(browser, file);
+  await checkSections(page);
+  await checkClock(page, run);
+  await checkGraph(page, JSON.parse(cotree(["graph", model, "--format", "json"])));
+  await checkLights(page, "__proto__", ["model", "graph"]);
+  assert.equal(await page.evaluate(() => window.taken), undefined);
+  assert.equal(await page.locator("main img, main b b").count(), 0);
+  assert.ok((await page.textContent("h1")).startsWith("</script><script>window.taken = true</script> & \"quoted\""));
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "CSV" }).click()]);
+  assert.ok(readFileSync(await download.path(), "utf8").startsWith(run.header));
+  await checkManifest(page, file, model);
+  await close();
+}
+
+async function checkStill(browser) {
+  const file = report(join(models, "still.yaml"), "still.html");
+  const { page, close } = await open(browser, file);
+  await checkSections(page);
+  assert.equal(await page.evaluate(() => (window.cotree.seek(3), window.cotree.time)), 0);
+  await close();
+  const again = report(join(models, "still.yaml"), "again.html");
+  assert.ok(readFileSync(file).equals(readFileSync(again)), "the name of the file changes its bytes");
+}
+
+const browser = await launch();
+const steps = [...cases.map((model) => [model.name, () => checkModel(model, browser)]), ["controls", () => checkControls(browser)], ["hostile", () => checkHostile(browser)], ["still", () => checkStill(browser)]];
+const wanted = process.argv.slice(2);
+let failed = 0;
+for (const [name, step] of steps) {
+  if (wanted.length && !wanted.includes(name)) continue;
+  const start = Date.now();
+  try {
+    await step();
+    console.log(`${name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);
+  } catch (error) {
+    failed++;
+    console.log(`${name}: ${error.stack}`);
+  }
+}
+await browser.close();
+rmSync(folder, { recursive: true });
+process.exit(failed ? 1 : 0);
