@@ -8,12 +8,17 @@
 #include <string.h>
 #include <sys/stat.h>
 
-const struct cli_command *const cli_commands[]
-    = {&cli_simulate, &cli_report,     &cli_equations, &cli_graph,      &cli_draw,
-       &cli_accuracy, &cli_sweep,      &cli_merge,     &cli_check,      &cli_equilibrium,
-       &cli_modes,    &cli_linearize,  &cli_buckling,  &cli_kinematics, &cli_inverse,
-       &cli_export,   &cli_import,     &cli_components, &cli_methods,   &cli_schema,     &cli_completion,
-       NULL};
+const struct cli_command *const cli_commands[] = {&cli_simulate,   &cli_report,
+                                                  &cli_equations,  &cli_graph,
+                                                  &cli_draw,       &cli_accuracy,
+                                                  &cli_sweep,      &cli_merge,
+                                                  &cli_check,      &cli_equilibrium,
+                                                  &cli_modes,      &cli_linearize,
+                                                  &cli_buckling,   &cli_kinematics,
+                                                  &cli_inverse,    &cli_export,
+                                                  &cli_import,     &cli_components,
+                                                  &cli_methods,    &cli_schema,
+                                                  &cli_completion, NULL};
 
 // ---- options --------------------------------------------------------------------------------------------
 

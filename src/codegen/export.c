@@ -22,7 +22,8 @@ static void put_layout(struct ct_export_text *t, const struct ct_export *x)
     const struct ct_equations *e = x->e;
     ct_export_put(t, "enum {\n");
     put_constant(t, "NQ", e->nq, "coordinates");
-    put_constant(t, "NU", e->nu, "speeds");
+    put_constant(t, "NU", e->nu,
+                 e->nstate ? "speeds, and states of the model behind them" : "speeds");
     put_constant(t, "NROW", e->nrow, "constraints");
     put_constant(t, "NM", e->nM, "entries of M, lower triangle");
     put_constant(t, "NJ", e->nJ, "entries of J");
@@ -35,7 +36,7 @@ static void put_layout(struct ct_export_text *t, const struct ct_export *x)
     put_constant(t, "T", 0, "time");
     put_constant(t, "PARAMETER", 1, "the model's parameters and inputs");
     put_constant(t, "Q", x->at_q, "coordinates");
-    put_constant(t, "U", x->at_u, "speeds");
+    put_constant(t, "U", x->at_u, e->nstate ? "speeds, states" : "speeds");
     put_constant(t, "A", x->at_a,
                  "derivatives of speeds, where a function needs them: its own");
     put_constant(t, "LAM", x->at_lam, "multipliers, likewise");

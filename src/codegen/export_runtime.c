@@ -300,7 +300,7 @@ static const char text_noquaternions[] = "static void normalise(double *q)\n"
                                          "static void retract(double *q, const double *d)\n"
                                          "{\n"
                                          "    int i;\n"
-                                         "    for (i = 0; i < $_NU; i++)\n"
+                                         "    for (i = 0; i < moving; i++)\n"
                                          "        q[place[i]] += d[i];\n"
                                          "}\n"
                                          "\n";
@@ -309,7 +309,7 @@ static const char text_quaternions[]
     = "static void normalise(double *q)\n"
       "{\n"
       "    int i, k;\n"
-      "    for (i = 0; i < $_NU; i++)\n"
+      "    for (i = 0; i < moving; i++)\n"
       "        if (place[i] < 0) {\n"
       "            double *const p = q - 1 - place[i];\n"
       "            const double norm = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * "
@@ -324,7 +324,7 @@ static const char text_quaternions[]
       "static void retract(double *q, const double *d)\n"
       "{\n"
       "    int i;\n"
-      "    for (i = 0; i < $_NU; i++) {\n"
+      "    for (i = 0; i < moving; i++) {\n"
       "        double *const p = q - 1 - place[i];\n"
       "        double angle, c, s, w[4];\n"
       "        if (place[i] >= 0) {\n"
@@ -885,12 +885,13 @@ static void put_data(struct ct_export_text *t, const struct ct_export *x)
     put(t, x->left_out ? text_inexact : text_exact);
 }
 
-// By speed: its coordinate, or -1 less the first number of the quaternion that three of them turn.
+// By speed: its coordinate, or -1 less the first number of the quaternion that three of them turn. States of the model move
+// none, and stand behind the others.
 static void put_places(struct ct_export_text *t, const struct ct_equations *e)
 {
     int *place = CT_NEWN(t->arena, int, e->nu + 1), next = 0;
     bool has_quaternions = false;
-    for (size_t k = 0; k < e->nu; k++) {
+    for (size_t k = 0; k < e->nmotion; k++) {
         place[k] = e->u[k].q;
         if (e->u[k].q >= 0)
             continue;
@@ -900,7 +901,8 @@ static void put_places(struct ct_export_text *t, const struct ct_equations *e)
         has_quaternions = true;
         k += 2;
     }
-    put_integers(t, "place", place, e->nu);
+    put_integers(t, "place", place, e->nmotion);
+    ct_export_putf(t, "enum { moving = %zu };\n\n", e->nmotion);
     put(t, has_quaternions ? text_quaternions : text_noquaternions);
 }
 

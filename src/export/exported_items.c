@@ -58,10 +58,11 @@ void ct_exported_list_items(struct ct_exported *w, const struct ct_result *react
     x->inputs = list_parameters(w, CT_INPUT);
     x->coordinates = list_kind(w, CT_COORDINATE, x->at_q);
     x->speeds = list_kind(w, CT_SPEED, x->at_u);
-    x->states = list_kind(w, CT_STATE, 0);
+    x->states = list_kind(w, CT_STATE, x->at_u + x->speeds.n); // behind the speeds
     x->outputs = list_kind(w, CT_OUTPUT, 0);
     take_values(w, &x->coordinates);
     take_values(w, &x->speeds);
+    take_values(w, &x->states);
     x->reactions = make_list(w->ctx->model, x->reaction->nout);
     for (size_t i = 0; i < x->reactions.n; i++)
         x->reactions.item[i]

@@ -222,12 +222,10 @@ static void describe_speed(const struct ct_system *sys, size_t i, struct ct_item
 
 static void describe_state(const struct ct_system *sys, size_t i, struct ct_item *item)
 {
-    const struct ct_equations *e = &sys->equations;
     const struct ct_state *z = &sys->model.state[i];
     item->name = z->name;
     item->unit = si_unit(z->unit);
     item->meaning = "state";
-    item->value = start_of(sys, e->nq + e->nmotion + i);
     place(item, z->mark);
 }
 
@@ -320,9 +318,10 @@ bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
     if (!ct_item_describe(sys, kind, i, item))
         return false;
     const struct ct_equations *e = &sys->equations;
-    if (kind == CT_COORDINATE || kind == CT_SPEED || kind == CT_OUTPUT)
+    if (kind == CT_COORDINATE || kind == CT_SPEED || kind == CT_STATE || kind == CT_OUTPUT)
         item->value = start_of(sys, i
                                         + (kind == CT_SPEED    ? e->nq
+                                           : kind == CT_STATE  ? e->nq + e->nmotion
                                            : kind == CT_OUTPUT ? e->nq + e->nu
                                                                : 0));
     return true;
