@@ -130,3 +130,8 @@ sed 's/rate: setpoint - slide.q/rate: -100*sign(integral - 0.1)/' position.yaml 
 say simulate chatter.yaml -q -o - 2>&1 | sed -n '/error/p'
 sed 's/rate: setpoint - slide.q/rate: 1e3*integral^2, initial: 1/' position.yaml >blows.yaml
 say simulate blows.yaml -q -o blows.csv 2>&1 | sed -n '/error/p'
+
+echo "-- exported C has them behind the speeds"
+for model in position loop; do
+  "$COTREE" export $model.yaml -o $model.c && (cd $model.c && ${CC:-cc} -std=c99 -Wall -Wextra -Werror -O1 -o self_test ./*.c -lm && ./self_test)
+done
