@@ -194,7 +194,6 @@ static void put_all(const struct writer *w)
     put_kind(w, CT_EQUATION_POSITION, "Constraints");
     put_kind(w, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
     put_kind(w, CT_EQUATION_EFFORT, "Efforts of the drivers");
-    put_kind(w, CT_EQUATION_OUTPUT, "Outputs that are reactions or accelerations");
 }
 
 // The section with terms of one look; NULL where it would be too long.
