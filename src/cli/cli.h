@@ -85,8 +85,8 @@ struct cli_command {
 
 extern const struct cli_command cli_simulate, cli_report, cli_equations, cli_graph, cli_draw,
     cli_accuracy, cli_check, cli_equilibrium, cli_modes, cli_linearize, cli_kinematics,
-    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_import, cli_components, cli_methods,
-    cli_schema, cli_completion;
+    cli_inverse, cli_buckling, cli_sweep, cli_merge, cli_export, cli_import, cli_components,
+    cli_methods, cli_schema, cli_completion;
 /// All commands in the order of --help; NULL at the end.
 extern const struct cli_command *const cli_commands[];
 

@@ -47,7 +47,8 @@ static void print_bash_command(FILE *out, const struct cli_command *c)
     for (size_t i = 0; i < cli_noption; i++)
         if (is_offered(&cli_options[i], c))
             fprintf(out, "--%s ", cli_options[i].name);
-    fprintf(out, "'\n      files=%d ;;\n    esac ;;\n", c->takes_model || c->takes_file || c->files);
+    fprintf(out, "'\n      files=%d ;;\n    esac ;;\n",
+            c->takes_model || c->takes_file || c->files);
 }
 
 static void print_bash(FILE *out)
@@ -134,10 +135,10 @@ static void print_zsh_command(FILE *out, const struct cli_command *c)
         fputs(")'", out);
     } else {
         fprintf(out, "      %s",
-                c->takes_model ? "'1:model:_files -g \"*.(yaml|yml)\"'"
+                c->takes_model  ? "'1:model:_files -g \"*.(yaml|yml)\"'"
                 : c->takes_file ? "'1:file:_files'"
-                : c->files     ? "'*:file:_files -g \"*.csv\"'"
-                               : "");
+                : c->files      ? "'*:file:_files -g \"*.csv\"'"
+                                : "");
     }
     fputs(" ;;\n", out);
 }
