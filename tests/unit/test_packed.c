@@ -194,10 +194,35 @@ static void smooth_samples_are_small(void **state)
     ct_arena_destroy(a);
 }
 
+// Where less is of no use a step is as long as that; a column that varies by less is a constant.
+static void steps_are_no_shorter_than_asked(void **state)
+{
+    (void)state;
+    const double value[] = {0, 5, 0.5, 5 + 1e-9, 1, 5}, resolution[] = {0.01, 0.01};
+    double back[6];
+    char *text = NULL;
+    size_t n;
+    struct ct_arena *a = ct_arena_create();
+    FILE *out = open_memstream(&text, &n);
+    struct ct_json j;
+    ct_json_init(&j, out);
+    ct_json_object(&j, NULL);
+    ct_pack_write_rounded(&j, a, "samples", value, 3, 2, resolution);
+    ct_json_end(&j);
+    fclose(out);
+    assert_non_null(strstr(text, "\"step\": [0.01, 0.01]"));
+    unpack(text, back, 3, 2);
+    for (size_t i = 0; i < 6; i++)
+        CHECK_CLOSE(back[i], i % 2 ? 5 : value[i], 0, 1e-14); // round-off: 0.5 is 50 steps
+    free(text);
+    ct_arena_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sha256_gives_the_published_digests),
+        cmocka_unit_test(steps_are_no_shorter_than_asked),
         cmocka_unit_test(base64_pads_to_whole_groups),
         cmocka_unit_test(samples_come_back_within_half_a_step),
         cmocka_unit_test(what_is_not_finite_comes_back_as_nan),
