@@ -353,17 +353,8 @@ static int rounded_pivot(struct ct_partition *s, int f, bool of_beams)
     return -1;
 }
 
-static void reverse(int *list, int n)
-{
-    for (int i = 0; i < n / 2; i++) {
-        const int first = list[i];
-        list[i] = list[n - 1 - i];
-        list[n - 1 - i] = first;
-    }
-}
-
-// The first speed whose pivot of M is round-off; -1: none. Articulated bodies may keep digits that M
-// loses: there it counts where coordinates of beams move the same.
+// The first speed whose pivot of M is round-off; -1: none. Articulated bodies may keep digits that M loses: there it
+// counts where coordinates of beams move the same.
 static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
 {
     const size_t n = s->m->nu;
@@ -383,16 +374,12 @@ static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
     }
     if (!is_doubtful)
         return -1;
-    // from the last speed to the first, as speeds are numbered outwards: next to no fill
     const int f = (int)n;
     for (int j = 0; j < f; j++)
         for (int i = j; i < f; i++)
-            s->S[i + f * j] = s->m->M[f - 1 - i + f * (f - 1 - j)];
-    reverse(s->independent, f);
+            s->S[i + f * j] = s->m->M[i + f * j];
     ct_cholesky(s->S, f, f); // as far as it goes
-    const int found = rounded_pivot(s, f, is_exact);
-    reverse(s->independent, f);
-    return found;
+    return rounded_pivot(s, f, is_exact);
 }
 
 // The beam of an elastic coordinate whose mass is at one point of each element; else NULL.
