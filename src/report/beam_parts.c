@@ -130,13 +130,25 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
 // Two elements in space; operators and operands of all parts that are collected and read.
 enum { MOST_COORDINATES = 12, MOST_SPEEDS = 1000, LONGEST = 40000 };
 
+// Sums over points of sections that vary are not read by anyone.
+static bool varies(const struct ct_exs *x, const struct ct_beam *beam)
+{
+    const ct_ex of[]
+        = {beam->mass_per_length, beam->area, beam->Iy, beam->Iz, beam->J, beam->E, beam->G};
+    unsigned kinds = 0;
+    for (size_t i = 0; i < COUNT(of); i++)
+        kinds |= ct_ex_kinds(x, of[i]);
+    return kinds & 1u << CT_SYM_LOCAL;
+}
+
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
                        struct ct_beam_parts *p)
 {
     const struct ct_flexible *f = &e->build->flexible[i];
     const struct ct_beam_parts before = *p;
     double size = 0;
-    if (!f->nelastic || f->nelastic > MOST_COORDINATES || e->nu > MOST_SPEEDS)
+    if (!f->nelastic || f->nelastic > MOST_COORDINATES || e->nu > MOST_SPEEDS
+        || varies(e->x, f->beam))
         return false;
     name_rigid(a, e->build, f, p);
     for (size_t k = before.definitions.n; k < p->definitions.n; k++)

@@ -22,7 +22,7 @@ struct ct_beam_parts {
     size_t n, of_cap, by_cap, definition_cap;
 };
 
-/// Of all beams; those of more than 12 elastic coordinates, or that are too long to read, have none. Nodes live in e->x,
+/// Of all beams; those of more than 12 elastic coordinates, of sections that vary, or too long to read have none. Nodes live in e->x,
 /// lists in a.
 void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_beam_parts *p);
 /// Adds those of one beam, number i; false: it has none.
