@@ -38,7 +38,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
     const char *path = args->output ? args->output : standard;
     struct ct_report_options options = {.run = cli_sim_options(args),
                                         .path = path && strcmp(path, "-") != 0 ? path : NULL,
-                                        .progress = args->quiet ? NULL : stderr};
+                                        .bar = args->quiet ? NULL : stderr};
     const char **command = list_command(args, &options.ncommand);
     options.command = command;
     struct ct_system *sys = cli_load(ctx, args);
