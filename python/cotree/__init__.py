@@ -307,6 +307,7 @@ class System:
 
     def sweep(self, values, until=None, tolerance=None, threads=None, take=None, **options):
         """The outputs at the end of runs with all combinations of values, {"name": array}; the last name runs fastest.
+        Names are those of parameters and inputs.
 
         take: {"peak": "max(abs(arm.q))"}, columns of what an expression does over the run: max, min, mean, rms, final,
         time (of its first rise through zero; NaN: there is none).
@@ -314,7 +315,8 @@ class System:
         names = list(values)
         axes = [np.atleast_1d(np.asarray(values[n], dtype=float)) for n in names]
         for name in names:
-            self._index("parameter", name)
+            if name not in self.inputs:
+                self._index("parameter", name)
         table = np.array(list(product(*axes))).reshape(-1, len(names))
         taken = dict(take or {})
         columns = self.outputs + tuple(taken)
@@ -647,7 +649,10 @@ class _Table:
 
     def to_pandas(self):
         """A pandas DataFrame."""
-        import pandas
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas() needs pandas, which is not installed") from None
         return pandas.DataFrame({c: self[c] for c in self.columns})
 
 

@@ -129,6 +129,29 @@ def test_sweeps_by_grids_and_by_lists_agree():
         m.sweep({"nothing": [1]})
 
 
+def test_sweeps_vary_inputs_of_the_model():
+    m = cotree.loads("""
+cotree: 1
+parameters: {m: 1}
+inputs: {F: {value: 0, unit: N}}
+bodies: {b: {mass: m}}
+joints: {j: {type: prismatic, axis: x, from: ground, to: b, effort: F}}
+outputs: [j.q]
+""")
+    s = m.sweep({"m": [1, 2], "F": [0, 4]}, until=1)
+    assert s.columns == ("m", "F", "j.q") and np.allclose(s["j.q"], [0, 2, 0, 1])
+
+
+def test_frames_need_pandas_and_say_so():
+    try:
+        import pandas  # noqa: F401
+    except ImportError:
+        with pytest.raises(ImportError, match="needs pandas"):
+            cotree.load(SYSTEMS / "double_pendulum" / "model.yaml").simulate(until=0.1).to_pandas()
+    else:
+        pytest.skip("pandas is installed")
+
+
 def test_sweeps_take_what_runs_do_between_samples():
     text = """
 cotree: 1
