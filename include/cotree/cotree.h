@@ -761,13 +761,14 @@ CT_API bool ct_vary(struct ct_ctx *ctx, const char *path,
 
 /** Zero: the start, as it suits the system. */
 struct ct_draw_options {
+    size_t size; /* 0, or sizeof (struct ct_draw_options) */
     const char *
         view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
     double time; /* [s]; > 0: the motion is followed up to there first */
     bool trace;  /* the start, with the paths of points and of beams' ends over the run */
     struct ct_sim_options run;
     const char *path; /* FILE.svg; NULL: standard output */
-    FILE *progress;   /* a bar is shown there if it is a terminal */
+    FILE *bar;        /* progress is shown there if it is a terminal */
 };
 
 /**
@@ -783,7 +784,7 @@ struct ct_report_options {
     size_t size; /* 0, or sizeof (struct ct_report_options) */
     struct ct_sim_options run;
     const char *path; /* FILE.html; NULL: standard output */
-    FILE *progress;   /* a bar is shown there if it is a terminal */
+    FILE *bar;        /* progress is shown there if it is a terminal */
     /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
     const char *const *command;
     size_t ncommand;

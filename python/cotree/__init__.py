@@ -87,6 +87,10 @@ def _settings(set, tree, columns, beam_elements, beam_formulation, keep_all, for
 
 def _run_options(until=None, tolerance=None, absolute=None, step=None, samples=None,
                  method=None, verify=False, backend=None, solver=None):
+    for name, value in (("until", until), ("tolerance", tolerance), ("absolute", absolute),
+                        ("step", step), ("samples", samples)):
+        if value is not None and value == 0:  # to the library 0 means the default
+            raise ValueError("%s is %s; it must be greater than 0" % (name, value))
     options = _l.SimOptions(method=_l.encode(method), tolerance=tolerance or 0,
                             absolute=absolute or 0, step=step or 0, until=until or 0,
                             samples=samples or 0, verify=verify, backend=_l.encode(backend),
@@ -158,6 +162,17 @@ class System:
         if self.pointer:
             lib.ct_system_destroy(self.pointer)
             self.pointer = None
+
+    # A system does not change: a copy is itself. Another process reads the model again.
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def __reduce__(self):
+        return System, (self.path, self._text, self._given)
 
     def __repr__(self):
         return "<cotree.System %s: %d coordinates, %d speeds, %d constraints>" % (
@@ -260,8 +275,12 @@ class System:
         return self._simulate(lib.ct_sim_run,
                               _run_options(until=until, tolerance=tolerance, **options))
 
-    def report(self, path, until=None, tolerance=None, **options):
+    def report(self, path, until=None, tolerance=None, input=None, hold=False, **options):
         """The model, its equations and its motion as one HTML page; options as those of `simulate`."""
+        if input is not None:
+            return self._with_input(input, hold).report(path, until, tolerance, **options)
+        if hold:
+            raise ValueError("hold says how the rows of input count, and there is no input")
         context = _l.Context()
         o = _l.ReportOptions(path=os.fsencode(path),
                              run=_run_options(until=until, tolerance=tolerance, **options))
@@ -307,14 +326,18 @@ class System:
 
     def sweep(self, values, until=None, tolerance=None, threads=None, take=None, **options):
         """The outputs at the end of runs with all combinations of values, {"name": array}; the last name runs fastest.
+        Names are those of parameters and inputs.
 
         take: {"peak": "max(abs(arm.q))"}, columns of what an expression does over the run: max, min, mean, rms, final,
         time (of its first rise through zero; NaN: there is none).
         """
         names = list(values)
+        if not names:
+            raise ValueError("a sweep needs values of at least one parameter or input")
         axes = [np.atleast_1d(np.asarray(values[n], dtype=float)) for n in names]
         for name in names:
-            self._index("parameter", name)
+            if name not in self.inputs:
+                self._index("parameter", name)
         table = np.array(list(product(*axes))).reshape(-1, len(names))
         taken = dict(take or {})
         columns = self.outputs + tuple(taken)
@@ -500,6 +523,18 @@ class _Values:
         return repr(dict(self.items()))
 
 
+def _values(kind, is_settable=True):
+    """A property of a state: values by name; a dictionary that is assigned sets those that it names."""
+    def get(self):
+        return _Values(self, kind, is_settable)
+
+    def set(self, values):
+        kept = get(self)
+        for name, value in values.items():
+            kept[name] = value
+    return property(get, set)
+
+
 def _quantity(number, is_matrix=False):
     def get(self):
         rows, columns = self._rows, self._columns
@@ -519,17 +554,24 @@ class Data:
     Arrays are copies that cannot be written to: set the state by d.q = ..., d.u = ..., d.z = ..., d.t = ...
     """
 
+    __slots__ = ("system", "_context", "_pointer", "_c", "_rows", "_columns", "_rows_p",
+                 "_columns_p", "__weakref__")
+
     def __init__(self, system, context, pointer):
         self.system, self._context, self._pointer = system, context, pointer
         self._c = context.pointer
         self._rows, self._columns = ctypes.c_size_t(), ctypes.c_size_t()
         self._rows_p, self._columns_p = _byref(self._rows), _byref(self._columns)
-        self.inputs = _Values(self, "input", True)
-        self.parameters = _Values(self, "parameter", True)
-        self.coordinates = _Values(self, "coordinate", True)
-        self.speeds = _Values(self, "speed", True)
-        self.states = _Values(self, "state", True)
-        self.outputs = _Values(self, "output", False)
+
+    inputs = _values("input")
+    parameters = _values("parameter")
+    coordinates = _values("coordinate")
+    speeds = _values("speed")
+    states = _values("state")
+    outputs = _values("output", False)
+
+    def __reduce__(self):
+        raise TypeError("a cotree.Data cannot be pickled; send its t, q, u and z")
 
     def __del__(self):
         if getattr(self, "_pointer", None):
@@ -647,7 +689,10 @@ class _Table:
 
     def to_pandas(self):
         """A pandas DataFrame."""
-        import pandas
+        try:
+            import pandas
+        except ImportError:
+            raise ImportError("to_pandas() needs pandas, which is not installed") from None
         return pandas.DataFrame({c: self[c] for c in self.columns})
 
 

@@ -53,7 +53,7 @@ class SimResults(Structure):
 
 
 class ReportOptions(Structure):
-    _fields_ = [("size", c_size_t), ("run", SimOptions), ("path", c_char_p), ("progress", c_void_p),
+    _fields_ = [("size", c_size_t), ("run", SimOptions), ("path", c_char_p), ("bar", c_void_p),
                 ("command", POINTER(c_char_p)), ("ncommand", c_size_t), ("accuracy", c_void_p)]
 
 

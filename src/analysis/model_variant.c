@@ -172,7 +172,7 @@ size_t ct_variant_standard_inputs(struct ct_ctx *own, const struct ct_model *m,
 {
     struct names l = {.a = own->model};
     for (size_t i = 0; i < m->nparameter; i++)
-        if (m->parameter[i].is_input)
+        if (m->parameter[i].is_input && !m->parameter[i].is_played)
             push(&l, m->parameter[i].name);
     if (!l.n)
         l = list_inputs(own->model, m, false);
@@ -220,6 +220,12 @@ bool ct_variant_input(struct ct_ctx *own, struct ct_model *v, const char *name,
     }
     for (size_t i = 0; i < v->nparameter; i++)
         if (strcmp(v->parameter[i].name, name) == 0) {
+            if (v->parameter[i].is_played)
+                return ct_error(
+                    own, (struct ct_mark){.file = NULL}, CT_E_INPUT,
+                    "a file plays the input '%s', which is a function of time then: take the "
+                    "effort or force that it drives, or no file",
+                    name);
             *parameter = i;
             return true;
         }

@@ -202,7 +202,7 @@ const char *ct_version(void)
 
 const char *ct_did_you_mean(const char *name, const char *const *names, size_t n)
 {
-    return ct_nearest(name, names, n);
+    return name && names ? ct_nearest(name, names, n) : NULL;
 }
 
 locale_t ct_locale_enter(void)

@@ -28,9 +28,9 @@ const struct cli_option cli_options[] = {
      "where results go; the suffix says the type"},
     {"set", 0, "NAME=VALUE", CLI_LIST, FIELD(set), CLI_MODELS, true,
      "another value for a parameter; may be repeated"},
-    {"input", 0, "FILE.csv", CLI_TEXT, FIELD(input), CLI_SIMULATE | CLI_REPORT, true,
+    {"input", 0, "FILE.csv", CLI_TEXT, FIELD(input), CLI_PLAYS, false,
      "plays inputs: columns by name and 't', linear between rows"},
-    {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_SIMULATE | CLI_REPORT, true,
+    {"hold", 0, NULL, CLI_FLAG, FIELD(hold), CLI_PLAYS, false,
      "with --input: a row counts from its t on"},
     {"tree", 0, "CHOICE", CLI_TEXT, FIELD(tree), CLI_MODELS, true,
      "auto, joints, absolute, a number of 'graph --trees', or\n"
@@ -484,8 +484,8 @@ static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
     const char *const file[]
-        = {args->output, args->summary,   args->plot, args->curve,  args->report,
-           args->model,  args->reference, args->tree, args->members};
+        = {args->output, args->summary,   args->plot, args->curve,   args->report,
+           args->model,  args->reference, args->tree, args->members, args->input};
     enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)
@@ -533,6 +533,10 @@ bool cli_parse(int argc, char **argv, const struct cli_command **command, struct
     if (p.command->takes_file && !args->model)
         return cli_complain(p.command, "'%s' needs a file: cotree %s %s", p.command->name,
                             p.command->name, p.command->takes_file),
+               false;
+    if (args->hold && !args->input)
+        return cli_complain(p.command,
+                            "--hold says how the rows of --input count; there is no --input"),
                false;
     return check_words(&p) && check_files(&p);
 }

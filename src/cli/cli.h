@@ -66,7 +66,8 @@ enum cli_use {
     CLI_RUNS = CLI_SIMULATE | CLI_ACCURACY | CLI_SWEEP,
     CLI_STEPS = CLI_RUNS | CLI_DRAW | CLI_REPORT, // that may integrate
     CLI_TIMES = CLI_RUNS | CLI_DRIVEN,
-    CLI_TABLES = CLI_TIMES | CLI_STATIC, // write a table to -o
+    CLI_TABLES = CLI_TIMES | CLI_STATIC,            // write a table to -o
+    CLI_PLAYS = CLI_TABLES | CLI_DRAW | CLI_REPORT, // evaluate the model, at one time or many
     CLI_VARIES = CLI_SWEEP | CLI_MODES | CLI_EQUILIBRIUM | CLI_DRIVEN,
     CLI_MODELS = CLI_TIMES | CLI_STATIC | CLI_EQUATIONS | CLI_GRAPH | CLI_DRAW | CLI_REPORT
                | CLI_CHECK | CLI_EXPORT

@@ -15,7 +15,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
                                             .trace = args->trace,
                                             .run = cli_sim_options(args),
                                             .path = to_file ? args->output : NULL,
-                                            .progress = args->quiet ? NULL : stderr};
+                                            .bar = args->quiet ? NULL : stderr};
     int status = ct_system_draw(ctx, sys, &options) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;

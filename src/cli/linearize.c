@@ -28,9 +28,8 @@ const struct cli_command cli_linearize = {
       "x' = A x + B u, y = C x + D u for deviations from the configuration; y are the "
       "outputs.\n"
       "Inputs add to what the model says: J.effort, F.force.x, T.torque.z, or are parameters.\n"
-      "Without --inputs they are the efforts and forces of the model. Suffixes of -o: .csv "
-      "(the\n"
-      "rows of A B and C D), .json, .npz for NumPy.\n",
+      "Without --inputs they are those of the model; without any its efforts and forces.\n"
+      "Suffixes of -o: .csv (the rows of A B and C D), .json, .npz for NumPy.\n",
     .examples = {"cotree linearize crane.yaml --about equilibrium -o crane.npz",
                  "cotree linearize crane.yaml --inputs trolley.effort,wind.force.x"},
     .run = run,

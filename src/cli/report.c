@@ -31,14 +31,11 @@ static struct ct_accuracy *study(struct ct_ctx *ctx, struct ct_system *sys,
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    if (args->hold && !args->input)
-        return cli_complain(&cli_report,
-                            "--hold says how the rows of --input count; there is no --input");
     char *standard = args->output ? NULL : cli_standard_path(args->model, ".html");
     const char *path = args->output ? args->output : standard;
     struct ct_report_options options = {.run = cli_sim_options(args),
                                         .path = path && strcmp(path, "-") != 0 ? path : NULL,
-                                        .progress = args->quiet ? NULL : stderr};
+                                        .bar = args->quiet ? NULL : stderr};
     const char **command = list_command(args, &options.ncommand);
     options.command = command;
     struct ct_system *sys = cli_load(ctx, args);

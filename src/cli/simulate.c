@@ -16,9 +16,6 @@ static int run_and_plot(struct ct_ctx *ctx, const struct cli_args *args)
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)
 {
-    if (args->hold && !args->input)
-        return cli_complain(&cli_simulate,
-                            "--hold says how the rows of --input count; there is no --input");
     if (args->columns && !args->plot)
         return cli_complain(&cli_simulate,
                             "--columns says what --plot shows; there is no --plot");

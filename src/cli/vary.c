@@ -5,7 +5,10 @@
 
 static const char *excluded(const struct cli_args *args)
 {
-    return args->summary ? "--summary" : args->plot ? "--plot" : NULL;
+    return args->summary ? "--summary"
+         : args->plot    ? "--plot"
+         : args->report  ? "--report"
+                         : NULL;
 }
 
 bool cli_vary(struct ct_ctx *ctx, const struct cli_command *command,

@@ -130,8 +130,7 @@ static bool write(void *task)
 
 static bool run(struct drawing *d)
 {
-    const struct ct_sim_results results
-        = {.bar = d->options->progress, .row = at_row, .user = d};
+    const struct ct_sim_results results = {.bar = d->options->bar, .row = at_row, .user = d};
     if (!d->options->trace && !(d->options->time > 0))
         return true;
     return ct_sim_run(d->ctx, d->sim, &results);
@@ -140,12 +139,14 @@ static bool run(struct drawing *d)
 bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
                     const struct ct_draw_options *options)
 {
-    struct drawing d = {.ctx = ctx, .system = sys, .options = options};
-    if (!sys || !ct_enter(ctx, make_scene, &d))
+    struct ct_draw_options given;
+    ct_options_take(&given, options, sizeof given);
+    struct drawing d = {.ctx = ctx, .system = sys, .options = &given};
+    if (!ctx || !sys || !ct_enter(ctx, make_scene, &d))
         return false;
-    struct ct_sim_options o = options->run;
-    if (options->time > 0) {
-        o.until = options->time;
+    struct ct_sim_options o = given.run;
+    if (given.time > 0) {
+        o.until = given.time;
         o.samples = 2; // the start and the time
     }
     d.sim = ct_sim_create(ctx, sys, &o);

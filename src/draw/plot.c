@@ -95,6 +95,8 @@ bool ct_plot_row(void *plot, double t, const double *value, size_t n)
 {
     struct ct_plot *p = plot;
     (void)n;
+    if (!p || !value)
+        return true;
     CT_PUSH(p->own.model, p->row, p->nrow, p->row_cap, t);
     for (size_t k = 0; k < p->ncolumn; k++)
         CT_PUSH(p->own.model, p->row, p->nrow, p->row_cap, value[p->column[k]]);

@@ -186,7 +186,7 @@ static bool make(struct report *r)
     struct ct_sim_options run = r->options->run;
     run.verify = true; // the page says how large the error is
     r->sim = ct_sim_create(r->ctx, r->moved, &run);
-    return r->sim && ct_recording_run(r->ctx, &r->recording, r->sim, r->options->progress)
+    return r->sim && ct_recording_run(r->ctx, &r->recording, r->sim, r->options->bar)
         && ct_enter(r->ctx, write, r);
 }
 

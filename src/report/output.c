@@ -28,6 +28,8 @@ static bool open_output(void *task)
 
 struct ct_output *ct_output_open(struct ct_ctx *ctx, const char *path)
 {
+    if (!ctx)
+        return NULL;
     struct work w = {ctx, ct_own_alloc(ctx, sizeof *w.o), path, false};
     if (w.o && ct_enter(ctx, open_output, &w))
         return w.o;
@@ -37,7 +39,7 @@ struct ct_output *ct_output_open(struct ct_ctx *ctx, const char *path)
 
 FILE *ct_output_stream(const struct ct_output *o)
 {
-    return o->file.stream;
+    return o ? o->file.stream : NULL;
 }
 
 static bool close_output(void *task)

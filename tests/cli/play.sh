@@ -59,3 +59,12 @@ sed 's/mass: 2/mass: "1 + push"/' mass.yaml >heavy.yaml
 say simulate heavy.yaml --input push.csv -q -o run.csv
 sed 's/effort: push/motion: push/' mass.yaml >driven.yaml
 say simulate driven.yaml --input push.csv --hold -q -o run.csv
+
+# a file that is read is not written; sources have inputs that are set, and none that are played
+say simulate mass.yaml --input push.csv -q -o push.csv
+say export mass.yaml --input push.csv -o source
+say sweep mass.yaml --vary push=0:1:2 --hold
+
+# what is played is no input of the linearised model, where it would have no effect
+say linearize mass.yaml --input push.csv -q
+say linearize mass.yaml --input push.csv --inputs push -q

@@ -51,6 +51,7 @@ say modes mass.yaml --vary m=1:2:2 --about nowhere
 say modes mass.yaml --vary q=1:2:2
 say modes mass.yaml --vary m=1:2
 say modes mass.yaml --vary m=1:2:2 --plot x.svg
+say modes mass.yaml --vary m=1:2:2 --report x.html
 say equilibrium mass.yaml --vary m=1:2:2 --summary x.json
 say inverse mass.yaml --vary m=1:2:2 -o no.csv --until 1
 say equilibrium missing.yaml --vary m=1:2:2

@@ -1,7 +1,9 @@
 """The Python package: what it says, what it refuses, and what runs leave behind."""
 
+import copy
 import os
 import pathlib
+import pickle
 import signal
 import threading
 import time
@@ -127,6 +129,32 @@ def test_sweeps_by_grids_and_by_lists_agree():
         assert np.allclose(grid[name][[0, 2]], some[name][[0, 2]], rtol=1e-6, atol=1e-7)
     with pytest.raises(KeyError):
         m.sweep({"nothing": [1]})
+
+
+INPUTS = """
+cotree: 1
+parameters: {m: 1}
+inputs: {F: {value: 0, unit: N}}
+bodies: {b: {mass: m}}
+joints: {j: {type: prismatic, axis: x, from: ground, to: b, effort: F}}
+outputs: [j.q]
+"""
+
+
+def test_sweeps_vary_inputs_of_the_model():
+    m = cotree.loads(INPUTS)
+    s = m.sweep({"m": [1, 2], "F": [0, 4]}, until=1)
+    assert s.columns == ("m", "F", "j.q") and np.allclose(s["j.q"], [0, 2, 0, 1])
+
+
+def test_frames_need_pandas_and_say_so():
+    try:
+        import pandas  # noqa: F401
+    except ImportError:
+        with pytest.raises(ImportError, match="needs pandas"):
+            cotree.load(SYSTEMS / "double_pendulum" / "model.yaml").simulate(until=0.1).to_pandas()
+    else:
+        pytest.skip("pandas is installed")
 
 
 def test_sweeps_take_what_runs_do_between_samples():
@@ -289,3 +317,33 @@ def test_report_is_one_page_of_the_same_bytes(arm, tmp_path):
     assert text == pages[1].read_text(encoding="utf-8")
     with pytest.raises(cotree.Error):
         arm.report(tmp_path / "missing" / "a.html")
+
+
+def test_systems_are_pickled_by_their_model_and_states_are_not():
+    m = cotree.loads(INPUTS, set={"m": 2})
+    for other in (pickle.loads(pickle.dumps(m)), copy.copy(m), copy.deepcopy(m)):
+        assert other.item("m").value == 2
+        d = other.data()
+        d.step(0.1)
+        del other, d
+    with pytest.raises(TypeError, match="pickled"):
+        pickle.dumps(m.data())
+
+
+def test_values_are_assigned_by_dictionaries_and_other_names_refused():
+    d = cotree.loads(INPUTS).data()
+    d.inputs = {"F": 4}
+    assert d.inputs["F"] == 4 and d.acceleration[0] == 4
+    with pytest.raises(TypeError):
+        d.outputs = {"j.q": 1}
+    with pytest.raises(AttributeError):
+        d.input = 1
+
+
+def test_zero_is_no_option_of_a_run():
+    m = cotree.loads(INPUTS)
+    for name in ("until", "tolerance", "absolute", "step", "samples"):
+        with pytest.raises(ValueError, match="%s is 0; it must be greater than 0" % name):
+            m.simulate(**{"until": 1, name: 0})
+    with pytest.raises(ValueError, match="at least one"):
+        m.sweep({})

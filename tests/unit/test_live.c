@@ -571,6 +571,10 @@ static void nothing_is_done_with_null(void **state)
         struct ct_ctx *c = contexts[i];
         assert_null(ct_system_load(c, NULL, NULL));
         assert_null(ct_system_load_text(c, NULL, 0, NULL, NULL));
+        assert_false(ct_system_draw(c, NULL, NULL));
+        assert_false(ct_system_report(c, NULL, NULL));
+        assert_null(ct_plot_create(c, NULL, NULL));
+        assert_false(ct_plot_write(c, NULL, NULL));
         assert_false(ct_system_print_graph(c, NULL, NULL, stdout));
         assert_false(ct_system_print_equations(c, NULL, NULL, NULL, stdout));
         assert_null(ct_system_graph(c, NULL, NULL));
@@ -609,6 +613,14 @@ static void nothing_is_done_with_null(void **state)
         assert_false(ct_data_inverse(c, NULL, x, x));
         assert_false(ct_data_pose(c, NULL, 0, x, x + 9));
     }
+    assert_null(ct_output_open(NULL, NULL));
+    assert_null(ct_output_stream(NULL));
+    assert_false(ct_output_close(NULL, NULL, true));
+    assert_true(ct_plot_row(NULL, 0, x, 1));
+    assert_null(ct_did_you_mean(NULL, NULL, 0));
+    assert_null(ct_did_you_mean("x", NULL, 1));
+    assert_false(ct_system_draw(NULL, sys, NULL));
+    assert_false(ct_system_report(NULL, sys, NULL));
     assert_null(ct_sim_create(NULL, sys, NULL));
     assert_null(ct_data_create(NULL, sys, NULL));
     assert_false(ct_ctx_diagnostic(NULL, 0, &diagnostic));

@@ -112,7 +112,10 @@ static void write_runs(struct ct_ctx *ctx)
     keep("graph.txt", ct_system_graph(ctx, sys, "text"));
     keep("graph.dot", ct_system_graph(ctx, sys, "dot"));
     keep("graph.json", ct_system_graph(ctx, sys, "json"));
-    assert_true(ct_system_draw(ctx, sys, &(struct ct_draw_options){.path = "draw.svg"}));
+    assert_true(ct_system_draw(ctx, sys,
+                               &(struct ct_draw_options){.size = sizeof(struct ct_draw_options),
+                                                         .path = "draw.svg",
+                                                         .bar = stderr}));
     struct ct_accuracy *a = ct_accuracy_create(
         ctx, sys,
         &(struct ct_accuracy_options){.run = {.method = "dopri5", .tolerance = 1e-5}});
