@@ -242,6 +242,10 @@ static bool take_parameter(struct setting *s, size_t i, double value)
     if (!isfinite(value))
         return ct_error(s->ctx, none, CT_E_VALUE,
                         "the parameter '%s' would be no finite number", p->name);
+    if (p->is_played)
+        return ct_error(s->ctx, none, CT_E_DECIDES,
+                        "a file plays the input '%s'; load the system without it to set values",
+                        p->name);
     if (ct_item_has_decided(s->d->origin, i))
         return ct_error(s->ctx, none, CT_E_DECIDES,
                         "the value of '%s' has decided about the equations; load the system "

@@ -130,6 +130,10 @@ sed 's/rate: setpoint - slide.q/rate: -100*sign(integral - 0.1)/' position.yaml 
 say simulate chatter.yaml -q -o - 2>&1 | sed -n '/error/p'
 sed 's/rate: setpoint - slide.q/rate: 1e3*integral^2, initial: 1/' position.yaml >blows.yaml
 say simulate blows.yaml -q -o blows.csv 2>&1 | sed -n '/error/p'
+for rate in 1/integral "sqrt(-1 - slide.q^2)"; do
+  sed "s|rate: setpoint - slide.q|rate: $rate|" position.yaml >undefined.yaml
+  say simulate undefined.yaml -q -o undefined.csv 2>&1 | sed -n '/error/p'
+done
 
 echo "-- exported C has them behind the speeds"
 for model in position loop; do

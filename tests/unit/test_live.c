@@ -559,6 +559,37 @@ static void options_of_other_versions_are_read(void **state)
     assert_string_equal(version, ct_version());
 }
 
+static void what_a_file_plays_cannot_be_set(void **state)
+{
+    (void)state;
+    static const char text[]
+        = "cotree: 1\n"
+          "inputs: {F: {value: 0, unit: N}}\n"
+          "bodies: {b: {mass: 1}}\n"
+          "joints: {j: {type: prismatic, axis: x, from: ground, to: b, effort: F}}\n";
+    FILE *f = fopen("played.csv", "w");
+    assert_non_null(f);
+    fputs("t,F\n0,2\n1,2\n", f);
+    fclose(f);
+    struct ct_ctx *c = ct_ctx_create();
+    const struct ct_system_options played = {.input = "played.csv"};
+    struct ct_system *s = ct_system_load_text(c, text, sizeof text - 1, NULL, &played);
+    struct ct_data *d = ct_data_create(c, s, NULL);
+    assert_non_null(d);
+    const double zero = 0;
+    assert_true(ct_data_set(c, d, CT_INPUT, &zero, 1));    // as it is
+    assert_false(ct_data_set_one(c, d, CT_INPUT, "F", 1)); // it would have no effect
+    struct ct_diagnostic diagnostic;
+    assert_true(ct_ctx_diagnostic(c, 0, &diagnostic));
+    assert_int_equal(diagnostic.code, 502);
+    assert_true(ct_data_step(c, d, 0.5));
+    assert_true(fabs(ct_data_value(d, CT_COORDINATE, 0) - 0.25) < 1e-9);
+    ct_data_destroy(d);
+    ct_system_destroy(s);
+    ct_ctx_destroy(c);
+    remove("played.csv");
+}
+
 static void nothing_is_done_with_null(void **state)
 {
     (void)state;
@@ -717,6 +748,7 @@ int main(void)
         cmocka_unit_test(a_comma_locale_changes_nothing),
         cmocka_unit_test(threads_share_a_system),
         cmocka_unit_test(options_of_other_versions_are_read),
+        cmocka_unit_test(what_a_file_plays_cannot_be_set),
         cmocka_unit_test(nothing_is_done_with_null),
         cmocka_unit_test(a_failed_run_without_outputs_has_a_summary),
     };

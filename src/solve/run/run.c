@@ -208,6 +208,25 @@ static bool keeps_demands(struct ct_run *r, const struct ct_initial_state *start
     return ok;
 }
 
+// The accelerations at the start cannot be found: a rate of a state that is no number tells most.
+static void no_start(struct ct_run *r)
+{
+    if (r->e->has_dynamics)
+        ct_evaluator_dynamics(r->m);
+    // without M and Q the closed form has given it
+    const double *rate = r->e->has_dynamics ? r->m->Q : r->m->input + r->m->at_a;
+    for (size_t i = 0; i < r->e->nstate; i++) {
+        if (!isfinite(rate[r->e->nmotion + i])) {
+            ct_error(r->ctx, r->model->state[i].mark, CT_E_SINGULAR,
+                     "the rate of the state '%s' is not finite at t = 0",
+                     r->model->state[i].name);
+            return;
+        }
+    }
+    ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
+             "the accelerations at t = 0 cannot be found");
+}
+
 // To the start, assembled; rows and columns chosen there.
 bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
 {
@@ -234,8 +253,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
     if (!keeps_demands(r, start))
         return false;
     if (rhs(r, 0, r->y, r->dy) != CT_EVAL_OK) {
-        ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_SINGULAR,
-                 "the accelerations at t = 0 cannot be found");
+        no_start(r);
         return false;
     }
     ct_switches_start(r->m, 0, r->y, r->dy);
