@@ -21,6 +21,7 @@ struct report {
     struct ct_terms_recording terms;
     struct ct_recording recording;
     struct ct_source source;
+    bool stopped; // before the end of the run
 };
 
 // ---- what the page is made from -----------------------------------------------------------------
@@ -173,6 +174,7 @@ static bool write(void *task)
                         .recording = &r->recording,
                         .terms = &r->terms,
                         .source = &r->source,
+                        .stopped = r->stopped,
                         .options = r->options};
     ct_html_put_head(&h);
     put_body(&h);
@@ -186,8 +188,11 @@ static bool make(struct report *r)
     struct ct_sim_options run = r->options->run;
     run.verify = true; // the page says how large the error is
     r->sim = ct_sim_create(r->ctx, r->moved, &run);
-    return r->sim && ct_recording_run(r->ctx, &r->recording, r->sim, r->options->bar)
-        && ct_enter(r->ctx, write, r);
+    if (!r->sim)
+        return false;
+    const bool has_run = ct_recording_run(r->ctx, &r->recording, r->sim, r->options->bar);
+    r->stopped = !has_run;
+    return (has_run || r->recording.nrow > 0) && ct_enter(r->ctx, write, r) && has_run;
 }
 
 bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,

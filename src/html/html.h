@@ -34,6 +34,7 @@ struct ct_html {
     const struct ct_recording *recording;
     struct ct_terms_recording *terms; // terms.h
     const struct ct_source *source;
+    bool stopped; // the run ended with an error; what was recorded before it is shown
     const struct ct_report_options *options;
 };
 

@@ -58,6 +58,20 @@ static void close_light(struct ct_html *h)
     fputs("</a></li>\n", h->out);
 }
 
+// Why a run stopped before its end: the last error.
+static void put_stop(struct ct_html *h)
+{
+    const struct ct_finding *last = NULL;
+    for (size_t k = 0; k < h->ctx->ndiagnostic; k++)
+        if (h->ctx->diagnostic[k].severity == CT_SEVERITY_ERROR)
+            last = &h->ctx->diagnostic[k];
+    fputs("<p class=\"message poor\" role=\"alert\"><b>The run stopped before its end.</b> ",
+          h->out);
+    if (last)
+        ct_html_put_name(h->out, last->text);
+    fputs("</p>\n", h->out);
+}
+
 // The error asked for, and ten times that, as simulate notes it.
 static void put_error_light(struct ct_html *h)
 {
@@ -142,6 +156,8 @@ void ct_html_summary(struct ct_html *h)
     const struct ct_equations *e = &h->sys->equations;
     ct_html_open_section(h, "summary", "Summary");
     put_sentence(h);
+    if (h->stopped)
+        put_stop(h);
     if (h->sys->model.description) {
         fputs("<p>", h->out);
         ct_html_put_name(h->out, h->sys->model.description);

@@ -103,6 +103,16 @@ async function checkPanel(browser) {
   await close();
 }
 
+// In a window that becomes narrower, all that was in sight stays so.
+async function checkNarrow(browser) {
+  const { page, close } = await open(browser, join(folder, "motion.html"));
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.waitForTimeout(300);
+  await view(page).locator("canvas").focus();
+  assert.ok(!(await changes(page, () => page.keyboard.press("0"))), "the motion is cut off");
+  await close();
+}
+
 async function checkBeams(browser) {
   const file = report(system("slider_crank_flexible"), "beams.html");
   const { page, close } = await open(browser, file, { dark: true });
@@ -157,7 +167,7 @@ async function checkModes(browser) {
 }
 
 const browser = await launch();
-const steps = { panel: checkPanel, beams: checkBeams, fallback: checkFallback, modes: checkModes };
+const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, fallback: checkFallback, modes: checkModes };
 let failed = 0;
 for (const [name, step] of Object.entries(steps)) {
   const start = Date.now();

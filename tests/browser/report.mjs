@@ -145,8 +145,19 @@ async function checkStill(browser) {
   assert.ok(readFileSync(file).equals(readFileSync(again)), "the name of the file changes its bytes");
 }
 
+// A run that stops before its end: an error, and a page of what there is.
+async function checkStop(browser) {
+  assert.throws(() => report(join(models, "stops.yaml"), "stops.html"), (error) => error.status === 1 && /E301/.test(error.stderr));
+  const { page, close } = await open(browser, join(folder, "stops.html"));
+  await checkSections(page);
+  const end = await page.evaluate(() => (window.cotree.seek(1), window.cotree.time));
+  assert.ok(end > 0.4 && end < 0.5, `it ends at ${end}`);
+  assert.match(await page.textContent("#summary [role=alert]"), /stopped before its end.*steps have become too short/);
+  await close();
+}
+
 const browser = await launch();
-const steps = [...cases.map((model) => [model.name, () => checkModel(model, browser)]), ["controls", () => checkControls(browser)], ["hostile", () => checkHostile(browser)], ["still", () => checkStill(browser)]];
+const steps = [...cases.map((model) => [model.name, () => checkModel(model, browser)]), ["controls", () => checkControls(browser)], ["hostile", () => checkHostile(browser)], ["still", () => checkStill(browser)], ["stop", () => checkStop(browser)]];
 const wanted = process.argv.slice(2);
 let failed = 0;
 for (const [name, step] of steps) {

@@ -20,6 +20,7 @@ export function createCamera(views, upward, changed) {
   let aspect = 1;
   let depth = 1; // half of the scene's [m]
   let version = 0; // how often it has changed
+  let fitted; // the arguments of `fit`, until the reader moves the view
 
   function place() {
     version++;
@@ -37,6 +38,26 @@ export function createCamera(views, upward, changed) {
     changed();
   }
 
+  // All of the points (x y z, one after the other) are seen, `margin` [m] around them.
+  function fit(points, margin) {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < points.length; i += 3) {
+      trial.fromArray(points, i);
+      [right, up, toward].forEach((axis, k) => {
+        const at = axis.dot(trial);
+        low[k] = Math.min(low[k], at);
+        high[k] = Math.max(high[k], at);
+      });
+    }
+    target.set(0, 0, 0);
+    [right, up, toward].forEach((axis, k) => target.addScaledVector(axis, (low[k] + high[k]) / 2));
+    depth = Math.max(...high.map((h, k) => h - low[k])) + 2 * margin;
+    height = Math.max(high[1] - low[1] + 2 * margin, (high[0] - low[0] + 2 * margin) / aspect);
+    fitted = [points, margin];
+    place();
+  }
+
   return {
     camera,
     target,
@@ -49,9 +70,11 @@ export function createCamera(views, upward, changed) {
     get version() {
       return version;
     },
+    // What was all in sight stays so.
     resize(width, tall) {
       aspect = width / tall;
-      place();
+      if (fitted) fit(...fitted);
+      else place();
     },
     look(name) {
       right.fromArray(views[name].right);
@@ -60,26 +83,10 @@ export function createCamera(views, upward, changed) {
       vertical.fromArray(name === "iso" ? upward : views[name].up);
       place();
     },
-    // All of the points (x y z, one after the other) are seen, `margin` [m] around them.
-    fit(points, margin) {
-      const low = [Infinity, Infinity, Infinity];
-      const high = [-Infinity, -Infinity, -Infinity];
-      for (let i = 0; i < points.length; i += 3) {
-        trial.fromArray(points, i);
-        [right, up, toward].forEach((axis, k) => {
-          const at = axis.dot(trial);
-          low[k] = Math.min(low[k], at);
-          high[k] = Math.max(high[k], at);
-        });
-      }
-      target.set(0, 0, 0);
-      [right, up, toward].forEach((axis, k) => target.addScaledVector(axis, (low[k] + high[k]) / 2));
-      depth = Math.max(...high.map((h, k) => h - low[k])) + 2 * margin;
-      height = Math.max(high[1] - low[1] + 2 * margin, (high[0] - low[0] + 2 * margin) / aspect);
-      place();
-    },
+    fit,
     // by angles about the vertical and about `right` [rad]; upside down is not reached
     turn(around, over) {
+      fitted = undefined;
       turned.setFromAxisAngle(right, over);
       trial.copy(up).applyQuaternion(turned);
       if (trial.dot(vertical) > -1e-6) {
@@ -92,11 +99,13 @@ export function createCamera(views, upward, changed) {
     },
     // by parts of the height
     pan(x, y) {
+      fitted = undefined;
       target.addScaledVector(right, x * height).addScaledVector(up, y * height);
       place();
     },
     // factor > 1: nearer; (x, y) stays where it is, from the middle in parts of the height
     zoom(factor, x = 0, y = 0) {
+      fitted = undefined;
       const before = height;
       height = Math.min(40 * depth, Math.max(1e-4 * depth, height / factor));
       target.addScaledVector(right, x * (before - height)).addScaledVector(up, y * (before - height));
