@@ -555,13 +555,15 @@ class Data:
     """
 
     __slots__ = ("system", "_context", "_pointer", "_c", "_rows", "_columns", "_rows_p",
-                 "_columns_p", "__weakref__")
+                 "_columns_p", "_R", "_p", "_R_p", "_p_p", "__weakref__")
 
     def __init__(self, system, context, pointer):
         self.system, self._context, self._pointer = system, context, pointer
         self._c = context.pointer
         self._rows, self._columns = ctypes.c_size_t(), ctypes.c_size_t()
         self._rows_p, self._columns_p = _byref(self._rows), _byref(self._columns)
+        self._R, self._p = np.empty((3, 3)), np.empty(3)  # of the last pose
+        self._R_p, self._p_p = (a.ctypes.data_as(_double_p) for a in (self._R, self._p))
 
     inputs = _values("input")
     parameters = _values("parameter")
@@ -659,10 +661,8 @@ class Data:
     def pose(self, frame):
         """R (3 x 3: axes of the frame -> ground) and origin p [m] of a frame, by name or number."""
         i = frame if isinstance(frame, int) else self.system._index("frame", frame)
-        R, p = np.empty((3, 3)), np.empty(3)
-        self._check(lib.ct_data_pose(self._c, self._pointer, i, R.ctypes.data_as(_double_p),
-                                     p.ctypes.data_as(_double_p)))
-        return R, p
+        self._check(lib.ct_data_pose(self._c, self._pointer, i, self._R_p, self._p_p))
+        return self._R.copy(), self._p.copy()
 
     def __repr__(self):
         return "<cotree.Data of %s at t = %g>" % (self.system.name, self.t)
