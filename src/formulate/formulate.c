@@ -55,8 +55,8 @@ static void describe_graph(struct ct_build *b)
 // Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
 static void measure_all(struct ct_build *b, const struct ct_equations *needed_by)
 {
-    for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_coordinate *c = &b->coordinate[i];
+    for (size_t i = 0; i < b->topology->ncoordinate; i++) {
+        const struct ct_coordinate *c = &b->kinematics->coordinate[i];
         struct ct_result q = {c->name, CT_EX_ZERO, false}, u = q;
         if (!needed_by || b->topology->edge[c->edge].kind != CT_EDGE_BODY || c->q >= 0
             || needed_by->coordinate[i].q >= 0) {
@@ -175,8 +175,8 @@ static bool derive_results(struct ct_build *b, const struct ct_formulate_options
 static void hand_over(struct ct_build *b, const char *how, struct ct_equations *out)
 {
     describe_graph(b);
-    b->eqs->coordinate = b->coordinate;
-    b->eqs->ncoordinate = b->ncoordinate;
+    b->eqs->coordinate = b->kinematics->coordinate;
+    b->eqs->ncoordinate = b->topology->ncoordinate;
     b->eqs->build = b;
     b->eqs->how = how;
     *out = *b->eqs;
