@@ -31,7 +31,7 @@ NUMBER = r"(?<![A-Za-z_0-9.])(?:0[xX][0-9a-fA-F.]+(?:[pP][+-]?\d+)?|(?:\d+\.?\d*
 EXPONENT = re.compile(r"(?<![A-Za-z_0-9.])(?:\d+\.?\d*|\.\d+)[eE][+-]?\d+")
 TYPES = "double|float|int|long|unsigned|size_t|ssize_t|uint8_t|uint16_t|uint32_t|uint64_t|int32_t|int64_t|__float128|ct_real"
 DECLARATION = re.compile(
-    r"^[ \t]*(?:static[ \t]+)?const[ \t]+(?:(?:" + TYPES + r")[ \t]+)+(?=\w+ *=)", re.M)
+    r"^[ \t]*(?:static[ \t]+)?const[ \t]+(?:(?:" + TYPES + r")[ \t]+)+(?=\w+\s*=)", re.M)
 DEFINE = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(.+)$", re.M)
 ENUM = re.compile(r"^[ \t]*enum\s*\{([^}]*)\}", re.M)
 # names that may stand in a value that is known when it is compiled
@@ -187,8 +187,9 @@ def read(root, path):
         if code.rfind("\n#", 0, m.start()) > code.rfind("\n", 0, m.start() - 1):
             continue
         first = line
-        while first > 0 and lines[first - 1].strip() and lines[first - 1].rstrip()[-1] not in ";{}" :
-            first -= 1
+        while first > 0 and lines[first - 1].strip() and (
+                lines[first - 1].rstrip()[-1] not in ";{}" or re.search(r"= *\{$", lines[first - 1].rstrip())):
+            first -= 1  # to the start of the statement or the table
         if not KIND.search(comment_for(first, line, lines, comments, starts)):
             bare.append((path, line, m.group()))
     return found, bare

@@ -35,6 +35,7 @@ class Copy:
         self.tests = {}  # a name may stand in two suites
         for test in self.introspect("--tests"):
             self.tests.setdefault(test["name"], []).append(test)
+        self.known = {}  # whether a test passes with nothing changed
         self.files = {t["id"]: t["filename"] for t in self.introspect("--targets")}
 
     def introspect(self, what):
@@ -62,6 +63,15 @@ class Copy:
         depends = {d for name in names for test in self.tests[name] for d in test["depends"]}
         return sorted(os.path.relpath(f, self.build) for d in depends for f in self.files[d])
 
+    def failing(self, names):
+        """Names of tests that fail with nothing changed, or None where the build does."""
+        new = [n for n in names if n not in self.known]
+        failed = self.run(new) if new else []
+        if failed is None:
+            return None
+        self.known.update({n: n not in failed for n in new})
+        return [n for n in names if not self.known[n]]
+
     def run(self, names):
         """Names of the tests that fail, or None where the build does."""
         if subprocess.run(["ninja", "-C", self.build] + self.targets(names), stdout=subprocess.DEVNULL).returncode:
@@ -85,6 +95,10 @@ def is_count(constant):
 
 
 def move(copy, constant, names):
+    failing = copy.failing(names)
+    if failing or failing is None:
+        print("without a change: " + ("does not build" if failing is None else "fails: " + ", ".join(failing)))
+        return False
     noticed = []
     for way, text in (("* 10", "({}) * 10"), ("/ 10", "(({}) + 9) / 10" if is_count(constant) else "({}) / 10")):
         copy.change(constant, text.format(constant.value))
