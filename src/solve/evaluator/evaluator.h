@@ -77,7 +77,9 @@ struct ct_evaluator {
     size_t most_rank;               // of J; nrow where data are exact
     double *open;                   // (nrow)
     double *symbol_value;           // workspace of it, by symbol of e->x
-    double *g[2];                   // values of root functions, for modes (nmode)
+    double *g[2];                   // values of root functions, for switches (nswitch)
+    double *at_rest; // > 0: g rests on zero, and is zero up to this times ct_switches_size (nswitch)
+    bool has_rest;   // one did when the sides were set
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
     struct ct_program *added; // ct_evaluator_add_program
