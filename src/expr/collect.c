@@ -64,7 +64,7 @@ struct descent {
     struct ct_collector *c;
     struct sizes sizes;
     struct ct_pairs done; // by node: what it was collected to
-    size_t left; // nodes that may still be tried: a try can take milliseconds
+    size_t left;          // nodes that may still be tried: a try can take milliseconds
 };
 
 static ct_ex collect_node(struct descent *d, ct_ex e);
