@@ -99,7 +99,7 @@ static void add_constraint(struct ct_assembler *s, size_t i, double r)
 static void add_speed(struct ct_assembler *s, size_t i, double weight, double r)
 {
     const size_t first = s->first_speed[i];
-    add_row(s, s->speed_column + first, s->speeds.out + first, s->first_speed[i + 1] - first,
+    add_row(s, s->speed_column + first, s->speeds->out + first, s->first_speed[i + 1] - first,
             weight, r);
 }
 
@@ -132,7 +132,7 @@ static void evaluate_rows(struct ct_assembler *s, bool with_memory)
         ct_memory_update(m);
     ct_evaluator_constraint(m);
     ct_program_run(&m->result, m->input);
-    ct_program_run(&s->speeds, m->input);
+    ct_program_run(s->speeds, m->input);
     ct_sparse_rows_clear(&s->A);
 }
 
@@ -656,10 +656,11 @@ static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_
 static void compile_speeds(struct ct_arena *a, struct ct_assembler *s)
 {
     const struct ct_equations *e = s->e;
+    s->speeds = CT_NEW(a, struct ct_program);
     ct_ex *value = CT_NEWN(a, ct_ex, e->nmeasured_speed + 1);
     for (size_t k = 0; k < e->nmeasured_speed; k++)
         value[k] = e->measured_speed[k].value;
-    ct_evaluator_add_program(a, s->m, e->x, value, e->nmeasured_speed, &s->speeds);
+    ct_evaluator_add_program(a, s->m, e->x, value, e->nmeasured_speed, s->speeds);
 }
 
 static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,

@@ -36,7 +36,7 @@ struct ct_assembler {
     bool *fixed_row;               // rows without an offset of their own
     size_t *first_J, *first_speed; // entries of each row of J, and of each measured speed
     int *J_column, *speed_column;
-    struct ct_program speeds; // coefficients of measured speeds
+    struct ct_program *speeds; // coefficients of measured speeds
     double *y, *b, *work;
     struct ct_sparse_rows A, weighted; // rows now; what must be met comes first
     double *r, *shift; // their residuals; of what must be met, its multipliers over hard^2
