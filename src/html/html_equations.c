@@ -180,12 +180,12 @@ static void put_data(struct ct_html *h)
 static void put_all(const struct writer *w)
 {
     const struct ct_terms_recording *t = w->h->terms;
-    fputs("<p class=\"note\">Each term has the value that it takes at the time of the page "
-          "beside it.",
+    fputs("<p class=\"note\">The number beside a term is its value at <span "
+          "class=\"clock\">t = 0 s</span>.",
           w->out);
     if (t->stride > 1)
-        fprintf(w->out, " Values between every %zuth row of the outputs are interpolated.",
-                t->stride);
+        fprintf(w->out, " Values are kept at one of %zu samples and interpolated between.",
+                t->stride * w->h->recording->stride);
     if (!t->nvalue && t->provenance.nterm)
         fputs(" There are too many terms to carry their values.", w->out);
     fputs("</p>\n", w->out);
