@@ -74,13 +74,13 @@ static void derive_measured_speeds(struct ct_build *b)
     struct ct_equations *e = b->eqs;
     struct ct_arena *scratch = b->ctx->scratch;
     struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, e->nu + 1);
-    ct_ex *speed = CT_NEWN(scratch, ct_ex, b->ncoordinate + 1);
+    ct_ex *speed = CT_NEWN(scratch, ct_ex, b->topology->ncoordinate + 1);
     struct ct_slope *slope;
     for (size_t k = 0; k < e->nu; k++)
         seed[k] = (struct ct_seed){e->u[k].symbol, (uint32_t)k, CT_EX_ONE};
-    for (size_t i = 0; i < b->ncoordinate; i++)
+    for (size_t i = 0; i < b->topology->ncoordinate; i++)
         speed[i] = e->result[2 * i + 1].value;
-    e->nmeasured_speed = ct_ex_jacobian(b->x, scratch, scratch, speed, b->ncoordinate, seed,
+    e->nmeasured_speed = ct_ex_jacobian(b->x, scratch, scratch, speed, b->topology->ncoordinate, seed,
                                         e->nu, &slope);
     e->measured_speed = CT_NEWN(b->arena, struct ct_entry, e->nmeasured_speed + 1);
     for (size_t i = 0; i < e->nmeasured_speed; i++)
