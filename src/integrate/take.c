@@ -6,15 +6,15 @@
 #include <string.h>
 
 enum { DEGREE = 8, NODES = DEGREE + 1, COARSE = 5 };
-// Halvings that lead from a step to the round-off of time.
-enum { LEVELS = 56 };
+// Halvings of a step. Derived: as many as lead from 1 to the unit round-off.
+enum { LEVELS = DBL_MANT_DIG };
 // A kink takes one interval for each halving; a function that is noise would take any number.
 enum { MOST_INTERVALS = 400 };
 // Grid on which zeros and extremes of an interpolant are sought first: several points between any two zeros of its derivative that
 // are farther apart than those of T8 at the ends.
 enum { GRID = 32 };
 
-// Of what is wanted of outputs, for the interpolant.
+// The error of interpolants, as part of what is wanted of outputs.
 static const double share = 0.1;
 
 // Of the largest value, in an interpolant: sums of nine terms, of functions that have some themselves.
@@ -157,8 +157,8 @@ static double error_of(const double *c)
 // near to `record`.
 static double largest(const struct ct_take_scan *s, const double *c, double sign, double record)
 {
-    enum { SECTIONS = 42 }; // to the square root of a round-off error
-    const double golden = 0.61803398874989484820;
+    const double golden = 0.61803398874989484820; // (sqrt(5) - 1)/2
+    const double narrow = 0x1p-26; // Derived: an extreme is flat to round-off within its root
     double value[GRID + 1];
     int best = 0;
     for (int i = 0; i <= GRID; i++) {
@@ -170,7 +170,7 @@ static double largest(const struct ct_take_scan *s, const double *c, double sign
     if (2 * most - fmin(value[before], value[behind]) < record)
         return most;
     double a = s->grid[before], b = s->grid[behind];
-    for (int i = 0; i < SECTIONS; i++) {
+    while (b - a > narrow) {
         const double left = b - golden * (b - a), right = a + golden * (b - a);
         const double at_left = sign * value_at(c, left), at_right = sign * value_at(c, right);
         most = fmax(most, fmax(at_left, at_right));
@@ -185,12 +185,12 @@ static double largest(const struct ct_take_scan *s, const double *c, double sign
 // Where p, negative at a, has risen to zero, b being where it has.
 static double zero_between(const double *c, double a, double b)
 {
-    enum { HALVINGS = 60 };
-    for (int i = 0; i < HALVINGS; i++) {
+    for (;;) {
         const double middle = (a + b) / 2;
+        if (!(middle > a && middle < b))
+            return b;
         *(value_at(c, middle) < 0 ? &a : &b) = middle;
     }
-    return b;
 }
 
 // ---- what is taken ------------------------------------------------------------------------------------
