@@ -28,9 +28,6 @@ static const double spacing = 0x1p-26;
 // the motion between events is so simple (free fall) that steps could grow without limit.
 static const double event_steps = 50;
 
-// State events in a row, each within this part of max(|t|, run) after the one before, accumulate.
-static const double pile_time = 1e-9;
-
 double ct_event_location_resolution(double t, double h)
 {
     return resolution * fmax(fabs(t), h);
@@ -44,7 +41,7 @@ double ct_event_location_longest_step(double run)
 bool ct_event_location_accumulates(struct ct_event_location *w, double t, double run)
 {
     w->accumulated
-        = t - w->last_event <= pile_time * fmax(fabs(t), run) ? w->accumulated + 1 : 0;
+        = t - w->last_event <= ct_event_location_resolution(t, run) ? w->accumulated + 1 : 0;
     w->last_event = t;
     return w->accumulated >= CT_EVENT_ACCUMULATION;
 }
