@@ -25,8 +25,8 @@ enum { STAGES = CT_CROSSING_STAGES, SIDE = STAGES / 2, LEFT_SWEEPS = 2, QUADRATU
 static const double gap = 0.3;
 
 // The iteration ends when stages change by less than this part of the tolerance, and of the
-// mismatch limit below, so that it spoils neither. Derived: kappa of Hairer and Wanner (1996), IV.8,
-// key hairer1996.
+// mismatch limit below, so that it spoils neither. Derived: kappa of Hairer and Wanner (1996),
+// IV.8, key hairer1996.
 static const double kappa = 0.1;
 // Round-off of a change, in tolerances; most of it is in coordinates that the constraints
 // determine. Default; singular_switching.sh fails with 1.
@@ -220,7 +220,8 @@ static enum ct_eval guess(const struct task *s)
 }
 
 // The fixed-point iteration for the stages from `first` on, with weights A. It ends, too, where it
-// does not halve the change any more: at round-off, or because the step is too long for it. The first two changes are those of the guess.
+// does not halve the change any more: at round-off, or because the step is too long for it. The
+// first two changes are those of the guess.
 static enum ct_eval iterate(const struct task *s, const double (*A)[STAGES], int first)
 {
     const double fine = kappa * fmin(1, ct_crossing_mismatch_limit / s->tolerance->rtol);

@@ -165,8 +165,8 @@ static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_
     return e;
 }
 
-// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just fired may
-// still be on the wrong side: until it has got away it must go further than it was then.
+// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just
+// fired may still be on the wrong side: until it has got away it must go further than it was then.
 static bool has_crossed(const struct ct_event_location *w, int i, const double *g)
 {
     const double x = w->side[i] * g[i];
@@ -281,9 +281,9 @@ bool ct_event_location_may_dip(double a, double b, double c)
         && 2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend;
 }
 
-// A place within the step where root i, which has not crossed at places `apart` from each other about
-// theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if there is
-// none.
+// A place within the step where root i, which has not crossed at places `apart` from each other
+// about theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if
+// there is none.
 static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                              int i, const double *f, double depth, double apart, double *theta)
 {
