@@ -54,9 +54,9 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
 enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, double h,
                                      const double *y, const double *dy);
 
-/// Look for the first event in a step that ends in y_end (projected). *theta (out): its place,
-/// 0 where a root leaves its rest, or 2 if there is none. The roots that fire there are in `crossed`. When this or a later stage
-/// refuses the step, look again after the next try.
+/// Look for the first event in a step that ends in y_end (projected). *theta (out): its place, 0
+/// where a root leaves its rest, or 2 if there is none. The roots that fire there are in `crossed`.
+/// When this or a later stage refuses the step, look again after the next try.
 enum ct_eval ct_event_location_search(struct ct_event_location *w,
                                       const struct ct_stepper_span *s, const double *y_end,
                                       double *theta);
