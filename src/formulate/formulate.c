@@ -80,12 +80,12 @@ static void derive_measured_speeds(struct ct_build *b)
         seed[k] = (struct ct_seed){e->u[k].symbol, (uint32_t)k, CT_EX_ONE};
     for (size_t i = 0; i < b->ncoordinate; i++)
         speed[i] = e->result[2 * i + 1].value;
-    e->nmeasured_speed = ct_ex_jacobian(b->x, scratch, scratch, speed, b->ncoordinate, seed,
-                                        e->nu, &slope);
+    e->nmeasured_speed
+        = ct_ex_jacobian(b->x, scratch, scratch, speed, b->ncoordinate, seed, e->nu, &slope);
     e->measured_speed = CT_NEWN(b->arena, struct ct_entry, e->nmeasured_speed + 1);
     for (size_t i = 0; i < e->nmeasured_speed; i++)
-        e->measured_speed[i] = (struct ct_entry){(int)slope[i].row, (int)slope[i].direction,
-                                                 slope[i].value};
+        e->measured_speed[i]
+            = (struct ct_entry){(int)slope[i].row, (int)slope[i].direction, slope[i].value};
 }
 
 static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
