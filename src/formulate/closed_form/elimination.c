@@ -518,14 +518,20 @@ struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_e
     read_matrices(&s, M, J);
     const struct ct_kkt_system plain = {s.M, s.J, e->nu, p->rank, loose, NULL};
     const struct ct_kkt *k = predict(&plain, scratch, most, &order);
-    if (k && ct_blocks_factor(&s.d, SIZE_MAX)) {
+    struct ct_pivot_order t = {.operations = most};
+    if (k) {
+        t.row = CT_NEWN(a, int, k->n + 1);
+        t.column = CT_NEWN(a, int, k->n + 1);
+        t.way = order;
+        t.operations = k->operations;
+        list_order(&t, k);
+    }
+    const bool is_regular = ct_blocks_factor(&s.d, SIZE_MAX);
+    if (is_regular)
+        try_augmented(&s, scratch, &t);
+    if (is_regular && (k || t.is_augmented)) {
         found = CT_NEW(a, struct ct_pivot_order);
-        found->row = CT_NEWN(a, int, k->n + 1);
-        found->column = CT_NEWN(a, int, k->n + 1);
-        found->way = order;
-        found->operations = k->operations;
-        list_order(found, k);
-        try_augmented(&s, scratch, found);
+        *found = t;
         found->operations += count_pivots(&s, scratch, e->x->nnode);
     }
     ct_arena_destroy(scratch);

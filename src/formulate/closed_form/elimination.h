@@ -29,7 +29,7 @@ struct ct_partition_sets {
 /// How all equations would be eliminated as one system, (nu + rank) rows and columns in the order
 /// of its pivots, so that these are on the diagonal or next to it. NULL: it is singular.
 struct ct_pivot_order {
-    int *row, *column;
+    int *row, *column; // NULL: only the system with more unknowns takes few enough operations
     bool
         is_augmented; // with the starts of elements as unknowns (beam_augmented.h): way and operations are of that
     enum ct_kkt_order way;
