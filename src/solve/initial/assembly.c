@@ -422,7 +422,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
             memory[i] = s->q[t->edge[edge].first_coordinate + angle->index].value;
     }
     ct_evaluator_set(s->m, 0, s->y);
-    ct_switches_start(s->m, 0, s->y, NULL);
+    ct_switches_start(s->m, 0, s->y, NULL, NULL);
     ct_memory_start(s->m);
     ct_evaluator_measure_rows(s->m);
 }
