@@ -66,6 +66,7 @@ static bool prepare(void *task)
     if (!ct_html_is_built(&r->own))
         return false;
     r->sys = copy(r);
+    ct_formulate_dynamics(&r->sys->equations);
     ct_terms_create(&r->terms, r->own.model, r->sys);
     r->moved = copy(r);
     ct_recording_create(&r->recording, r->moved, &r->terms);

@@ -51,8 +51,6 @@ const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 /// A direction: x, -y, or [a, b, c].
 const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
 
-/// Lines of text beyond which subexpressions get names.
-enum { CT_MOST_LINES = 30 };
 /// Lines that v takes, about.
 size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v);
 /// Under a heading; nothing if there are none.

@@ -178,7 +178,6 @@ void ct_derivation_print_c(FILE *out, struct ct_derivation *d)
 {
     struct ct_reduced r;
     struct writer w = {.out = out, .d = d};
-    d->is_recursive = false; // its function returns M
     ct_derivation_reduce(d, &r);
     w.names = (struct names){d, CT_NEWN(d->a, const char *, d->e->x->nsym), d->e->x->nsym};
     w.print = (struct ct_print){

@@ -1,6 +1,7 @@
 // The derivation, stage by stage; see equations.h.
 #include "report/equations.h"
 
+#include "formulate/formulate.h"
 #include "report/derivation.h"
 
 #include <string.h>
@@ -51,6 +52,9 @@ bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations
                                                         : CT_LOOK_TEXT;
     ct_derivation_init(&d, scratch, e, m, look);
     d.page.is_full = is_full;
+    d.is_recursive = d.is_recursive && format != CT_FORMAT_C; // its function returns M
+    if (!d.is_recursive)
+        ct_formulate_dynamics(e);
     d.page.is_summary = e->nmotion > CT_MOST_MATRIX_SPEEDS && !is_full;
     const bool is_page = format != CT_FORMAT_C && format != CT_FORMAT_JSON;
     if (d.page.is_summary)

@@ -111,6 +111,25 @@ static void shorten_table(struct ct_page *p, struct ct_page_block *b)
     b->ncell = n * (2 + 2 * FEW);
 }
 
+// A side that fills more than a screen, by its length.
+static const char *shorten_side(struct ct_page *p, const char *side)
+{
+    const size_t n = side ? strlen(side) : 0;
+    if (n <= CT_MOST_LINES * CT_PAGE_WIDTH)
+        return side;
+    return p->look == CT_LOOK_TEXT
+             ? ct_arena_printf(p->arena, "... (%zu characters)", n)
+             : ct_arena_printf(p->arena, "\\ldots \\text{ (%zu characters)}", n);
+}
+
+static void shorten_equations(struct ct_page *p, struct ct_page_block *b)
+{
+    for (size_t i = 0; i < b->nequation; i++) {
+        b->equation[i].left = shorten_side(p, b->equation[i].left);
+        b->equation[i].right = shorten_side(p, b->equation[i].right);
+    }
+}
+
 void ct_page_shorten(struct ct_page *p)
 {
     struct ct_page_block *all = p->block;
@@ -122,6 +141,7 @@ void ct_page_shorten(struct ct_page *p)
         const bool is_split = first.kind == CT_PAGE_EQUATIONS && is_list(first.nequation);
         if (first.kind == CT_PAGE_TABLE)
             shorten_table(p, &first);
+        shorten_equations(p, &first);
         first.nequation = is_split ? FEW : first.nequation;
         first.is_folded = false;
         CT_PUSH(p->arena, p->block, p->nblock, p->block_cap, first);

@@ -1,5 +1,4 @@
 // The reduced equations as equations of a page.
-#include "formulate/formulate.h"
 #include "report/beam_parts.h"
 #include "report/provenance.h"
 
@@ -347,7 +346,6 @@ void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
         ct_reduced_recur(d->a, d->e, r);
         return;
     }
-    ct_formulate_dynamics(d->e);
     ct_reduced_prepare(d->a, d->e, true, r);
     fill(d, r, g);
     if (r->is_collected && !is_long(d, g, NGROUP))

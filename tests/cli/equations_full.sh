@@ -41,3 +41,14 @@ e = json.load(open("101.json"))
 print(sorted(e), len(e["motion"]), len(e["definitions"]))
 print(e["motion"][50])'
 "$COTREE" equations chain101.yaml --format c | grep -c '^    M\[100 '
+
+echo '-- an equation that fills more than a screen is left out of a summary'
+cat >beam.yaml <<'END'
+cotree: 1
+bodies:
+  b: {type: beam, elements: 40, length: 1, E: 2e11, density: 7800, area: 1e-4, Iz: 1e-9}
+joints:
+  j: {type: revolute, from: ground, to: b}
+END
+"$COTREE" equations beam.yaml | grep -A 1 '^  j.q:  '
+"$COTREE" equations beam.yaml --full | grep -c 'characters' || true
