@@ -16,10 +16,14 @@
 
 #include "report/reduced.h"
 
+struct ct_inertia;
+
 struct ct_beam_parts {
     struct ct_definitions definitions;
-    ct_ex *of, *by; // nodes of the equations, and what they are in terms of the definitions
-    size_t n, of_cap, by_cap, definition_cap;
+    ct_ex *node, *symbol; // of the engine's expressions, those with a name
+    size_t n, node_cap, symbol_cap, definition_cap;
+    struct ct_inertia *
+        *inertia; // by beam: its integrals by name, NULL where it has none; NULL: not wanted
 };
 
 /// Of all beams; those of more than 12 elastic coordinates, of sections that vary, or too long to read have none. Nodes live in e->x,
@@ -29,6 +33,19 @@ void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
                        struct ct_beam_parts *p);
 /// The name of a node; itself where it has none.
-ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, const struct ct_exs *x, ct_ex node);
+ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, ct_ex node);
+
+/// Mass matrix (lower triangle), forces and efforts of drivers of branches with integrals of beams by name.
+struct ct_named_dynamics {
+    struct ct_entry *M;
+    size_t nM;
+    ct_ex *Q;      // nu
+    ct_ex *effort; // ndriver
+};
+/// Derives them again from the kinematics of e; inertia: by beam, NULL for that of the engine.
+void ct_named_dynamics_derive(struct ct_arena *a, const struct ct_equations *e,
+                              struct ct_inertia *const *inertia, struct ct_named_dynamics *out);
+/// Of n elastic coordinates, all zero.
+struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n);
 
 #endif

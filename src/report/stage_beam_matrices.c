@@ -355,13 +355,12 @@ static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f,
                       const struct ct_beam_parts *p)
 {
     const struct ct_inertia *I = f->inertia;
-    struct ct_exs *x = d->e->x;
     ct_ex3 s;
     ct_ex value[9];
     for (int i = 0; i < 3; i++)
-        s.e[i] = ct_beam_parts_name(p, x, I->moment.e[i]);
+        s.e[i] = ct_beam_parts_name(p, I->moment.e[i]);
     for (int i = 0; i < 9; i++)
-        value[i] = ct_beam_parts_name(p, x, I->inertia.e[i % 3 * 3 + i / 3]); // by rows
+        value[i] = ct_beam_parts_name(p, I->inertia.e[i % 3 * 3 + i / 3]); // by rows
     ct_page_equations(&d->page);
     put(d, "m_rr", "\\boldsymbol{m}_{rr}",
         ct_arena_printf(d->a, "%s*1", ct_derivation_text(d, I->mass)),
@@ -423,8 +422,8 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
         name[k] = ct_derivation_name(d, f->elastic[k].name);
         q[k] = b->eqs->q[f->elastic[k].q].symbol;
         for (size_t i = 0; i < 3; i++) {
-            moved[3 * k + i] = ct_beam_parts_name(p, x, c.moved[k].e[i]);
-            swept[3 * k + i] = ct_beam_parts_name(p, x, c.swept[k].e[i]);
+            moved[3 * k + i] = ct_beam_parts_name(p, c.moved[k].e[i]);
+            swept[3 * k + i] = ct_beam_parts_name(p, c.swept[k].e[i]);
         }
     }
     ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
@@ -432,7 +431,7 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
         for (size_t k = 0; k <= i; k++) {
             const size_t row = (size_t)f->elastic[i].u, column = (size_t)f->elastic[k].u;
             mff[i * n + k] = ct_beam_parts_name( // column-major, the lower triangle
-                p, x, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
+                p, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
