@@ -19,6 +19,28 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
     CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
 }
 
+// The angular velocity of the frame may stand in other parts.
+static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
+{
+    if (!(ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL))
+        return value;
+    for (size_t i = 0; i < p->definitions.n; i++)
+        value = ct_ex_subst(x, value, &p->definitions.at[i].symbol, &p->definitions.at[i].full,
+                            1);
+    return value;
+}
+
+static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
+                  const char *name)
+{
+    const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
+                                   (uint32_t)p->definitions.n);
+    const struct ct_reduced_definition d
+        = {.symbol = symbol, .value = value, .full = without_names(x, p, value)};
+    CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
+    return symbol;
+}
+
 // value under a name, or itself where it is short or constant.
 static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
                     const char *name)
@@ -26,11 +48,16 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
     const bool is_constant = !(ct_ex_kinds(x, value) & ~(1u << CT_SYM_PARAM));
     if (is_constant || ct_reduced_size(x, value, LEAST_NAMED) < LEAST_NAMED)
         return value;
-    const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
-                                   (uint32_t)p->definitions.n);
-    const struct ct_reduced_definition d = {.symbol = symbol, .value = value, .full = value};
-    CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
-    return symbol;
+    return make(a, x, p, value, name);
+}
+
+// In space, where there are several beams, an angular velocity has a name however short it is: beams on one body then
+// differ by their names alone.
+static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
+                            ct_ex value, const char *name, bool always)
+{
+    return !always || ct_ex_is_const(x, value, NULL) ? define(a, x, p, value, name)
+                                                     : make(a, x, p, value, name);
 }
 
 // value, a node of the equations.
@@ -76,9 +103,13 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
     struct ct_exs *x = b->x;
     ct_ex3 less[2];
     const struct ct_base m = ct_flexible_base(b, f, CT_BIAS),
-                         felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]),
-                         turned = {.w = felt.w};
+                         felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
+    struct ct_base turned = {{{{0}}}};
+    for (int i = 0; i < 3; i++)
+        turned.w.e[i] = define_turning(a, x, p, felt.w.e[i],
+                                       ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
+                                       b->nflexible > 1 && !b->topology->is_planar);
     ct_ex *still = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);
     ct_flexible_inertia_rows(b, f, &turned, CT_BIAS, still);
     ct_flexible_stiffness_rows(b, f, elastic);
@@ -89,7 +120,7 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
         out->elastic[k]
             = define(a, x, p, elastic[u], ct_arena_printf(a, "V_q_%s", f->elastic[k].name));
     }
-    f->inertia->method->wrench(b, f, &felt, CT_BIAS, &out->force, &out->torque);
+    f->inertia->method->wrench(b, f, &turned, CT_BIAS, &out->force, &out->torque);
     for (int i = 0; i < 3; i++) {
         out->force.e[i] = name(a, x, p, out->force.e[i],
                                ct_arena_printf(a, "F_v_%s.%s", f->name, axis_name[i]));
@@ -148,44 +179,53 @@ struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n)
     return s;
 }
 
+bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list)
+{
+    double size = 0;
+    for (size_t k = 0; k < list->n && size <= LONGEST; k++)
+        size += ct_reduced_size(x, list->at[k].value, LONGEST - size + 1);
+    return size > LONGEST;
+}
+
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
-                       struct ct_beam_parts *p)
+                       enum ct_long_parts which, struct ct_beam_parts *p)
 {
     const struct ct_flexible *f = &e->build->flexible[i];
     const struct ct_beam_parts before = *p;
-    double size = 0;
     if (!f->nelastic || f->nelastic > MOST_COORDINATES || e->nu > MOST_SPEEDS
         || varies(e->x, f->beam))
         return false;
     struct ct_inertia *I = CT_NEW(a, struct ct_inertia);
     struct ct_named_inertia *named = ct_named_inertia_create(a, (size_t)f->nelastic);
     *I = *f->inertia;
+    I->named = named;
     name_rigid(a, e->build, f, p, I);
-    for (size_t k = before.definitions.n; k < p->definitions.n; k++)
-        size += ct_reduced_size(e->x, p->definitions.at[k].value, LONGEST - size + 1);
-    const size_t rigid = p->definitions.n;
-    if (size <= LONGEST)
+    const struct ct_definitions rigid
+        = {p->definitions.at + before.definitions.n, p->definitions.n - before.definitions.n};
+    bool is_long = which == CT_LONG_PARTS_NONE && ct_beam_parts_are_long(e->x, &rigid);
+    if (!is_long) {
         name_elastic(a, e->build, f, p, named);
-    for (size_t k = rigid; k < p->definitions.n && size <= LONGEST; k++)
-        size += ct_reduced_size(e->x, p->definitions.at[k].value, LONGEST - size + 1);
-    if (size > LONGEST) {
+        const struct ct_definitions all = {p->definitions.at + before.definitions.n,
+                                           p->definitions.n - before.definitions.n};
+        is_long = which == CT_LONG_PARTS_NONE && ct_beam_parts_are_long(e->x, &all);
+    }
+    if (is_long) {
         p->n = before.n;
         p->definitions.n = before.definitions.n;
-        return false;
-    }
-    I->named = named;
-    if (p->inertia)
+    } else if (p->inertia) {
         p->inertia[i] = I;
-    return true;
+    }
+    return !is_long;
 }
 
-void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_beam_parts *p)
+void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_long_parts which,
+                          struct ct_beam_parts *p)
 {
     const size_t n = e->build->nflexible;
     *p = (struct ct_beam_parts){.inertia = CT_NEWN(a, struct ct_inertia *, n + 1)};
     // terms of higher order in `small` coordinates are left out by derivatives, for which names are constants
     for (size_t i = 0; i < n && !ct_small_motion_is_wanted(e->build); i++)
-        ct_beam_parts_add(a, e, i, p);
+        ct_beam_parts_add(a, e, i, which, p);
 }
 
 void ct_named_dynamics_derive(struct ct_arena *a, const struct ct_equations *e,

@@ -288,13 +288,20 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
         }
     for (size_t i = 0; i < own.n; i++)
         CT_PUSH(d->a, root, n, cap, own.at[i].value);
-    const size_t nwalk = ct_ex_walk(x, root, n);
+    size_t nwalk = ct_ex_walk(x, root, n);
+    bool *used = CT_NEWN(d->a, bool, all->n + 1);
+    for (int pass = 0; pass < 2; pass++) { // an angular velocity is used by other parts alone
+        for (size_t i = 0; i < all->n; i++)
+            if (!used[i] && (used[i] = is_used(x, nwalk, all->at[i].symbol)))
+                CT_PUSH(d->a, root, n, cap, all->at[i].value);
+        nwalk = ct_ex_walk(x, root, n);
+    }
     r->definitions.at = CT_NEWN(d->a, struct ct_reduced_definition, all->n + own.n + 1);
     r->definitions.n = 0;
     for (size_t i = 0; i < all->n; i++) {
         symbol[i] = all->at[i].symbol;
-        value[i] = all->at[i].value;
-        if (is_used(x, nwalk, symbol[i]))
+        value[i] = all->at[i].full;
+        if (used[i])
             r->definitions.at[r->definitions.n++] = all->at[i];
     }
     r->npart = r->definitions.n;
@@ -361,7 +368,7 @@ void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
     struct ct_beam_parts parts;
     if (prepare(d, r))
         return;
-    ct_beam_parts_derive(d->a, d->e, &parts);
+    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
     if (!parts.definitions.n || !name_parts(d, &parts, r)) {
         ct_reduced_prepare(d->a, d->e, true, r);
         share(d, r);
@@ -388,7 +395,7 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
     if (prepare(d, r))
         return false;
     ct_reduced_label(d->e);
-    ct_beam_parts_derive(d->a, d->e, parts);
+    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);
     return parts->definitions.n && ct_beam_blocks_derive(d->a, d->e, parts, r, s);
 }
 
