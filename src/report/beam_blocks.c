@@ -92,6 +92,7 @@ static struct ct_inertia *block_inertia(struct ct_arena *a, const struct ct_iner
     I->named = named;
     named->force = parts->named->force;
     named->torque = parts->named->torque;
+    named->acceleration = s->acceleration;
     for (int k = 0; k < s->f->nelastic; k++) {
         memcpy(named->columns.moved[k].e, s->moved, sizeof s->moved);
         memcpy(named->columns.swept[k].e, s->swept, sizeof s->swept);
@@ -309,11 +310,13 @@ static void list_all(struct ct_arena *a, struct ct_beam_blocks *s, const struct 
 
 // Collected where that pays, with names for what is written more than once.
 static void make_readable(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
-                          struct ct_beam_blocks *s)
+                          const ct_ex *effort, struct ct_beam_blocks *s)
 {
     struct list all = {0};
     double size;
     ct_reduced_prepare(a, e, false, r);
+    for (size_t i = 0; i < e->ndriver; i++)
+        r->effort[i] = effort[i];
     list_all(a, s, e, r, &all);
     r->is_collected = ct_reduced_collect(a, e, all.at, all.n);
     s->definitions = ct_definitions_find(a, e, all.at, all.n, &size);
@@ -362,7 +365,7 @@ bool ct_beam_blocks_derive(struct ct_arena *a, struct ct_equations *e,
     add_forces(&f, &named);
     close_lines(&f);
     if (f.is_same)
-        make_readable(a, e, r, out);
+        make_readable(a, e, r, named.effort, out);
     return f.is_same;
 }
 

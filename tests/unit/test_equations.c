@@ -21,7 +21,7 @@ struct fixture {
     struct ct_model m;
     struct ct_equations e;
     struct ct_derivation d;
-    struct ct_reduced r;
+    struct ct_reduced r, plain; // plain: without names
     double *symbol;     // values by symbol
     size_t *definition; // by symbol: number plus one of its definition, 0: none
     double *value;      // by node
@@ -292,13 +292,15 @@ static double residual(const struct fixture *f, const double *v, size_t i, doubl
     return sum;
 }
 
-// left - right of all rows.
+// left - right of all rows, then the efforts of drivers.
 static double *row_values(struct fixture *f, const struct ct_beam_blocks *s, const ct_ex *side)
 {
-    double *v = CT_NEWN(f->ctx.scratch, double, s->n + 1);
+    double *v = CT_NEWN(f->ctx.scratch, double, s->n + f->e.ndriver + 1);
     evaluate(f);
     for (size_t i = 0; i < s->n; i++)
         v[i] = f->value[side[2 * i].id] - f->value[side[2 * i + 1].id];
+    for (size_t i = 0; i < f->e.ndriver; i++)
+        v[s->n + i] = f->value[f->r.effort[i].id];
     return v;
 }
 
@@ -328,7 +330,10 @@ static void check_blocks(struct fixture *f, const char *system, const struct ct_
         if (s->block[b].f)
             set_block(f, &s->block[b], &of[b], engine, -1);
     const double *plain = row_values(f, s, side);
-    double *sum = CT_NEWN(f->ctx.scratch, double, s->n + 1);
+    const size_t nall = s->n + e->ndriver;
+    double *sum = CT_NEWN(f->ctx.scratch, double, nall + 1);
+    for (size_t i = 0; i < e->ndriver; i++)
+        sum[s->n + i] = plain[s->n + i];
     for (size_t i = 0; i < s->n; i++) {
         sum[i] = plain[i];
         const struct ct_block_row *r = &s->row[i];
@@ -345,7 +350,13 @@ static void check_blocks(struct fixture *f, const char *system, const struct ct_
                     sum[i] += with[i] - plain[i];
                 else if (s->row[i].coordinate >= 0)
                     sum[i] -= with[i] - plain[i];
+            for (size_t i = s->n; i < nall; i++)
+                sum[i] += with[i] - plain[i];
         }
+    for (size_t i = 0; i < e->ndriver; i++) {
+        const double want = engine[f->plain.effort[i].id];
+        check_row(system, e->driver[i].name, sum[s->n + i], want, fmax(1, fabs(want)));
+    }
     for (size_t i = 0; i < s->n; i++)
         if (s->row[i].coordinate >= 0)
             of[s->row[i].beam].applied[s->row[i].coordinate] = sum[i];
@@ -387,6 +398,7 @@ static void blocks_of_beams_equal_the_engine(void **state)
         struct fixture f;
         struct ct_beam_blocks s;
         formulate(&f, with_blocks[i]);
+        ct_reduced_prepare(f.ctx.scratch, &f.e, false, &f.plain);
         assert_true(ct_derivation_blocks(&f.d, &f.r, &s));
         f.r.definitions = s.definitions;
         ct_ex *side = CT_NEWN(f.ctx.scratch, ct_ex, 2 * s.n + 1);

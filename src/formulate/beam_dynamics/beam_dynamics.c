@@ -114,8 +114,9 @@ void ct_flexible_relative_wrench(struct ct_build *b, const struct ct_flexible *f
     }
     *force = n->force;
     *torque = n->torque;
-    for (int k = 0; k < f->nelastic && level == CT_FULL; k++) {
-        const ct_ex u = b->eqs->u[f->elastic[k].u].derivative;
+    const bool is_vector = !ct_ex_is_zero(n->acceleration);
+    for (int k = 0; k < (is_vector ? 1 : f->nelastic) && level == CT_FULL; k++) {
+        const ct_ex u = is_vector ? n->acceleration : b->eqs->u[f->elastic[k].u].derivative;
         *force = ct_ex3_add(b->x, *force, ct_ex3_scale(b->x, u, n->columns.moved[k]));
         *torque = ct_ex3_add(b->x, *torque, ct_ex3_scale(b->x, u, n->columns.swept[k]));
     }

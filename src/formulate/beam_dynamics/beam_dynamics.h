@@ -51,6 +51,8 @@ struct ct_named_inertia {
     ct_ex *velocity,
         *elastic; // by elastic coordinate: quadratic velocity force; stiffness and damping
     ct_ex3 force, torque; // of the motion relative to the base with u' = 0
+    ct_ex
+        acceleration; // of all elastic coordinates, where their columns are all the same row vector; else zero
 };
 
 struct ct_inertia {
