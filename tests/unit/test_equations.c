@@ -22,9 +22,9 @@ struct fixture {
     struct ct_equations e;
     struct ct_derivation d;
     struct ct_reduced r, plain; // plain: without names
-    double *symbol;     // values by symbol
-    size_t *definition; // by symbol: number plus one of its definition, 0: none
-    double *value;      // by node
+    double *symbol;             // values by symbol
+    size_t *definition;         // by symbol: number plus one of its definition, 0: none
+    double *value;              // by node
 };
 
 static void formulate(struct fixture *f, const char *system)
