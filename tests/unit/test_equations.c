@@ -33,7 +33,8 @@ static void formulate(struct fixture *f, const char *system)
     struct ct_tree_report report;
     const struct ct_formulate_options o = {.tree = CT_TREE_AUTO};
     *f = (struct fixture){.ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()}};
-    snprintf(path, sizeof path, "%s/../systems/%s/model.yaml", getenv("CT_TEST_DIR"), system);
+    snprintf(path, sizeof path, "%s/../systems/%s%s", getenv("CT_TEST_DIR"), system,
+             strstr(system, ".yaml") ? "" : "/model.yaml");
     if (!ct_model_read(&f->ctx, path, NULL, 0, &f->m)
         || !ct_formulate(&f->ctx, f->ctx.model, &f->m, &o, &f->e, &report)) {
         ct_ctx_print(&f->ctx, stderr);
@@ -389,7 +390,8 @@ static void check_blocks(struct fixture *f, const char *system, const struct ct_
 }
 
 static const char *const with_blocks[]
-    = {"slider_crank_flexible", "two_boom_satellite", "right_angle_frame", "spin_up_welded"};
+    = {"slider_crank_flexible", "two_boom_satellite", "two_boom_satellite/space.yaml",
+       "right_angle_frame", "spin_up_welded"};
 
 static void blocks_of_beams_equal_the_engine(void **state)
 {
