@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { MOST_BYTES = 600000 }; // of the section
+enum { MOST_BYTES = 600000 }; // Limit: of the section, with a note
 
 static const char *origins_of(struct ct_html *h, const struct ct_equation_term *t)
 {

@@ -37,6 +37,7 @@ const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
 
 /// Lines of text beyond which subexpressions get names.
+/// Layout: of a page
 enum { CT_MOST_LINES = 30 };
 /// Lines that v takes, about.
 size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v);

@@ -19,6 +19,7 @@
 // are.
 static ct_ex collect(struct ct_derivation *d, ct_ex v)
 {
+    // Layout: of a page
     enum { LARGEST_STORE = 50000 };
     if (d->e->x->nnode > LARGEST_STORE || ct_ex_is_const(d->e->x, v, NULL)
         || ct_ex_symbol(d->e->x, v))

@@ -8,6 +8,7 @@
 #include <string.h>
 
 // Of each kind; larger systems are counted, not printed.
+// Layout: of a page
 enum { MOST_EQUATIONS = 120 };
 
 // ---- matrices ------------------------------------------------------------------------------------
@@ -330,6 +331,7 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
 }
 
 // Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them in full.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 5000;
 
 // Collects what is small enough; false: it is not.
