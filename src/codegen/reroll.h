@@ -21,10 +21,13 @@
 #include "expr/listing.h"
 
 /// Strides that one loop can have: as many registers are free for them (x86.c).
+/// Definition: seven of the sixteen integer registers
 enum { CT_REROLL_STREAMS = 7 };
 /// Rows that are done together: doubles in a vector of 256 bits.
+/// Definition: four
 enum { CT_ROWS_TOGETHER = 4 };
 /// Instructions that a first-level instruction cache of 32 KiB holds, about 8 bytes each.
+/// Derived: 32 KiB / 8 B
 enum { CT_REROLL_CACHED = 4096 };
 
 enum ct_reach {

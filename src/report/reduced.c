@@ -10,6 +10,7 @@
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 20000;
 
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most)
@@ -286,6 +287,7 @@ struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equation
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
     // what nobody reads through need not be in its nicest form: collecting takes some 0.1 ms each
+    // Limit: a tenth of a second
     const bool may_tidy = names_first || (double)(n + share.n) * (double)e->x->nnode < 2e8;
     replace_named(a, e, &list, &share, root, n, map, may_tidy);
     for (size_t i = 0; i < n; i++)

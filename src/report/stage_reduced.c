@@ -225,6 +225,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 }
 
 // More rows or columns never fit a page.
+// Layout: of a page
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.

@@ -19,6 +19,7 @@ struct list {
     int column; // 0: nothing is written yet
 };
 
+// Layout: of the summary
 enum { TITLE_WIDTH = 13, LINE_WIDTH = 100 };
 
 static void add(struct list *l, const char *entry)
@@ -84,6 +85,7 @@ static void print_freedoms(FILE *out, const struct ct_sim *sim)
 // Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
 static void print_start(FILE *out, const struct ct_sim *sim)
 {
+    // Layout:
     enum { MOST_SHOWN = 100 }; // the rest is in the summary file
     struct list l = {out, "start", 0};
     size_t n = 0;
@@ -153,6 +155,7 @@ static void print_open(FILE *out, const struct ct_sim *sim)
 static void print_output_errors(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
+    // Layout:
     const size_t most_shown = 24; // the rest is in the summary file
     const int width = 88;
     const char *separator = "";
@@ -234,6 +237,7 @@ static void print_method(FILE *out, const struct ct_sim *sim)
 static void print_position(FILE *out, const struct ct_sim *sim,
                            const struct ct_singular_configuration *at)
 {
+    // Layout: of the summary
     enum { MOST_NAMES = 8 };
     const struct ct_equations *e = &sim->system->equations;
     int nname = 0;
@@ -250,6 +254,7 @@ static void print_position(FILE *out, const struct ct_sim *sim,
 
 static void print_singular(FILE *out, const struct ct_sim *sim)
 {
+    // Layout: of the summary
     enum { MOST_SHOWN = 5 };
     const struct ct_rank_monitor *w = sim->report.singular;
     if (!w || !w->npassed)
@@ -428,6 +433,7 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     for (size_t i = 0; i < e->build->nflexible; i++) {
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+        // Layout: a tenth of a stiffness is worth a line
         const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
         if (locking > worth_it)
             fprintf(out,

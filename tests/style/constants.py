@@ -23,6 +23,9 @@ KINDS = ["Derived", "Default", "Limit", "Layout", "Definition"]
 
 # Files, folders, and with a / at the end whole trees, whose constants all have a kind, and stay so.
 DONE = """
+src/accuracy src/analysis src/base src/beam_error src/cli src/codegen src/component src/draw src/export src/expr
+src/formulate/ src/graph src/html src/import src/io src/live src/numeric src/report src/sim src/solve/batch
+src/solve/evaluator src/study components
 """.split()
 
 KIND = re.compile(r"\b(" + "|".join(KINDS) + r"):")
@@ -72,6 +75,8 @@ def is_constant(value, local):
     if not re.search(NUMBER, value) or '"' in value or "?" in value:
         return False
     bare = re.sub(NUMBER, " ", value)
+    if "[" in value:
+        return False
     if all(re.match(r"[01][uUlL]*$", n) for n in re.findall(NUMBER, value)):
         return False  # a flag, a bit, the smallest count
     return all(KNOWN.match(w) or w in local for w in re.findall(r"[A-Za-z_]\w*", bare))

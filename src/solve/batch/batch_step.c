@@ -8,11 +8,15 @@
 #include <math.h>
 #include <string.h>
 
+// Definition: as in solve/singular/rank_monitor.c
 static const double singular_pivot = 0.25, singular_steps = 4; // see foresee_singular
 // Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer than so many others
 // between, the run is stiff; values of the program DOPRI5 for the stage before the last.
+// Definition: boundary of stability of DOPRI5 on the negative real axis, key hairer1996
 static const double stiff_step = 3.25;
+// Definition: of that test, key hairer1996
 enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
+// Limit: the member is left to a single run then
 enum { MOST_STEPS = 100000000 };
 
 // ---- projection, as in projection.c ----------------------------------------------------------------
@@ -136,6 +140,7 @@ static set derive(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 static inline void combine_few(const struct ct_batch *s, vec *out, const vec *y,
                                const struct ct_lane_sum *b, int i, int few)
 {
+    // Definition: stages of DOPRI5
     enum { MOST = 6 };
     const double *k = (const double *)(s->k + i);
     const vec h = s->h;

@@ -26,6 +26,7 @@ static void evaluate(struct ct_evaluator *m, double t, const double *y, const do
 }
 
 // Switches may stand inside the g of others; so many levels are settled.
+// Limit: as docs/format.md says
 enum { MOST_LEVELS = 4 };
 
 // g is zero when it is round-off beside its change in a second.
@@ -38,6 +39,7 @@ static const double roundoff = 64 * DBL_EPSILON;
 // How far to look ahead for the later side, [s].
 static double ahead_of(double t)
 {
+    // Derived: s; the root of the unit round-off, and more
     return 1e-7 * fmax(1, fabs(t));
 }
 
@@ -122,6 +124,7 @@ int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double
                                   const double *dy)
 {
     const double *mode = m->input + m->at_switch;
+    // Derived: of what the side may hang on: an event that is located to 1e-10 s
     const double ahead = ahead_of(t), near = 1e-3; // of the way that g goes meanwhile
     evaluate(m, t, y, dy, 0, m->g[0]);
     evaluate(m, t, y, dy, ahead, m->g[1]);
@@ -201,6 +204,7 @@ static double bisect(struct ct_evaluator *m, size_t i, double a, double b)
 static void find_changes(struct ct_evaluator *m, size_t i, double t0, double t1,
                          struct times *list)
 {
+    // Limit: of the search, in a second of the run
     enum { PIECES = 4096 };
     double g, a = t0;
     bool side = outcome(m, i, a, &g);
@@ -225,6 +229,7 @@ static int ascending(const void *a, const void *b)
 
 bool ct_table_has_kinks(const struct ct_table *table, int order)
 {
+    // Derived: as it says
     const int unfelt
         = 5; // methods of this order see the error of a jump of the third derivative
     return !table->m || order > unfelt;
