@@ -319,7 +319,7 @@ static void make_readable(struct ct_arena *a, struct ct_equations *e, struct ct_
         r->effort[i] = effort[i];
     list_all(a, s, e, r, &all);
     r->is_collected = ct_reduced_collect(a, e, all.at, all.n);
-    s->definitions = ct_definitions_find(a, e, all.at, all.n, &size);
+    s->definitions = ct_definitions_find(a, e, all.at, all.n, false, &size);
 }
 
 bool ct_beam_blocks_derive(struct ct_arena *a, struct ct_equations *e,

@@ -455,7 +455,7 @@ static void put_definitions(struct ct_derivation *d, const struct ct_definitions
         where[i] = &value[i];
     }
     if (is_long)
-        shared = ct_definitions_find(d->a, d->e, where, list->n, &size);
+        shared = ct_definitions_find(d->a, d->e, where, list->n, false, &size);
     ct_page_equations(&d->page);
     for (size_t i = 0; i < shared.n; i++)
         ct_page_equation(&d->page, NULL, ct_derivation_text(d, shared.at[i].symbol),
