@@ -1,6 +1,7 @@
 // Pages under construction; see page.h.
 #include "report/page.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,14 +84,20 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
 
 // ---- comparing ----------------------------------------------------------------------------------
 
+// A name t1, t2, ... stands for what it is defined to be: a number made of that.
+struct meaning {
+    size_t number;
+    uint64_t value;
+};
+
 struct said {
     struct ct_arena *arena;
     const char *name;
     size_t name_length;
     char *at;
     size_t n, cap;
-    size_t *number; // of t1, t2, ... in the order of their appearance
-    size_t nnumber, number_cap;
+    struct meaning *meaning;
+    size_t nmeaning, meaning_cap;
 };
 
 static void say(struct said *s, char c)
@@ -98,13 +105,12 @@ static void say(struct said *s, char c)
     CT_PUSH(s->arena, s->at, s->n, s->cap, c);
 }
 
-static size_t order_of(struct said *s, size_t number)
+static uint64_t meaning_of(const struct said *s, size_t number)
 {
-    for (size_t i = s->nnumber; i-- > 0;)
-        if (s->number[i] == number)
-            return i;
-    CT_PUSH(s->arena, s->number, s->nnumber, s->number_cap, number);
-    return s->nnumber - 1;
+    for (size_t i = s->nmeaning; i-- > 0;)
+        if (s->meaning[i].number == number)
+            return s->meaning[i].value;
+    return number;
 }
 
 static bool is_word(char c)
@@ -113,24 +119,45 @@ static bool is_word(char c)
         || (unsigned char)c >= 0x80;
 }
 
+// Length of a name t1, t2, ... at p, which follows `before`; 0: it is none.
+static size_t short_name(const char *p, char before)
+{
+    const size_t n
+        = *p == 't' && !is_word(before) && before != '.' ? strspn(p + 1, "0123456789") : 0;
+    return n && !is_word(p[1 + n]) ? 1 + n : 0;
+}
+
 static void say_text(struct said *s, const char *text)
 {
     for (const char *p = text; p && *p;) {
-        const bool starts = p == text || !is_word(p[-1]);
-        const size_t digits = starts && *p == 't' ? strspn(p + 1, "0123456789") : 0;
-        if (starts && !strncmp(p, s->name, s->name_length) && !is_word(p[s->name_length])) {
+        const char before = p == text ? ' ' : p[-1];
+        const size_t n = short_name(p, before);
+        if (!is_word(before) && !strncmp(p, s->name, s->name_length)
+            && !is_word(p[s->name_length])) {
             say(s, '\1');
             p += s->name_length;
-        } else if (digits && !is_word(p[1 + digits]) && (p == text || p[-1] != '.')) {
-            size_t order = order_of(s, (size_t)strtoul(p + 1, NULL, 10));
-            for (say(s, '\2'); order; order /= 64)
-                say(s, (char)('0' + order % 64));
-            p += 1 + digits;
+        } else if (n) {
+            uint64_t value = meaning_of(s, (size_t)strtoul(p + 1, NULL, 10));
+            for (say(s, '\2'); value; value /= 64)
+                say(s, (char)('0' + value % 64));
+            p += n;
         } else {
             say(s, *p++);
         }
     }
     say(s, '\3');
+}
+
+// t1 = ...: what it means, by FNV-1a (Fowler, Noll and Vo), 64 bits.
+static void learn(struct said *s, const struct ct_page_equation *e)
+{
+    const size_t start = s->n;
+    struct meaning m = {(size_t)strtoul(e->left + 1, NULL, 10), 14695981039346656037u};
+    say_text(s, e->right);
+    for (size_t i = start; i < s->n; i++)
+        m.value = (m.value ^ (unsigned char)s->at[i]) * 1099511628211u;
+    s->n = start;
+    CT_PUSH(s->arena, s->meaning, s->nmeaning, s->meaning_cap, m);
 }
 
 const char *ct_page_said(const struct ct_page *p, size_t from, const char *name)
@@ -142,9 +169,14 @@ const char *ct_page_said(const struct ct_page *p, size_t from, const char *name)
         for (size_t k = 0; k < b->ncell; k++)
             say_text(&s, b->cell[k]);
         for (size_t k = 0; k < b->nequation; k++) {
-            say_text(&s, b->equation[k].left);
-            say_text(&s, b->equation[k].right);
-            say_text(&s, b->equation[k].note);
+            const struct ct_page_equation *e = &b->equation[k];
+            if (e->right && short_name(e->left, ' ') == strlen(e->left)) {
+                learn(&s, e);
+                continue;
+            }
+            say_text(&s, e->left);
+            say_text(&s, e->right);
+            say_text(&s, e->note);
         }
     }
     say(&s, '\0');
