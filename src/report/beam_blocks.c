@@ -172,29 +172,40 @@ static void add_left(struct finder *f, int row, ct_ex coef, ct_ex of)
     CT_PUSH(f->a, r->left, r->nleft, r->left_cap, t);
 }
 
-static int line_of(struct finder *f, size_t i)
+// A coordinate that moves the frame of its own beam, as the rotation of its start where the frame is the chord: M[k][l] has
+// c_k m_l + m_k c_l for coordinates k and l of a beam, c_k the motion of the frame. With the same symbol for m_k and m_l
+// half the derivative of M[k][k] is c_k.
+static void add_own_motion(struct finder *f, size_t k, ct_ex v)
 {
-    return f->row[i];
+    struct ct_exs *x = f->e->x;
+    const struct ct_beam_block *s = &f->out->block[f->beam[k]];
+    ct_ex column, row, rest;
+    split(f, s, v, true, &column, &rest);
+    split(f, s, v, false, &row, &rest);
+    add_left(f, f->block_row[f->beam[k]], ct_ex_scale(x, 0.5, column), f->e->u[k].derivative);
+    add_left(f, f->row[k], ct_ex_scale(x, 0.5, row), s->acceleration);
 }
 
 // M[i][j] u_j'' on the left side of row i.
 static void add_entry(struct finder *f, size_t i, size_t j, ct_ex v)
 {
-    struct ct_equations *e = f->e;
-    const ct_ex u = e->u[j].derivative;
-    ct_ex own, rest = v;
-    if (f->beam[i] >= 0 && f->beam[j] != f->beam[i]) {
-        const struct ct_beam_block *s = &f->out->block[f->beam[i]];
-        split(f, s, v, true, &own, &rest);
-        add_left(f, f->block_row[f->beam[i]], own, u);
+    const struct ct_beam_block *row = f->beam[i] < 0 ? NULL : &f->out->block[f->beam[i]],
+                               *column = f->beam[j] < 0 ? NULL : &f->out->block[f->beam[j]];
+    const ct_ex u = f->e->u[j].derivative;
+    ct_ex own, rest = v, all = v;
+    if (i == j && row)
+        add_own_motion(f, i, v);
+    if (row) {
+        split(f, row, all, true, &own, &rest);
+        if (row != column)
+            add_left(f, f->block_row[f->beam[i]], own, u);
     }
-    if (f->beam[j] >= 0 && f->beam[j] != f->beam[i]) {
-        const struct ct_beam_block *s = &f->out->block[f->beam[j]];
-        const ct_ex all = rest;
-        split(f, s, all, false, &own, &rest);
-        add_left(f, line_of(f, i), own, s->acceleration);
+    if (column && column != row) {
+        all = rest;
+        split(f, column, all, false, &own, &rest);
+        add_left(f, f->row[i], own, column->acceleration);
     }
-    add_left(f, line_of(f, i), rest, u);
+    add_left(f, f->row[i], rest, u);
 }
 
 // Rows in the order of speeds; a block stands where its first coordinate would, the lines of all below it.

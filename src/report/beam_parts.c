@@ -181,6 +181,20 @@ struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n)
     return s;
 }
 
+static bool may_have_parts(const struct ct_equations *e, const struct ct_flexible *f)
+{
+    return f->nelastic && f->nelastic <= MOST_COORDINATES && e->nu <= MOST_SPEEDS
+        && !varies(e->x, f->beam);
+}
+
+bool ct_beam_parts_exist(const struct ct_equations *e)
+{
+    bool any = false;
+    for (size_t i = 0; i < e->build->nflexible; i++)
+        any = any || may_have_parts(e, &e->build->flexible[i]);
+    return any && !ct_small_motion_is_wanted(e->build);
+}
+
 bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list)
 {
     double size = 0;
@@ -194,8 +208,7 @@ bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
 {
     const struct ct_flexible *f = &e->build->flexible[i];
     const struct ct_beam_parts before = *p;
-    if (!f->nelastic || f->nelastic > MOST_COORDINATES || e->nu > MOST_SPEEDS
-        || varies(e->x, f->beam))
+    if (!may_have_parts(e, f))
         return false;
     struct ct_inertia *I = CT_NEW(a, struct ct_inertia);
     struct ct_named_inertia *named = ct_named_inertia_create(a, (size_t)f->nelastic);

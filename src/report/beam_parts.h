@@ -37,6 +37,8 @@ void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_lo
 /// Adds those of one beam, number i; false: it has none.
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
                        enum ct_long_parts which, struct ct_beam_parts *p);
+/// Has a beam parts, if they are not too long?
+bool ct_beam_parts_exist(const struct ct_equations *e);
 /// Are definitions too long to be written without names of their own?
 bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list);
 /// The name of a node; itself where it has none.

@@ -1,7 +1,6 @@
 // Pages under construction; see page.h.
 #include "report/page.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static struct ct_page_block *add_block(struct ct_page *p, enum ct_page_kind kind)
@@ -79,76 +78,6 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
         = {.label = label, .left = left, .right = right, .note = note, .about = p->about};
     CT_PUSH(p->arena, b->equation, b->nequation, b->equation_cap, e);
     return &b->equation[b->nequation - 1];
-}
-
-// ---- comparing ----------------------------------------------------------------------------------
-
-struct said {
-    struct ct_arena *arena;
-    const char *name;
-    size_t name_length;
-    char *at;
-    size_t n, cap;
-    size_t *number; // of t1, t2, ... in the order of their appearance
-    size_t nnumber, number_cap;
-};
-
-static void say(struct said *s, char c)
-{
-    CT_PUSH(s->arena, s->at, s->n, s->cap, c);
-}
-
-static size_t order_of(struct said *s, size_t number)
-{
-    for (size_t i = s->nnumber; i-- > 0;)
-        if (s->number[i] == number)
-            return i;
-    CT_PUSH(s->arena, s->number, s->nnumber, s->number_cap, number);
-    return s->nnumber - 1;
-}
-
-static bool is_word(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')
-        || (unsigned char)c >= 0x80;
-}
-
-static void say_text(struct said *s, const char *text)
-{
-    for (const char *p = text; p && *p;) {
-        const bool starts = p == text || !is_word(p[-1]);
-        const size_t digits = starts && *p == 't' ? strspn(p + 1, "0123456789") : 0;
-        if (starts && !strncmp(p, s->name, s->name_length) && !is_word(p[s->name_length])) {
-            say(s, '\1');
-            p += s->name_length;
-        } else if (digits && !is_word(p[1 + digits]) && (p == text || p[-1] != '.')) {
-            size_t order = order_of(s, (size_t)strtoul(p + 1, NULL, 10));
-            for (say(s, '\2'); order; order /= 64)
-                say(s, (char)('0' + order % 64));
-            p += 1 + digits;
-        } else {
-            say(s, *p++);
-        }
-    }
-    say(s, '\3');
-}
-
-const char *ct_page_said(const struct ct_page *p, size_t from, const char *name)
-{
-    struct said s = {.arena = p->arena, .name = name, .name_length = strlen(name)};
-    for (size_t i = from; i < p->nblock; i++) {
-        const struct ct_page_block *b = &p->block[i];
-        say_text(&s, b->text);
-        for (size_t k = 0; k < b->ncell; k++)
-            say_text(&s, b->cell[k]);
-        for (size_t k = 0; k < b->nequation; k++) {
-            say_text(&s, b->equation[k].left);
-            say_text(&s, b->equation[k].right);
-            say_text(&s, b->equation[k].note);
-        }
-    }
-    say(&s, '\0');
-    return s.at;
 }
 
 // ---- summaries --------------------------------------------------------------------------------

@@ -99,10 +99,6 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
 bool ct_page_text_fits(const struct ct_page_block *b);
 bool ct_page_latex_fits(const struct ct_page_block *b);
 
-/// What blocks from number `from` on say, with one sign for `name` and for each of the names t1, t2, ... by the order in
-/// which they appear: equal for parts of a page that differ in these alone. In the arena of the page.
-const char *ct_page_said(const struct ct_page *p, size_t from, const char *name);
-
 /// Columns of a UTF-8 string.
 size_t ct_text_width(const char *s);
 

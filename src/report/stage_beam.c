@@ -3,6 +3,7 @@
 
 #include "expr/collect.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
+#include "report/same_page.h"
 
 #include <string.h>
 
@@ -475,7 +476,7 @@ static void put_whole(struct ct_derivation *d, size_t i)
 void ct_beams_put_terminal(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;
-    const char **said = CT_NEWN(d->a, const char *, b->nflexible + 1);
+    uint64_t *meaning = CT_NEWN(d->a, uint64_t, b->nflexible + 1);
     for (size_t i = 0; i < b->nflexible; i++) {
         const char *name = b->flexible[i].name;
         const size_t from = d->page.nblock;
@@ -483,8 +484,8 @@ void ct_beams_put_terminal(struct ct_derivation *d)
         d->page.about = name;
         put_whole(d, i);
         if (d->page.look == CT_LOOK_TEXT && b->flexible[i].nelastic) {
-            said[i] = ct_page_said(&d->page, from, name);
-            while (same < i && !(said[same] && !strcmp(said[same], said[i])))
+            meaning[i] = ct_page_meaning(&d->page, from, name);
+            while (same < i && meaning[same] != meaning[i])
                 same++;
             if (same < i) {
                 d->page.nblock = from;

@@ -407,7 +407,7 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
                           struct ct_beam_blocks *s)
 {
     struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
-    if (d->is_recursive || prepare(d, r))
+    if (d->is_recursive || !ct_beam_parts_exist(d->e) || prepare(d, r))
         return false;
     ct_reduced_label(d->e, CT_BIAS);
     ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);

@@ -19,5 +19,8 @@ within 'two booms in space' "$s" 300
 within 'right-angle frame' "$SYSTEMS/right_angle_frame/model.yaml" 1200
 
 echo '-- of beams that differ by their names alone one is written out'
-"$COTREE" equations "$SYSTEMS/two_boom_satellite/model.yaml" --show terminal | grep -A1 '^beam boom2'
-"$COTREE" equations "$s" --set n=1 --show terminal | grep -A4 '^beam boom2'
+for name in two_boom_satellite/model two_boom_satellite/space right_angle_frame/model slider_crank_flexible/model; do
+  "$COTREE" equations "$SYSTEMS/$name.yaml" --show terminal >terminal
+  echo "$name: $(grep -c '^matrices of' terminal) of $(grep -c '^beam' terminal)"
+  grep '^  as beam' terminal || true
+done
