@@ -123,6 +123,36 @@ async function checkBeams(browser) {
   await close();
 }
 
+// Red, green and blue of a picture at a place in it.
+async function colorAt(browser, png, x, y) {
+  const page = await browser.newPage();
+  const color = await page.evaluate(
+    async ([data, x, y]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return [...context.getImageData(x, y, 1, 1).data.slice(0, 3)];
+    },
+    [png.toString("base64"), x, y],
+  );
+  await page.close();
+  return color;
+}
+
+// A shape has the colour that the model says, by its hue, as light falls on it.
+async function checkColors(browser) {
+  const { page, close } = await open(browser, await report(join(import.meta.dirname, "models", "shapes.yaml"), "shapes.html"));
+  const picture = await pixels(page);
+  const { width, height } = await view(page).boundingBox();
+  const seen = [];
+  for (let i = 1; i < 12; i++) seen.push(await colorAt(browser, picture, Math.round((i * width) / 24), Math.round(height / 2 + 20)));
+  const red = seen.filter(([r, g, b]) => r > 120 && g < 60 && b < 60);
+  assert.ok(red.length > 0, `no red in ${seen.join("; ")}`);
+  await close();
+}
+
 // Without WebGL the drawing of the start stays.
 async function checkFallback(browser) {
   const context = await browser.newContext();
@@ -166,7 +196,7 @@ async function checkModes(browser) {
 }
 
 const browser = await launch();
-const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, fallback: checkFallback, modes: checkModes };
+const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, colors: checkColors, fallback: checkFallback, modes: checkModes };
 let failed = 0;
 for (const [name, step] of Object.entries(steps)) {
   const start = Date.now();
