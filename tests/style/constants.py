@@ -25,7 +25,7 @@ KINDS = ["Derived", "Default", "Limit", "Layout", "Definition"]
 DONE = """
 src/accuracy src/analysis src/base src/beam_error src/cli src/codegen src/component src/draw src/export src/expr
 src/formulate/ src/graph src/html src/import src/io src/live src/numeric src/report src/sim src/solve/batch
-src/solve/evaluator src/study components
+src/solve/evaluator src/solve/singular src/study components
 """.split()
 
 KIND = re.compile(r"\b(" + "|".join(KINDS) + r"):")
