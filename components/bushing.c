@@ -90,10 +90,10 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
 static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
                    ct_ex *out)
 {
-    for (size_t i = 0; i < b->dynamics.nload; i++)
-        if (b->dynamics.load[i].self == self)
-            return ct_vector_signal(name, "force", b->dynamics.load[i].force, out)
-                || ct_vector_signal(name, "torque", b->dynamics.load[i].torque, out);
+    for (size_t i = 0; i < b->loads->nload; i++)
+        if (b->loads->load[i].self == self)
+            return ct_vector_signal(name, "force", b->loads->load[i].force, out)
+                || ct_vector_signal(name, "torque", b->loads->load[i].torque, out);
     return false;
 }
 

@@ -192,7 +192,7 @@ bool ct_normal_monomials(struct ct_normal_store *s, ct_ex e, struct ct_normal_mo
     *n = 0;
     s->c.bundled = false;
     s->c.spent = 0;
-    struct ct_poly p = ct_expand(&s->c, e)[e.id];
+    struct ct_poly p = ct_expand(&s->c, e);
     if (s->c.bundled || !normalise(s, &p))
         return false;
     for (size_t i = 0; i < p.n; i++)

@@ -124,7 +124,7 @@ bool ct_cholesky(double *A, int n, int lda)
             col[i] /= col[k];
         for (int j = k + 1; j < n; j++) {
             double *a = A + (size_t)lda * j;
-            for (int i = j; i < n; i++)
+            for (int i = j; i < n && col[j] != 0; i++)
                 a[i] -= col[i] * col[j];
         }
     }
