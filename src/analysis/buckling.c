@@ -30,7 +30,8 @@ static const double refined = 1e-13; // of a factor
 // Of the first factor: the second load level, for dense and for sparse stiffness. The slope of
 // K is a difference, and round-off of K is large beside it where elements are short: cond(K)
 // eps of the first factor, 1e-4 for 1000 elements.
-// Default: a short step has less curvature and more round-off. Test: beam_tables.
+// Default: a short step has less curvature and more round-off. Test:
+// beam_tables_buckling.
 static const double small_load = 1e-2, half_load = 0.5;
 // [rad] An axis that the square of the slope shortens is half as long as it was; what comes
 // beyond is none of a beam's.

@@ -295,7 +295,7 @@ static void make_comparable(struct releases *r)
 }
 
 // Round-off of sums of some hundred terms against the largest reaction of null vectors.
-// Derived: as it says; null vectors are good to 1e-12
+// Derived: null vectors are good to 1e-12, and a hundred are added.
 static const double nothing = 1e-9;
 
 // The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.

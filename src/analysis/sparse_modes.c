@@ -26,7 +26,7 @@ static const double absent = 1e-12;
 // Where K is singular: the shift below zero against the largest K over the largest M. Round-off of
 // K, eps times that, is small beside it. An eigenvalue is zero that is `zero` of the shift: what
 // round-off of 1/theta leaves.
-// Derived: as it says
+// Derived: eps / 1e-9 is small beside 1, and 1e-6 a digit above it.
 static const double small_shift = 1e-9, zero = 1e-6;
 // Of K x - K' x against the largest entries: round-off.
 // Derived: 4500 units of round-off

@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-// Operators and operands below which a name is no shorter.
-// Layout: eight
+// Layout: operators and operands below which a name is no shorter.
 enum { LEAST_NAMED = 8 };
 
 static const char *const axis_name[] = {"x", "y", "z"};

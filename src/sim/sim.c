@@ -18,7 +18,7 @@
 // Derived: those measurements, of which a few cases are left to output error control.
 static const double usual_share = 2e-3, share_of_high_order = 5e-3;
 // Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
-// Derived: so measured.
+// Derived: from those measurements.
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
 // Derived: so that the eased estimate is a tenth of T.
@@ -32,7 +32,7 @@ static const double radau_share = 1e-2; // for loose tolerances
 static const double least_rtol = 2e-14;
 // Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
 // then cost the same.
-// Derived: so measured.
+// Derived: from those measurements.
 static const double high_order_up_to = 1e-2;
 // Limit: of the time to look
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline

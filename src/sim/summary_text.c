@@ -85,8 +85,7 @@ static void print_freedoms(FILE *out, const struct ct_sim *sim)
 // Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
 static void print_start(FILE *out, const struct ct_sim *sim)
 {
-    // Layout:
-    enum { MOST_SHOWN = 100 }; // the rest is in the summary file
+    enum { MOST_SHOWN = 100 }; // Layout: the rest is in the summary file
     struct list l = {out, "start", 0};
     size_t n = 0;
     char text[CT_MOST_START_TEXT];
@@ -155,8 +154,8 @@ static void print_open(FILE *out, const struct ct_sim *sim)
 static void print_output_errors(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    // Layout:
-    const size_t most_shown = 24; // the rest is in the summary file
+    const size_t most_shown = 24; // Layout: the rest is in the summary file
+    // Layout: columns
     const int width = 88;
     const char *separator = "";
     int column = 0;

@@ -22,7 +22,7 @@
 
 // The second run is held to this part of the tolerance: a tenth would often not shrink the error
 // visibly, a hundredth costs more and is not better.
-// Derived: so measured.
+// Derived: from those measurements.
 static const double tightening = 1. / 30;
 // With less to gain than this, the second run is looser by as much: then it has the larger error.
 // Derived: errors that differ by less are told apart badly by one difference.

@@ -27,7 +27,7 @@ enum ct_backend {
 static const double ct_rank_tolerance = 1e-9;
 /// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
 /// only, a row with less left than this depends on others as the data are meant, if it stays so along the motion.
-// Derived: six of them.
+// Derived: six times 5e-6.
 static const double ct_data_tolerance = 3e-5;
 
 /// Of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
