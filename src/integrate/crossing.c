@@ -21,7 +21,8 @@
 
 enum { STAGES = CT_CROSSING_STAGES, SIDE = STAGES / 2, LEFT_SWEEPS = 2, QUADRATURE = 8 };
 
-// Part of the step in whose middle nothing is evaluated.
+// Part of the step, about its middle, in which f is not evaluated. Default; test_crossing,
+// any_tolerance_gets_across, fails with 0.03 and with 0.9.
 static const double gap = 0.3;
 
 // The iteration ends when stages change by less than this part of the tolerance, and of the
@@ -33,7 +34,9 @@ static const double kappa = 0.1;
 static const double roundoff = 10;
 const double ct_crossing_mismatch_limit = 1e-9;
 const double ct_crossing_roundoff = 5e-13;
-// Further off than that and so many times the tolerance there is nothing to be had from nearer by.
+// Where the constraints are missed in the middle by more than the mismatch limit and so many
+// tolerances, a crossing from nearer by is not tried. Default; test_crossing,
+// what_misses_a_little_is_tried_from_nearer_by, fails with 10 and with 1000.
 static const double held_tolerance = 100;
 
 struct work {
@@ -270,18 +273,19 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
-// Where rows depend what they miss there is no more than round-off: what polynomials err by counts
-// by its square. A pivot as small as the root of the miss divides round-off by the miss: where that
-// leaves the digits that are wanted, steps can follow the motion.
+// The largest miss of the combination of rows that becomes dependent, for which the configuration
+// counts as singular. Derived: a mechanism that only passes by misses it by m, and its smallest
+// pivot is some sqrt(m), so that round-off of accelerations is eps/m. Where that is more than the
+// accuracy, steps could not follow the motion.
 static double allowed_mismatch(const struct ct_problem *p)
 {
-    const double met = 1e-12, eps = 0.05 * DBL_EPSILON;
-    return fmin(ct_crossing_mismatch_limit, fmax(met, eps / p->accuracy));
+    const double met = 1e-12; // round-off of the constraints; singular.sh fails without
+    return fmin(ct_crossing_mismatch_limit, fmax(met, DBL_EPSILON / p->accuracy));
 }
 
-// What a mismatch makes of a step that errs by `error`: the square of what it errs by in its middle
-// may be all there is of it, which less of a step leaves less of. Else the mechanism only passes
-// by.
+// The error of a step whose mismatch is that. The error of the polynomial in the middle makes a
+// mismatch of its square: where that may be all of it a shorter step is tried, else the mechanism
+// only passes by.
 static double judge(const struct task *s, double mismatch, double error)
 {
     const double in_gap = 30; // times as much is open there, of rows that bend by 1/m or 1/rad
