@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Terms made before expansion stops: bounds time and memory; beyond, sums stay as they are.
+// Limit: terms made before expansion stops, which bounds time and memory. Beyond, sums stay as
+// they are.
 static const size_t budget = 1000000;
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,
@@ -183,7 +184,7 @@ static struct ct_poly reduce_roots(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// Powers a reader would not want multiplied out any further; far from the range of exponents, too.
+// Limit: powers beyond this stay as they are; sums of exponents stay far from the range of int32_t.
 enum { LARGEST_EXPONENT = 100 };
 
 static int32_t largest_exponent(const struct ct_collector *c, struct ct_poly p)

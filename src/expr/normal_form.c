@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-// Terms of a sum, as many as collecting expands (collect.c): formulas that are printed term by term have fewer.
+// Limit: terms of a sum, which bounds time and memory; two forms of more terms are not compared.
 enum { MOST_TERMS = 2000 };
 // A multiple of an angle beyond this stays as it is: cos(8 a) has 8 terms.
 enum { MOST_TURNS = 8 };

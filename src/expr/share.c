@@ -134,6 +134,7 @@ static double worth_of(const struct sharing *s, uint32_t id)
 
 // Graphs of more nodes than this get many names at a time: all that save half as much as the best.
 // Those that others make useless are taken back at the end.
+// Limit: one name at a time costs the square of the nodes.
 enum { LARGE_GRAPH = 1000 };
 
 // Names the node that saves most; ties go to the older one. Returns how many were named.

@@ -186,7 +186,7 @@ void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_redu
     r->cutset = CT_NEWN(a, ct_ex, e->nu + 1);
     for (size_t i = 0; i < e->nu; i++) {
         r->cutset[i] = ct_sweep_row(b, (int)i);
-        r->Q[i] = b->dynamics.effort[i];
+        r->Q[i] = b->loads->effort[i];
     }
     for (size_t i = 0; i < e->nJ; i++)
         r->J[i] = e->J[i].value;
