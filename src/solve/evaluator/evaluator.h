@@ -30,7 +30,7 @@ static const double ct_rank_tolerance = 1e-9;
 // Derived: six times 5e-6.
 static const double ct_data_tolerance = 3e-5;
 
-/// Of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
+/// Limit: of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
 enum { CT_LARGE_SYSTEM = 200 };
 
 struct ct_evaluator {
