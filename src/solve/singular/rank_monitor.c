@@ -350,6 +350,13 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     return true;
 }
 
+void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w)
+{
+    w->there->rank = 0;
+    w->pivot = 0;
+    w->solver_unchanged = false;
+}
+
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy)
 {

@@ -87,6 +87,9 @@ struct ct_rank_monitor_step {
 /// they have come past it.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
                              const double *dy, const struct ct_rank_monitor_step *step);
+/// The next state is compared with nothing before it: the speeds have changed by more than their
+/// accelerations, as by a projection.
+void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w);
 /// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or
 /// later, or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
