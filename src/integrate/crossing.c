@@ -6,7 +6,7 @@
 // with g the gap as part of the step. In s they are nodes of least growth of the node polynomial,
 // and s = x^2 makes one interval of the two. Stages are found by fixed-point iteration in
 // Gauss-Seidel order, y_j = y + h sum_i A_ji f(y_i) with the newest values, as f is not stiff. The
-// first guess extrapolates from stage to stage. The error estimate is the change when two of the
+// first guess extrapolates from stage to stage. The error is taken to be the change when two of the
 // inner stages are left out, which is larger than the error.
 //
 // Source: collocation as in Hairer, Norsett and Wanner (1993), II.7, key hairer1993; the nodes are

@@ -216,7 +216,7 @@ double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *to
 
 void ct_stepper_subtract_roundoff(const struct ct_problem *p, double h, double *e)
 {
-    // Derived: weights of the stages in error estimates have sums of squares of up to 16
+    // Derived: the weights of stages in errors have sums of squares of up to 16
     const double evaluations = 4;
     for (int i = 0; i < p->ny && p->roundoff && h <= p->roundoff_step; i++)
         e[i] = copysign(fmax(0, fabs(e[i]) - evaluations * h * p->roundoff[i]), e[i]);
