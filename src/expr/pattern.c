@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { WIDTH = 64 };
+enum { WIDTH = 64 }; // Definition: bits of a uint64_t
 
 struct walk {
     const struct ct_exs *x;

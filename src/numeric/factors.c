@@ -44,11 +44,8 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 
 #if CT_HAS_KLU
 
-// Threshold partial pivoting: a diagonal entry is the pivot if it is at least this part of the
-// largest one in its column, rows scaled by their largest entry. 0.1 bounds growth by 11 a step.
-static const double diagonal_preference = 0.1;
 // Pivots are kept while element growth is at most this many times that at the search for pivots.
-// Growth costs as many digits: three of sixteen are given up.
+// Growth costs as many digits: three of sixteen are given up. XXX
 static const double growth_limit = 1e3;
 
 // ---- orders ------------------------------------------------------------------------------------
@@ -86,8 +83,8 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
     ct_arena_on_destroy(a, release_order, o);
     klu_defaults(&o->common);
-    o->common.btf = 0; // equations of motion hang together
-    o->common.tol = diagonal_preference;
+    o->common.btf = 0;                  // equations of motion hang together
+    o->common.tol = CT_PIVOT_THRESHOLD; // rows are scaled by their largest entry
     o->symbolic = klu_analyze_given(p->n, p->start, p->row, first, first, &o->common);
     if (!o->symbolic)
         return false;

@@ -353,8 +353,29 @@ static int rounded_pivot(struct ct_partition *s, int f, bool of_beams)
     return -1;
 }
 
+// The first speed in the order of s->independent (nu) whose pivot of M is round-off; -1: none.
+static int rounded_in_order(struct ct_partition *s, bool of_beams)
+{
+    const int f = (int)s->m->nu, *speed = s->independent;
+    for (int j = 0; j < f; j++)
+        for (int i = j; i < f; i++)
+            s->S[i + f * j] = s->m->M[speed[i] + f * speed[j]];
+    ct_cholesky(s->S, f, f); // as far as it goes
+    return rounded_pivot(s, f, of_beams);
+}
+
+static void reverse(int *list, int n)
+{
+    for (int i = 0, j = n - 1; i < j; i++, j--) {
+        const int first = list[i];
+        list[i] = list[j];
+        list[j] = first;
+    }
+}
+
 // The first speed whose pivot of M is round-off; -1: none. Articulated bodies may keep digits that M loses: there it
-// counts where coordinates of beams move the same.
+// counts where coordinates of beams move the same. Speeds are numbered outwards: from the last to the first next to
+// nothing fills, which tells whether there is such a pivot. Only then the slower order of speeds tells which to name.
 static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
 {
     const size_t n = s->m->nu;
@@ -374,12 +395,10 @@ static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
     }
     if (!is_doubtful)
         return -1;
-    const int f = (int)n;
-    for (int j = 0; j < f; j++)
-        for (int i = j; i < f; i++)
-            s->S[i + f * j] = s->m->M[i + f * j];
-    ct_cholesky(s->S, f, f); // as far as it goes
-    return rounded_pivot(s, f, is_exact);
+    reverse(s->independent, (int)n);
+    const bool is_rounded = rounded_in_order(s, is_exact) >= 0;
+    reverse(s->independent, (int)n);
+    return is_rounded ? rounded_in_order(s, is_exact) : -1;
 }
 
 // The beam of an elastic coordinate whose mass is at one point of each element; else NULL.
