@@ -84,7 +84,7 @@ static double sensitive_output_error(void *user, double t, const double *y, cons
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within
-// half a turn.
+// half a turn. Derived: steps aim at two thirds of what is accepted, and that is below pi.
 static const double aimed_turn = 2, most_turn = 3; // [rad]
 
 static double turning(struct ct_run *r, double t, const double *y)
