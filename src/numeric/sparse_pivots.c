@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-// Of the largest entry left in the row of a pivot.
+// Of the largest entry left in the row of a pivot. Derived: entries grow by at most 1 + 1/0.5 a step.
 static const double threshold = 0.5;
-// Rows that are looked at for a pivot (Zlatev: three or four).
+// Rows that are looked at for a pivot. Definition: of the method (Zlatev: three or four).
 enum { MOST_ROWS = 4 };
 
 struct line {
@@ -165,7 +165,7 @@ static void look_at_row(const struct elimination *s, int i, double most, struct 
 // False: no row has anything left.
 static bool choose(struct elimination *s, struct pivot *p)
 {
-    const double near = 100;
+    const double near = 100; // Limit: rows nearer to the least size are left to the dense QR
     *p = (struct pivot){.row = -1};
     for (size_t length = 0, nrow = 0; length <= s->n && nrow < MOST_ROWS; length++)
         for (int i = s->head[length], next; i >= 0 && nrow < MOST_ROWS; i = next) {

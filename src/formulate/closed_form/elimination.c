@@ -5,6 +5,7 @@
 #include "formulate/closed_form/beam_augmented.h"
 #include "formulate/closed_form/projection_step.h"
 #include "formulate/closed_form/kkt.h"
+#include "formulate/operation_count.h"
 
 #include <limits.h>
 #include <math.h>
@@ -13,12 +14,8 @@
 
 // With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound
 // whatever their multipliers; what is left of the equations is measured in the run.
+// Default: fewer operations against digits. Test: solvers.
 static const double loose = 0.001;
-// Sums of large forces along beams are neither: multipliers are held as small as those of J_d.
-static const double tight = 0.1;
-
-// What is another order among equals worth: patterns do not tell programs of the same length apart.
-static const double worth = 0.9;
 
 struct elimination {
     struct ct_arena *a;
@@ -82,7 +79,8 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
 {
     const struct ct_beam_augmented *c = s->e->augmented;
     const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
-    struct ct_kkt_system k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
+    struct ct_kkt_system k
+        = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = CT_TIGHT_PIVOT};
     int *place = CT_NEWN(s->a, int, k.n + k.m + 1);
     ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
     double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
@@ -425,7 +423,7 @@ static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_are
         const double below = least ? least->operations : most;
         const struct ct_kkt *found
             = ct_kkt_factor(scratch, NULL, k, (enum ct_kkt_order)order,
-                            order == CT_KKT_POSITIONS ? worth * below : below);
+                            order == CT_KKT_POSITIONS ? CT_CLEARLY_CHEAPER * below : below);
         if (!found)
             continue;
         least = found;
@@ -560,7 +558,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         if (!s.whole)
             return NULL;
     } else {
-        // refinement and projections make several times the nodes of the factors
+        // Limit: refinement and projections make several times the nodes of the factors
         const size_t enough = 20000, third = most_nodes / 3;
         derive_B(&s);
         if (!reduce(&s, third > enough ? x->nnode + third : most))

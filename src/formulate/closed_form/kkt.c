@@ -12,7 +12,7 @@ struct choice {
 };
 
 // The largest numbers of a row, descending, and their columns.
-enum { LARGEST = 3 };
+enum { LARGEST = 3 }; // Derived: without the two of a pivot one is left
 struct largest {
     double size[LARGEST];
     int column[LARGEST];

@@ -120,6 +120,7 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
     return m;
 }
 
+// Definition: of the list below
 enum { NPROGRAM = 18 };
 
 static void list_programs(struct ct_evaluator *m, struct ct_program *list[NPROGRAM])

@@ -23,12 +23,14 @@ enum ct_backend {
 
 /// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms, of places known to 1e-13, is
 /// below 1e-12: a row with less than the first left is dependent.
+// Derived: between both, three digits from either.
 static const double ct_rank_tolerance = 1e-9;
 /// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
 /// only, a row with less left than this depends on others as the data are meant, if it stays so along the motion.
+// Derived: six times 5e-6.
 static const double ct_data_tolerance = 3e-5;
 
-/// Of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
+/// Limit: of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
 enum { CT_LARGE_SYSTEM = 200 };
 
 struct ct_evaluator {
