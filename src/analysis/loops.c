@@ -241,8 +241,9 @@ static void find_null_vectors(struct releases *r)
     const size_t nrow = s->m->nrow;
     r->nz = nrow - (size_t)s->rank;
     r->z = CT_NEWN(r->a, double, nrow * r->nz + 1);
+    struct ct_null_space *null_space = ct_null_space_create(r->a, s);
     for (size_t k = 0; k < r->nz; k++)
-        ct_partition_null_vector(s, s->row[(size_t)s->rank + k], r->z + nrow * k);
+        ct_null_space_vector(null_space, s->row[(size_t)s->rank + k], r->z + nrow * k);
 }
 
 // Reactions are linear in the multipliers: their difference with z and with none.
