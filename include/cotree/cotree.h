@@ -331,8 +331,14 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
 /**
  * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
  * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ *
+ * out      in  for people; NULL: no text
+ * summary  in  path of a file as that of ct_sim_write_summary, with the loops for programs; NULL: no file
+ *
+ * Errors: E002.
  */
-CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out,
+                               const char *summary);
 /**
  * The model as source code in a folder, which is made if need be, or as an FMU. Before the run.
  *

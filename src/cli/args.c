@@ -190,6 +190,7 @@ static bool parse_time(const char *text, double *v)
 
 static bool parse_integer(const char *text, long least, long *v)
 {
+    // Limit: with a message
     const long most = 1000000000; // what the model file allows
     char *end;
     errno = 0;
@@ -488,6 +489,7 @@ static bool check_files(const struct parser *p)
     const char *const file[]
         = {args->output, args->summary,   args->plot, args->curve,   args->report,
            args->model,  args->reference, args->tree, args->members, args->input};
+    // Definition: of the list below
     enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)

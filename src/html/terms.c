@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// A fifth of a megabyte of the page, at some three bytes for each number.
+// Limit: a fifth of a megabyte of the page, at some three bytes for each number.
 enum { MOST_NUMBERS = 60000, LEAST_ROWS = 21 };
 
 static void list_expressions(struct ct_terms_recording *t, struct ct_arena *a,

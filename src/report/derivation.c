@@ -25,7 +25,7 @@ static const char *latex_definition(struct ct_arena *a, const char *name)
     static const char *const letter[][2]
         = {{"phi_", "\\varphi"}, {"c_", "c"}, {"s_", "s"}, {"R_", "R"}, {"w_", "\\omega"},
            {"al_", "\\alpha"},   {"d_", "d"}, {"v_", "v"}, {"a_", "a"}, {"F_", "F"},
-           {"T_", "T"},          {"m_", "m"}, {"h_", "h"}, {"I_", "I"}};
+           {"T_", "T"},          {"m_", "m"}, {"h_", "h"}, {"I_", "I"}, {"om_", "\\Omega"}};
     for (size_t i = 0; i < COUNT(letter); i++) {
         const size_t n = strlen(letter[i][0]);
         if (strncmp(name, letter[i][0], n))

@@ -71,6 +71,12 @@ static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 /// The reduced equations as a reader wants them: collected, or with names where they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
 
+/// The same with the elastic coordinates of each beam as one vector; r: constraints and efforts. false: equations are
+/// short without that, or no beam has named parts.
+struct ct_beam_blocks;
+bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
+                          struct ct_beam_blocks *s);
+
 /// The mass matrix and the Jacobian of the constraints; of more than a page it is said how large they are.
 void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r);
 

@@ -19,6 +19,7 @@
 
 enum {
     CT_STAGE_TERMINAL = 1,
+    // Definition: bits of the stages
     CT_STAGE_GRAPH = 2,
     CT_STAGE_TREE = 4,
     CT_STAGE_CUTSET = 8,

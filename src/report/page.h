@@ -10,11 +10,13 @@
 
 #include "expr/print.h"
 
+// Layout: of a page
 enum { CT_PAGE_WIDTH = 100 };
-/// Lines of a screen: beyond, subexpressions get names, and summaries leave equations out.
+/// Layout: lines of a screen: beyond, subexpressions get names, and summaries leave equations out.
 enum { CT_MOST_LINES = 30 };
 /// Width of a line of mathematics in HTML on a phone of 390 px [pt] in LaTeX of 10 pt, which is 1 em: 24 em of 16 px
 /// less margins of 1 em.
+/// Layout: of a page
 enum { CT_PAGE_PHONE = 220 };
 
 enum ct_page_kind {

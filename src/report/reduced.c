@@ -10,6 +10,7 @@
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 20000;
 
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most)
@@ -286,6 +287,7 @@ struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equation
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
     // what nobody reads through need not be in its nicest form: collecting takes some 0.1 ms each
+    // Limit: a tenth of a second
     const bool may_tidy = names_first || (double)(n + share.n) * (double)e->x->nnode < 2e8;
     replace_named(a, e, &list, &share, root, n, map, may_tidy);
     for (size_t i = 0; i < n; i++)
@@ -302,40 +304,26 @@ void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_redu
     r->definitions = ct_definitions_find(a, e, where, n, r->is_recursive, &r->size);
 }
 
-void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_collect,
-                        struct ct_reduced *r, const ct_ex *of, const ct_ex *by, size_t n)
+bool ct_reduced_collect(struct ct_arena *a, struct ct_equations *e, ct_ex *const *where,
+                        size_t n)
 {
-    struct ct_exs *x = e->x;
-    const size_t nroot = list_all(e, r, NULL);
-    ct_ex **where = CT_NEWN(a, ct_ex *, nroot + 1), *root = CT_NEWN(a, ct_ex, nroot + 1),
-          *map = CT_NEWN(a, ct_ex, x->nnode + 1);
-    list_all(e, r, where);
-    for (size_t i = 0; i < nroot; i++)
-        root[i] = *where[i];
-    const size_t nwalk = ct_ex_walk(x, root, nroot);
-    uint32_t *id = CT_NEWN(a, uint32_t, nwalk + 1);
-    for (size_t k = 0; k < nwalk; k++)
-        id[k] = x->stack[k];
-    ct_sort(a, id, nwalk, sizeof *id, by_id, NULL);
-    for (size_t i = 0; i < n; i++) // 0 is the constant zero, which nothing replaces
-        map[of[i].id] = by[i];
-    for (size_t k = 0; k < nwalk; k++) {
-        const struct ct_exnode node = *ct_ex_node(x, (ct_ex){id[k]});
-        if (!map[id[k]].id)
-            map[id[k]]
-                = ct_op_info[node.op].narg ? ct_ex_rebuild(x, node, map) : (ct_ex){id[k]};
-    }
     double size = 0;
-    for (size_t i = 0; i < nroot; i++) {
-        *where[i] = map[root[i].id];
-        size += ct_reduced_size(x, *where[i], largest_collected - size + 1);
-    }
-    r->is_collected = may_collect && size <= largest_collected;
-    for (size_t i = 0; i < e->nu && r->is_collected; i++)
-        r->Q[i] = ct_reduced_collect_force(e, a, r->Q[i]);
-    for (size_t i = 0; i < nroot && r->is_collected; i++)
-        if (where[i] < r->Q || where[i] >= r->Q + e->nu)
-            *where[i] = collect(e, *where[i]);
+    for (size_t i = 0; i < n; i++)
+        size += ct_reduced_size(e->x, *where[i], largest_collected - size + 1);
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion >= 0)
+            return false;
+    for (size_t i = 0; i < n && size <= largest_collected; i++)
+        *where[i] = ct_reduced_collect_force(e, a, *where[i]);
+    return size <= largest_collected;
+}
+
+void ct_reduced_collect_all(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    const size_t n = list_all(e, r, NULL);
+    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
+    list_all(e, r, where);
+    r->is_collected = ct_reduced_collect(a, e, where, n);
 }
 
 // ---- equations --------------------------------------------------------------------------------

@@ -48,13 +48,15 @@ void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_redu
 /// The matrix form: collect if allowed and the system is small enough. No definitions yet.
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r);
+/// Collects what it holds (ct_reduced_collect).
+void ct_reduced_collect_all(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
 /// A force collected, as Q is: what is there at rest stays apart from what the speeds add.
 ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v);
-/// Each of n nodes `of` replaced by `by` in expressions that are not collected yet, which are then collected if
-/// allowed and the system is small enough.
-void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_collect,
-                        struct ct_reduced *r, const ct_ex *of, const ct_ex *by, size_t n);
+/// Collects n expressions in place, forces and others, if they are small enough together and no rotation is a
+/// quaternion: that would be multiplied out. false: they stay.
+bool ct_reduced_collect(struct ct_arena *a, struct ct_equations *e, ct_ex *const *where,
+                        size_t n);
 
 /// Names for what is written more than once: the expressions then use the symbols of definitions.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);

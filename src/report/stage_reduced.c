@@ -1,5 +1,6 @@
 // The reduced equations as equations of a page.
-#include "report/beam_parts.h"
+#include "formulate/beam/flexible_body.h"
+#include "report/beam_blocks.h"
 #include "report/provenance.h"
 
 #include <string.h>
@@ -224,6 +225,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 }
 
 // More rows or columns never fit a page.
+// Layout: of a page
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
@@ -297,13 +299,20 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
         }
     for (size_t i = 0; i < own.n; i++)
         CT_PUSH(d->a, root, n, cap, own.at[i].value);
-    const size_t nwalk = ct_ex_walk(x, root, n);
+    size_t nwalk = ct_ex_walk(x, root, n);
+    bool *used = CT_NEWN(d->a, bool, all->n + 1);
+    for (int pass = 0; pass < 2; pass++) { // an angular velocity is used by other parts alone
+        for (size_t i = 0; i < all->n; i++)
+            if (!used[i] && (used[i] = is_used(x, nwalk, all->at[i].symbol)))
+                CT_PUSH(d->a, root, n, cap, all->at[i].value);
+        nwalk = ct_ex_walk(x, root, n);
+    }
     r->definitions.at = CT_NEWN(d->a, struct ct_reduced_definition, all->n + own.n + 1);
     r->definitions.n = 0;
     for (size_t i = 0; i < all->n; i++) {
         symbol[i] = all->at[i].symbol;
-        value[i] = all->at[i].value;
-        if (is_used(x, nwalk, symbol[i]))
+        value[i] = all->at[i].full;
+        if (used[i])
             r->definitions.at[r->definitions.n++] = all->at[i];
     }
     r->npart = r->definitions.n;
@@ -314,47 +323,71 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
     }
 }
 
-static bool has_quaternion(const struct ct_equations *e)
+// M, Q and efforts in names. false: an entry of M that the engine finds to vanish does not in names.
+static bool take_named(const struct ct_equations *e, const struct ct_named_dynamics *named,
+                       struct ct_reduced *r)
 {
-    for (size_t i = 0; i < e->nq; i++)
-        if (e->q[i].quaternion >= 0)
-            return true;
-    return false;
+    size_t taken = 0;
+    for (size_t i = 0, k = 0; i < e->nM; i++) { // both row by row
+        while (k < named->nM
+               && (named->M[k].row < e->M[i].row
+                   || (named->M[k].row == e->M[i].row && named->M[k].column < e->M[i].column)))
+            k++;
+        const bool is_there = k < named->nM && named->M[k].row == e->M[i].row
+                           && named->M[k].column == e->M[i].column;
+        r->M[i] = is_there ? named->M[k].value : CT_EX_ZERO;
+        taken += is_there;
+    }
+    for (size_t i = 0; i < e->nu; i++)
+        r->Q[i] = named->Q[i];
+    for (size_t i = 0; i < e->ndriver; i++)
+        r->effort[i] = named->effort[i];
+    return taken == named->nM;
 }
 
-// The same with the parts of beams by name. Collecting would multiply out the rotations of quaternions, which have names.
-static void name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
+// The same with the parts of beams by name.
+static bool name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
                        struct ct_reduced *r)
 {
     struct group g[NGROUP] = {0}, shared[NGROUP] = {0};
-    const bool may_collect = !has_quaternion(d->e);
+    struct ct_named_dynamics named;
     ct_reduced_label(d->e, CT_BIAS);
+    ct_named_dynamics_derive(d->a, d->e, parts->inertia, &named);
     ct_reduced_prepare(d->a, d->e, false, r);
-    ct_reduced_replace(d->a, d->e, may_collect, r, parts->of, parts->by, parts->n);
+    if (!take_named(d->e, &named, r))
+        return false;
+    ct_reduced_collect_all(d->a, d->e, r);
     fill(d, r, g);
     if (!r->is_collected || is_long(d, g, NGROUP))
         ct_reduced_share(d->a, d->e, r);
     fill(d, r, shared);
     put_before(d, parts, shared, r);
+    return true;
+}
+
+// Expressions without names; false: they are too long to read.
+static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0};
+    ct_reduced_prepare(d->a, d->e, true, r);
+    fill(d, r, g);
+    return r->is_collected && !is_long(d, g, NGROUP);
 }
 
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
-    struct group g[NGROUP] = {0};
     struct ct_beam_parts parts;
     if (d->is_recursive) {
         ct_reduced_recur(d->a, d->e, r);
         return;
     }
-    ct_reduced_prepare(d->a, d->e, true, r);
-    fill(d, r, g);
-    if (r->is_collected && !is_long(d, g, NGROUP))
+    if (prepare(d, r))
         return;
-    ct_beam_parts_derive(d->a, d->e, &parts);
-    if (parts.n)
-        name_parts(d, &parts, r);
-    else
+    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
+    if (!parts.definitions.n || !name_parts(d, &parts, r)) {
+        ct_reduced_prepare(d->a, d->e, true, r);
         share(d, r);
+    }
 }
 
 // Text and LaTeX have the parts of beams with their terminal equations, HTML folds them.
@@ -368,6 +401,49 @@ static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
                          "s, i, m_rf, m_thetaf, m_ff, Q_vf, F_v, T_v and V_q of a beam: its "
                          "matrices, printed by --show terminal");
     ct_derivation_put_definitions(d, "with", is_html ? &r->definitions : &own);
+}
+
+bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
+                          struct ct_beam_blocks *s)
+{
+    struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
+    if (d->is_recursive || !ct_beam_parts_exist(d->e) || prepare(d, r))
+        return false;
+    ct_reduced_label(d->e, CT_BIAS);
+    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);
+    return parts->definitions.n && ct_beam_blocks_derive(d->a, d->e, parts, r, s);
+}
+
+// Before the definitions: what the names of blocks mean.
+static void explain_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
+{
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_block_row *r = &s->row[i];
+        if (r->beam < 0 || r->coordinate >= 0)
+            continue;
+        const struct ct_flexible *f = s->block[r->beam].f;
+        const char *names = "";
+        for (int k = 0; k < f->nelastic; k++)
+            names = ct_arena_printf(d->a, "%s%s%s", names, k ? ", " : "", f->elastic[k].name);
+        ct_page_sentence(&d->page, "%s = [%s]", r->label, names);
+    }
+    ct_page_sentence(
+        &d->page, "s, i, m_rf, m_thetaf, m_ff, K_f, Q_vf, F_v, T_v and V_q of a beam: its "
+                  "matrices, printed by --show terminal; m_rf_B.x: the entries along x of all "
+                  "coordinates of beam B, as a row, ' as a column; Q_B: what joints, loads and "
+                  "bodies farther out do along them, zero where it is not listed");
+}
+
+// Rows of blocks, and the lines that belong to one below it.
+static void put_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
+{
+    struct ct_exs *x = d->e->x;
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_block_row *r = &s->row[i];
+        ct_page_equation(&d->page, r->label, ct_derivation_text(d, ct_block_left(x, r)),
+                         ct_derivation_text(d, ct_block_right(x, r)), NULL);
+    }
 }
 
 // What the names of the recursion stand for: those that there are.
@@ -423,7 +499,13 @@ void ct_stage_reduced(struct ct_derivation *d)
     struct group g[NGROUP] = {0};
     struct ct_provenance origins,
         *p = d->page.look == CT_LOOK_HTML && !d->is_recursive ? &origins : NULL;
-    ct_derivation_reduce(d, &r);
+    struct ct_beam_blocks blocks;
+    const bool has_blocks
+        = d->page.look == CT_LOOK_TEXT && ct_derivation_blocks(d, &r, &blocks);
+    if (has_blocks)
+        r.definitions = blocks.definitions;
+    else
+        ct_derivation_reduce(d, &r);
     fill(d, &r, g);
     if (p)
         ct_provenance_derive(d, &r, p);
@@ -433,17 +515,22 @@ void ct_stage_reduced(struct ct_derivation *d)
         count(d, e->nrow, "constraint", "constraints"), e->nstate ? ", " : "",
         e->nstate ? count(d, e->nstate, "state", "states") : "",
         e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
+    if (has_blocks)
+        explain_blocks(d, &blocks);
     if (r.is_recursive)
         put_extent(d, g, &r);
     put_definitions(d, &r);
-    if (!r.is_recursive)
+    if (!has_blocks && !r.is_recursive)
         ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
         ct_page_heading(&d->page, r.is_recursive
                                       ? "motion: what each branch carries = its effort"
                                   : e->nrow ? "motion: M u' = Q + J' lambda"
                                             : "motion: M u' = Q");
-        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION, 0);
+        if (has_blocks)
+            put_blocks(d, &blocks);
+        else
+            put_group(d, &g[MOTION], p, CT_EQUATION_MOTION, 0);
     }
     if (e->nstate) {
         ct_page_heading(&d->page, "rates of the states");

@@ -333,6 +333,7 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
 }
 
 // Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them in full.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 5000;
 
 // Collects what is small enough; false: it is not.
