@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// Fewer coordinates are no shorter as a vector.
+// Layout: fewer coordinates are no shorter as a vector.
 enum { LEAST_COORDINATES = 2 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
@@ -114,7 +114,7 @@ struct finder {
     bool is_same;   // rows of a block are equal so far
 };
 
-enum { NSYMBOL = 8 };
+enum { NSYMBOL = 8 }; // Definition: rows of m_rf and m_thetaf, Q_vf, V_q
 
 static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
                        ct_ex as_column[NSYMBOL])

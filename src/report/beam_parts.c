@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-// Operators and operands below which a name is no shorter.
+// Layout: operators and operands below which a name is no shorter.
 enum { LEAST_NAMED = 8 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
@@ -156,6 +156,7 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
 }
 
 // Two elements in space; operators and operands of all parts that are collected and read.
+// Limit: of the time to collect; beyond, the sums are counted
 enum { MOST_COORDINATES = 12, MOST_SPEEDS = 1000, LONGEST = 40000 };
 
 // Sums over points of sections that vary are not read by anyone.
