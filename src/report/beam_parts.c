@@ -134,7 +134,8 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
 {
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
-    ct_ex *M = CT_NEWN(a, ct_ex, nu * nu + 1);
+    struct ct_arena *work = ct_arena_create_under(a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1);
     ct_flexible_columns(b, f, &out->columns, M);
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
@@ -152,6 +153,7 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
                 ct_arena_printf(a, "m_ff_%s.%s", of, to));
         }
     }
+    ct_arena_destroy(work);
     name_forces(a, b, f, p, out);
 }
 

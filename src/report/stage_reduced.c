@@ -363,12 +363,16 @@ static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
     return r->is_collected && !is_long(d, g, NGROUP);
 }
 
+// Limit: of the time to derive the equations again; rows of so many columns are not read
+enum { MOST_NAMED_SPEEDS = 100 };
+
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
-    struct ct_beam_parts parts;
+    struct ct_beam_parts parts = {0};
     if (prepare(d, r))
         return;
-    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
+    if (d->e->nu <= MOST_NAMED_SPEEDS)
+        ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
     if (!parts.definitions.n || !name_parts(d, &parts, r)) {
         ct_reduced_prepare(d->a, d->e, true, r);
         share(d, r);
@@ -392,7 +396,7 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
                           struct ct_beam_blocks *s)
 {
     struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
-    if (!ct_beam_parts_exist(d->e) || prepare(d, r))
+    if (d->e->nu > MOST_NAMED_SPEEDS || !ct_beam_parts_exist(d->e) || prepare(d, r))
         return false;
     ct_reduced_label(d->e);
     ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);
