@@ -114,7 +114,7 @@ struct finder {
     bool is_same;   // rows of a block are equal so far
 };
 
-enum { NSYMBOL = 8 }; // Definition: rows of m_rf and m_thetaf, Q_vf, V_q
+enum { NSYMBOL = 8 }; // Definition: symbols of a block in own[] and as_column[]
 
 static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
                        ct_ex as_column[NSYMBOL])
@@ -347,7 +347,7 @@ static void make_readable(struct ct_arena *a, struct ct_equations *e, struct ct_
         r->effort[i] = effort[i];
     list_all(a, s, e, r, &all);
     r->is_collected = ct_reduced_collect(a, e, all.at, all.n);
-    s->definitions = ct_definitions_find(a, e, all.at, all.n, &size);
+    s->definitions = ct_definitions_find(a, e, all.at, all.n, false, &size);
 }
 
 bool ct_beam_blocks_derive(struct ct_arena *a, struct ct_equations *e,

@@ -8,6 +8,7 @@
 #include <string.h>
 
 // Larger beams are counted, not printed.
+// Layout: of a page
 enum { MOST_ELEMENTS = 40, MOST_COORDINATES = 120, LARGEST_ARM = 300 };
 
 // ---- what a beam is --------------------------------------------------------------------------------------

@@ -15,13 +15,9 @@
 
 #include <string.h>
 
-// Collecting clears work space of the size of the store, 1 ms for 50000 nodes: in a larger one expressions stay as they
-// are.
 static ct_ex collect(struct ct_derivation *d, ct_ex v)
 {
-    enum { LARGEST_STORE = 50000 };
-    if (d->e->x->nnode > LARGEST_STORE || ct_ex_is_const(d->e->x, v, NULL)
-        || ct_ex_symbol(d->e->x, v))
+    if (ct_ex_is_const(d->e->x, v, NULL) || ct_ex_symbol(d->e->x, v))
         return v;
     struct ct_arena *work = ct_arena_create_under(d->a);
     const struct ct_collect_options o = {.scratch = work};
@@ -462,7 +458,7 @@ static void put_definitions(struct ct_derivation *d, const struct ct_definitions
         where[i] = &value[i];
     }
     if (is_long)
-        shared = ct_definitions_find(d->a, d->e, where, list->n, &size);
+        shared = ct_definitions_find(d->a, d->e, where, list->n, false, &size);
     ct_page_equations(&d->page);
     for (size_t i = 0; i < shared.n; i++)
         ct_page_equation(&d->page, NULL, ct_derivation_text(d, shared.at[i].symbol),

@@ -3,6 +3,8 @@
 #include "report/beam_blocks.h"
 #include "report/provenance.h"
 
+#include <string.h>
+
 struct sides {
     ct_ex left, right;
     const char *label, *name;
@@ -135,21 +137,29 @@ static void put_efforts(struct ct_derivation *d, const struct group *g,
     }
 }
 
+// All that the equations and the definitions show; returns how many.
+static size_t list_shown(struct ct_derivation *d, const struct group g[NGROUP],
+                         const struct ct_reduced *r, ct_ex **e)
+{
+    size_t n = 0, cap = 0;
+    *e = NULL;
+    for (size_t k = 0; k < NGROUP; k++)
+        for (size_t i = 0; i < g[k].n; i++) {
+            CT_PUSH(d->a, *e, n, cap, g[k].at[i].left);
+            CT_PUSH(d->a, *e, n, cap, g[k].at[i].right);
+        }
+    for (size_t i = 0; i < r->definitions.n; i++)
+        CT_PUSH(d->a, *e, n, cap, r->definitions.at[i].value);
+    return n;
+}
+
 // Does a symbol stand in one of the equations, or in a definition?
 static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
                   const struct ct_reduced *r, ct_ex symbol)
 {
     struct ct_exs *x = d->e->x;
-    ct_ex *e = NULL;
-    size_t n = 0, cap = 0;
-    for (size_t k = 0; k < NGROUP; k++)
-        for (size_t i = 0; i < g[k].n; i++) {
-            CT_PUSH(d->a, e, n, cap, g[k].at[i].left);
-            CT_PUSH(d->a, e, n, cap, g[k].at[i].right);
-        }
-    for (size_t i = 0; i < r->definitions.n; i++)
-        CT_PUSH(d->a, e, n, cap, r->definitions.at[i].value);
-    const size_t nwalk = ct_ex_walk(x, e, n);
+    ct_ex *e;
+    const size_t n = list_shown(d, g, r, &e), nwalk = ct_ex_walk(x, e, n);
     for (size_t i = 0; i < nwalk; i++)
         if (x->stack[i] == symbol.id)
             return true;
@@ -215,6 +225,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 }
 
 // More rows or columns never fit a page.
+// Layout: of a page
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
@@ -255,7 +266,7 @@ static const char *count(struct ct_derivation *d, size_t n, const char *one, con
 static void share(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct ct_reduced plain;
-    ct_reduced_label(d->e);
+    ct_reduced_label(d->e, CT_BIAS);
     ct_reduced_prepare(d->a, d->e, false, &plain);
     ct_reduced_share(d->a, d->e, &plain);
     if (r->is_collected)
@@ -340,7 +351,7 @@ static bool name_parts(struct ct_derivation *d, const struct ct_beam_parts *part
 {
     struct group g[NGROUP] = {0}, shared[NGROUP] = {0};
     struct ct_named_dynamics named;
-    ct_reduced_label(d->e);
+    ct_reduced_label(d->e, CT_BIAS);
     ct_named_dynamics_derive(d->a, d->e, parts->inertia, &named);
     ct_reduced_prepare(d->a, d->e, false, r);
     if (!take_named(d->e, &named, r))
@@ -363,15 +374,16 @@ static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
     return r->is_collected && !is_long(d, g, NGROUP);
 }
 
-// Limit: of the time to derive the equations again; rows of so many columns are not read
-enum { MOST_NAMED_SPEEDS = 100 };
-
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct ct_beam_parts parts = {0};
+    if (d->is_recursive) {
+        ct_reduced_recur(d->a, d->e, r);
+        return;
+    }
     if (prepare(d, r))
         return;
-    if (d->e->nu <= MOST_NAMED_SPEEDS)
+    if (d->e->nu <= CT_MOST_MATRIX_SPEEDS)
         ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
     if (!parts.definitions.n || !name_parts(d, &parts, r)) {
         ct_reduced_prepare(d->a, d->e, true, r);
@@ -396,9 +408,10 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
                           struct ct_beam_blocks *s)
 {
     struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
-    if (d->e->nu > MOST_NAMED_SPEEDS || !ct_beam_parts_exist(d->e) || prepare(d, r))
+    if (d->is_recursive || d->e->nu > CT_MOST_MATRIX_SPEEDS || !ct_beam_parts_exist(d->e)
+        || prepare(d, r))
         return false;
-    ct_reduced_label(d->e);
+    ct_reduced_label(d->e, CT_BIAS);
     ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);
     return parts->definitions.n && ct_beam_blocks_derive(d->a, d->e, parts, r, s);
 }
@@ -435,12 +448,59 @@ static void put_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
     }
 }
 
+// What the names of the recursion stand for: those that there are.
+static const char *legend(struct ct_derivation *d, const struct ct_definitions *list)
+{
+    static const char *const name[][2]
+        = {{"phi_", "phi, c, s: angle of a body, its cosine and sine"},
+           {"R_", "R: rotation of a body"},
+           {"w_", "w: angular velocity"},
+           {"al_", "al: angular acceleration"},
+           {"d_", "d: vector to a point from the one before"},
+           {"v_", "v: rate of d"},
+           {"a_", "a: acceleration of a point less gravity"},
+           {"m_", "m: mass of all that hangs on a point"},
+           {"h_", "h: first moment of a body with these masses on its points"},
+           {"I_", "I: its inertia with them"},
+           {"F_", "F: force that what hangs on a point needs beyond m*a"},
+           {"T_", "T: torque that a body and what hangs on it need"}};
+    struct ct_growing_text s = {0};
+    for (size_t k = 0; k < COUNT(name); k++)
+        for (size_t i = 0; i < list->n; i++)
+            if (!strncmp(ct_ex_symbol(d->e->x, list->at[i].symbol)->name, name[k][0],
+                         strlen(name[k][0]))) {
+                ct_derivation_append(d, &s, "; ");
+                ct_derivation_append(d, &s, name[k][1]);
+                break;
+            }
+    return s.n ? s.at : "";
+}
+
+static void put_extent(struct ct_derivation *d, const struct group g[NGROUP],
+                       const struct ct_reduced *r)
+{
+    struct ct_exs *x = d->e->x;
+    ct_ex *e;
+    const size_t n = list_shown(d, g, r, &e), nwalk = ct_ex_walk(x, e, n);
+    size_t nterm = r->definitions.n + d->e->nu;
+    for (size_t i = 0; i < nwalk; i++) {
+        const unsigned char op = ct_ex_node(x, (ct_ex){x->stack[i]})->op;
+        nterm += op == CT_OP_ADD || op == CT_OP_SUB;
+    }
+    ct_page_sentence(&d->page,
+                     "recursive form, as there are more than %d speeds: %zu named expressions, "
+                     "%zu terms in all%s",
+                     CT_MOST_MATRIX_SPEEDS, r->definitions.n, nterm,
+                     legend(d, &r->definitions));
+}
+
 void ct_stage_reduced(struct ct_derivation *d)
 {
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
-    struct ct_provenance origins, *p = d->page.look == CT_LOOK_HTML ? &origins : NULL;
+    struct ct_provenance origins,
+        *p = d->page.look == CT_LOOK_HTML && !d->is_recursive ? &origins : NULL;
     struct ct_beam_blocks blocks;
     const bool has_blocks
         = d->page.look == CT_LOOK_TEXT && ct_derivation_blocks(d, &r, &blocks);
@@ -459,12 +519,16 @@ void ct_stage_reduced(struct ct_derivation *d)
         e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
     if (has_blocks)
         explain_blocks(d, &blocks);
+    if (r.is_recursive)
+        put_extent(d, g, &r);
     put_definitions(d, &r);
-    if (!has_blocks)
+    if (!has_blocks && !r.is_recursive)
         ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
-        ct_page_heading(&d->page,
-                        e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
+        ct_page_heading(&d->page, r.is_recursive
+                                      ? "motion: what each branch carries = its effort"
+                                  : e->nrow ? "motion: M u' = Q + J' lambda"
+                                            : "motion: M u' = Q");
         if (has_blocks)
             put_blocks(d, &blocks);
         else

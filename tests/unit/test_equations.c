@@ -208,6 +208,47 @@ static void what_is_printed_equals_the_engine(void **state)
     }
 }
 
+// The recursive form, which long systems get: cutset - effort = M u' - Q - J' lam for any u' and lam.
+static void the_recursive_form_equals_the_matrix_form(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(systems); i++) {
+        struct fixture f;
+        formulate(&f, systems[i]);
+        const struct ct_equations *e = &f.e;
+        f.d.is_recursive = true;
+        ct_derivation_reduce(&f.d, &f.r);
+        ct_formulate_dynamics(&f.e);
+        ct_ex *residual = CT_NEWN(f.ctx.scratch, ct_ex, e->nu + 1),
+              *want = CT_NEWN(f.ctx.scratch, ct_ex, e->nu + 1);
+        for (size_t k = 0; k < e->nu; k++) {
+            residual[k] = ct_ex_sub(e->x, f.r.cutset[k], f.r.Q[k]);
+            want[k] = ct_ex_neg(e->x, e->Q[k]);
+        }
+        for (size_t k = 0; k < e->nM; k++) {
+            const int row = e->M[k].row, column = e->M[k].column;
+            const ct_ex m = e->M[k].value;
+            want[row] = ct_ex_add(e->x, want[row], ct_ex_mul(e->x, m, e->u[column].derivative));
+            if (row != column)
+                want[column]
+                    = ct_ex_add(e->x, want[column], ct_ex_mul(e->x, m, e->u[row].derivative));
+        }
+        for (size_t k = 0; k < e->nJ; k++) {
+            ct_ex *w = &want[e->J[k].column];
+            *w = ct_ex_sub(e->x, *w, ct_ex_mul(e->x, e->J[k].value, e->row[e->J[k].row].lam));
+        }
+        f.symbol = CT_NEWN(f.ctx.scratch, double, e->x->nsym);
+        for (int k = 0; k < 5; k++) {
+            choose_state(&f);
+            evaluate(&f);
+            const double scale = scale_of(&f, want, e->nu);
+            for (size_t n = 0; n < e->nu; n++)
+                check_equal(&f, systems[i], "row", n, residual[n], want[n], scale);
+        }
+        finish(&f);
+    }
+}
+
 // ---- blocks of beams --------------------------------------------------------------------------------
 
 // Entries of the matrices of a beam as the engine has them, and the lines below its block.
@@ -659,7 +700,7 @@ static char *print(const char *system, unsigned stages, enum ct_equations_format
     size_t n;
     formulate(&f, system);
     FILE *out = open_memstream(&text, &n);
-    assert_true(ct_equations_print(out, f.ctx.scratch, &f.e, &f.m, stages, format));
+    assert_true(ct_equations_print(out, f.ctx.scratch, &f.e, &f.m, stages, format, false));
     fclose(out);
     finish(&f);
     return text;
@@ -699,6 +740,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_printed_equals_the_engine),
+        cmocka_unit_test(the_recursive_form_equals_the_matrix_form),
         cmocka_unit_test(blocks_of_beams_equal_the_engine),
         cmocka_unit_test(text_for_programs_reads_back),
         cmocka_unit_test(pendulum_is_that_of_the_textbook),
