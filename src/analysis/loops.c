@@ -295,12 +295,14 @@ static void make_comparable(struct releases *r)
 }
 
 // Round-off of sums of some hundred terms against the largest reaction of null vectors.
+// Derived: null vectors are good to 1e-12, and a hundred are added.
 static const double nothing = 1e-9;
 
 // The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much = 0.5;
+    const double much
+        = 0.5; // Derived: of the largest, apart from it by far more than round-off
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));
@@ -465,6 +467,7 @@ static void print_releases(const struct printing *p, const struct ct_loops *loop
 
 static void print_loops(const struct printing *p, const struct ct_loops *l)
 {
+    // Layout: of the list
     enum { MOST_SHOWN = 100 };
     for (size_t i = 0; i < l->nloop && i < MOST_SHOWN; i++)
         print_loop(p, l, &l->loop[i]);

@@ -30,6 +30,7 @@ struct modes_page {
 static void differentiate(struct modes_page *p, const double *y0, const double *shape,
                           double *out)
 {
+    // Derived: near the cube root of the unit round-off both are some 1e-11
     const double step = 1e-5;
     struct ct_evaluator *m = p->modes->at.l->m;
     const size_t n = p->animation.ncolumn;

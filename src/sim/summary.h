@@ -22,6 +22,7 @@ const char *ct_sim_solver(const struct ct_sim *sim);
 long ct_sim_freedoms(const struct ct_sim *sim);
 long ct_sim_redundant(const struct ct_sim *sim);
 
+// Layout: of a line
 enum { CT_MOST_START_TEXT = 256 }; // longer names are cut
 /// Coordinates of the start, and of number i what was asked and found, in out; NULL: not of a
 /// joint.
