@@ -129,6 +129,8 @@ const struct cli_option cli_options[] = {
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced",
      "all terminal graph tree cutset circuit reduced"},
+    {"full", 0, NULL, CLI_FLAG, FIELD(full), CLI_EQUATIONS, false,
+     "all lines of lists, of systems of more than 100 speeds, too"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EQUATIONS, false,
      "text, latex, html, c or json", "text latex html c json"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false,

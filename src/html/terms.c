@@ -29,6 +29,7 @@ void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct
     struct ct_equations *e = &sys->equations;
     *t = (struct ct_terms_recording){.stride = 1};
     ct_derivation_init(&t->derivation, a, e, &sys->model, CT_LOOK_HTML);
+    t->derivation.is_recursive = false; // the page shows terms of M u' = Q + J' lambda
     ct_derivation_reduce(&t->derivation, &t->reduced);
     ct_provenance_derive(&t->derivation, &t->reduced, &t->provenance);
     list_expressions(t, a, e);

@@ -31,6 +31,12 @@ const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, siz
 /// The same for programs, under the key "start".
 void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim);
 
+/// Writes keys into the object of a summary.
+typedef void (*ct_summary_more_fn)(struct ct_json *j, const void *user);
+/// As ct_sim_write_summary, with what `more` writes. Raises the guard.
+bool ct_summary_write(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path,
+                      ct_summary_more_fn more, const void *user);
+
 bool ct_is_arm(const struct ct_equations *e, int edge);
 
 /// Is row i the first of its joint among those that depend (row) there? Rows of no joint count for

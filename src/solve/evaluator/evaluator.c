@@ -78,7 +78,7 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
 {
     struct ct_evaluator *m = CT_NEW(a, struct ct_evaluator);
     *m = (struct ct_evaluator){
-        .e = e, .model = model, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
+        .e = e, .model = model, .arena = a, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
     m->at_q = 1 + model->nparameter;
     m->at_u = m->at_q + e->nq;
     m->at_a = m->at_u + e->nu;
