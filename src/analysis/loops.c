@@ -302,8 +302,7 @@ static const double nothing = 1e-9;
 // The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much
-        = 0.5; // Derived: of the largest, apart from it by far more than round-off
+    const double much = 0.5; // Chosen: apart from the largest by far more than round-off
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));

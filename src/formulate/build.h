@@ -26,7 +26,7 @@
 #include "graph/graph.h"
 
 /// Pieces between two nodes above which places on the way are computed on their own.
-/// Default: fewer make equations that read as one sum, more make programs longer. Test: long_chain.
+/// Chosen: fewer make equations that read as one sum, more make programs longer.
 enum { CT_LONG_PATH = 40 };
 
 enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };

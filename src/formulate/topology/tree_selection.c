@@ -189,7 +189,7 @@ static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
                                                const struct ct_formulate_options *o,
                                                const struct ct_tree_pair *p)
 {
-    // Entries for each unknown. Default: sparse rows are worth more unknowns. Test: long_chain.
+    // Entries for each unknown. Chosen: sparse rows are worth more unknowns.
     const double most = 400;
     double n = 0;
     for (size_t i = 1; i < b->model->nbody; i++)

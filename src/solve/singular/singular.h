@@ -21,8 +21,7 @@ enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
 /// Part of its largest value so far that the smallest pivot must have for accelerations to be
 /// computed without a crossing. Derived: they lose 1/part^2 = 16 of accuracy there, a digit.
 #define CT_SINGULAR_PIVOT 0.25
-/// Steps within which a singular configuration is near. Derived: a crossing takes about two steps to
-/// either side.
+/// Steps within which a singular configuration is near. Chosen: four.
 #define CT_SINGULAR_STEPS 4
 
 /// What was passed.
