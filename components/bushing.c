@@ -43,7 +43,8 @@ static ct_ex3 rotation_vector(struct ct_exs *x, const ct_ex33 *R)
     const ct_ex c = ct_ex_scale(
         x, 0.5, ct_ex_sub(x, ct_ex_add(x, R->e[0], ct_ex_add(x, R->e[4], R->e[8])), CT_EX_ONE));
     const ct_ex s2 = ct_ex3_dot(x, s, s);
-    const double small = 1e-6; // |s|^2; the next term of the series, 5/112 |s|^6, is below eps
+    // |s|^2. Derived: the next term of the series, 5/112 |s|^6, is below the unit round-off
+    const double small = 1e-6;
     const ct_ex is_small = ct_ex_mul(x, ct_ex_fun2(x, CT_OP_LT, s2, ct_ex_const(x, small)),
                                      ct_ex_fun2(x, CT_OP_GT, c, CT_EX_ZERO));
     const ct_ex series = ct_ex_add(
@@ -89,10 +90,10 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
 static bool signal(struct ct_build *b, const struct ct_instance *self, const char *name,
                    ct_ex *out)
 {
-    for (size_t i = 0; i < b->dynamics.nload; i++)
-        if (b->dynamics.load[i].self == self)
-            return ct_vector_signal(name, "force", b->dynamics.load[i].force, out)
-                || ct_vector_signal(name, "torque", b->dynamics.load[i].torque, out);
+    for (size_t i = 0; i < b->loads->nload; i++)
+        if (b->loads->load[i].self == self)
+            return ct_vector_signal(name, "force", b->loads->load[i].force, out)
+                || ct_vector_signal(name, "torque", b->loads->load[i].torque, out);
     return false;
 }
 

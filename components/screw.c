@@ -4,6 +4,7 @@
 //   through  axis . T + pitch/(2 pi) axis . F = effort law      5 reactions
 //
 // One coordinate serves both graphs, so the joint is a branch of both trees.
+#include "base/pi.h"
 #include "component/class.h"
 
 static const struct ct_key keys[] = {
@@ -14,10 +15,9 @@ static const struct ct_key keys[] = {
 
 static void motion(struct ct_exs *x, const struct ct_instance *self, struct ct_motion *m)
 {
-    const double two_pi = 6.283185307179586476925286766559;
     const ct_ex3 n = ct_instance_axis(x, self, "axis", 2);
     const ct_ex per_radian
-        = ct_ex_div(x, ct_instance_value(self, "pitch")->e[0], ct_ex_const(x, two_pi));
+        = ct_ex_div(x, ct_instance_value(self, "pitch")->e[0], ct_ex_const(x, 2 * CT_PI));
     ct_ex3 e1, e2;
     ct_axes_normal(x, n, m->value, &e1, &e2);
     m->d = ct_ex3_scale(x, ct_ex_mul(x, per_radian, m->coord[0]), n);

@@ -5,16 +5,12 @@ import { formatNumber } from "./numbers.js";
 import { locate, valueAt } from "./packed.js";
 
 const HEIGHT = 190; // [px]
-// Okabe and Ito (2008): apart without colour vision; dashes tell apart what has the same colour
-const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"];
-const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
-
-const styleOf = (i) => ({
-  stroke: COLOURS[i % COLOURS.length],
-  dash: DASHES[Math.floor(i / COLOURS.length) % DASHES.length],
-});
+const NCOLOUR = 6; // --curve-1 ... of page.css
+const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3]]; // they tell apart what has the same colour
 
 const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const colourOf = (i) => `--curve-${(i % NCOLOUR) + 1}`;
+const dashOf = (i) => DASHES[Math.floor(i / NCOLOUR) % DASHES.length];
 
 // The panels stand in the document: <figure data-columns="0 3">, each with a list of its columns.
 export function createPlots(section, run, clock, lights) {
@@ -49,7 +45,7 @@ export function createPlots(section, run, clock, lights) {
           { ...axis, values: (u, ticks) => ticks.map((t) => `${tickText(t, ticks)}${t === ticks[ticks.length - 1] ? " s" : ""}`), size: 32 },
           { ...axis, values: (u, ticks) => ticks.map((t) => tickText(t, ticks)), size: 64 },
         ],
-        series: [{}, ...columns.map((c, i) => ({ ...styleOf(i), width: 1.6, points: { show: times.length === 1 } }))],
+        series: [{}, ...columns.map((c, i) => ({ stroke: () => variable(colourOf(i)), dash: dashOf(i), width: 1.6, points: { show: times.length === 1 } }))],
         hooks: {
           draw: [(u) => drawClock(u, clock.time)],
           setSelect: [
@@ -88,8 +84,8 @@ export function createPlots(section, run, clock, lights) {
   const figures = [...section.querySelectorAll("figure[data-columns]")];
   for (const figure of figures) {
     figure.querySelectorAll("[data-column] .swatch").forEach((swatch, i) => {
-      const { stroke, dash } = styleOf(i);
-      swatch.style.borderTopColor = stroke;
+      const dash = dashOf(i);
+      swatch.style.borderTopColor = `var(${colourOf(i)})`;
       swatch.style.borderTopStyle = dash.length ? (dash[0] > 4 ? "dashed" : "dotted") : "solid";
     });
     createPanel(figure);
@@ -99,8 +95,9 @@ export function createPlots(section, run, clock, lights) {
     for (const { column, text } of values) text.textContent = formatNumber(valueAt(column, place));
     for (const plot of plots) plot.redraw(false);
   });
-  const dark = matchMedia("(prefers-color-scheme: dark)");
-  dark.addEventListener?.("change", () => plots.forEach((plot) => plot.redraw()));
+  for (const query of ["(prefers-color-scheme: dark)", "print"]) {
+    matchMedia(query).addEventListener("change", () => plots.forEach((plot) => plot.redraw()));
+  }
 }
 
 // A constant stands in the middle; round-off about it is not shown as a motion.

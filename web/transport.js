@@ -36,10 +36,11 @@ export function createTransport(element, clock) {
     if (event.key === "ArrowLeft" || event.key === "ArrowRight")
       clock.seek(clock.time + ((event.key === "ArrowRight" ? 1 : -1) * length) / 100);
   });
+  const elsewhere = [...document.querySelectorAll(".clock")];
   clock.subscribe((t) => {
     slider.value = t;
     slider.setAttribute("aria-valuetext", `${t.toFixed(digits)} s`);
-    time.textContent = `t = ${t.toFixed(digits)} s`;
+    for (const element of [time, ...elsewhere]) element.textContent = `t = ${t.toFixed(digits)} s`;
     play.textContent = clock.playing ? "Pause" : "Play";
     play.setAttribute("aria-pressed", clock.playing);
   });

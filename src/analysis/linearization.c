@@ -90,7 +90,7 @@ static void enter(struct ct_linear *l)
 {
     struct ct_evaluator *m = l->m;
     ct_evaluator_set(m, l->t, l->y);
-    ct_switches_start(m, l->t, l->y, NULL);
+    ct_switches_start(m, l->t, l->y, NULL, NULL);
     ct_memory_update(m);
 }
 

@@ -83,8 +83,8 @@ static bool find_start(const struct ct_build *r, double *start)
     const struct ct_equations *e = r->eqs;
     for (size_t i = 0; i < e->nq; i++)
         start[i] = e->q[i].quaternion == 0;
-    for (size_t i = 0; i < r->ncoordinate; i++) {
-        const struct ct_coordinate *c = &r->coordinate[i];
+    for (size_t i = 0; i < r->topology->ncoordinate; i++) {
+        const struct ct_coordinate *c = &r->kinematics->coordinate[i];
         const struct ct_edge_info *edge = &r->topology->edge[c->edge];
         if (edge->kind != CT_EDGE_JOINT)
             continue;

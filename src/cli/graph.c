@@ -17,6 +17,7 @@ static pid_t start_dot(FILE *source, int out, const char *type)
 {
     const pid_t child = fork();
     if (child == 0) {
+        setpgid(0, 0); // Ctrl-C goes to cotree alone, which ends dot and says so
         cli_interrupt_end();
         if (lseek(fileno(source), 0, SEEK_SET) == 0 && dup2(fileno(source), STDIN_FILENO) >= 0
             && dup2(out, STDOUT_FILENO) >= 0)
@@ -53,7 +54,7 @@ static bool dot_failed(enum end end, int status, size_t n)
 {
     const bool is_missing
         = end == ENDED && status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127;
-    if (cli_is_interrupted()) // dot, too, where the signal came from a terminal; said at the end
+    if (end == INTERRUPTED) // said at the end
         return true;
     if (end == TOO_LONG)
         fprintf(stderr,

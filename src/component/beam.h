@@ -13,6 +13,10 @@
 
 #include "expr/ex.h"
 
+/// Points of the integrals over an element where a section varies. Derived: exact up to degree 15,
+/// as of quartic inertia times squares of cubic shape functions and some digits of other sections.
+enum { CT_ELEMENT_POINTS = 8 };
+
 enum ct_beam_theory { CT_BEAM_EULER_BERNOULLI, CT_BEAM_TIMOSHENKO };
 /// Where the integrals over an element are taken: REDUCED: stiffness at the middle; ONE_POINT:
 /// mass too.

@@ -1,9 +1,8 @@
 // Where the elements of a beam end; see beam.h.
 #include "component/beam.h"
+#include "expr/switches.h"
 
 #include <math.h>
-
-static const double roundoff = 1e-9; // times the length: positions closer than this are one
 
 static void divide_evenly(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, long n)
 {
@@ -24,9 +23,9 @@ void ct_beam_divide(struct ct_exs *x, struct ct_arena *a, struct ct_beam *beam, 
         const double from = k ? beam->cut[k - 1] : 0,
                      to = k < beam->ncut ? beam->cut[k] : length,
                      wanted = (to - from) / length * (double)n;
-        share[k] = (long)fmax(ceil(wanted - roundoff * (double)n), 1);
+        share[k] = (long)fmax(ceil(wanted - CT_SAME_PLACE * (double)n), 1);
         sum += share[k];
-        is_even &= fabs(to / length * (double)n - (double)sum) <= roundoff * (double)n;
+        is_even &= fabs(to / length * (double)n - (double)sum) <= CT_SAME_PLACE * (double)n;
     }
     beam->is_even = is_even;
     if (is_even) {

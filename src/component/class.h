@@ -85,6 +85,7 @@ struct ct_value {
                 // for each; ROTARY: 0 false, 1 true, 3 values
 };
 
+/// Limit: of the coordinates and rows of a class, by the size of arrays.
 enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
 
 /// How a coordinate is measured from the relative motion of the frames, for a joint that is a

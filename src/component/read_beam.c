@@ -2,6 +2,7 @@
 #include "component/read.h"
 
 #include "base/sort.h"
+#include "component/roundoff.h"
 #include "expr/quadrature.h"
 #include "expr/switches.h"
 
@@ -210,7 +211,7 @@ static bool check_deformation(const struct work *w, unsigned known)
 
 static bool check_ends(const struct work *w, const struct ct_value *v, double length)
 {
-    const double roundoff = 1e-12 * length; // as in 0.1 + 0.2
+    const double roundoff = CT_DATA_ROUNDOFF * length;
     double last = 0, end;
     bool ok = true;
     for (size_t i = 0; i < v->n; i++) {
@@ -235,7 +236,7 @@ static void cut_list(const struct work *w)
 {
     struct ct_beam *beam = w->beam;
     ct_ex *end = CT_NEWN(w->r->a, ct_ex, beam->nelement + beam->ncut);
-    const double close = 1e-9 * ct_model_number(w->r->m, beam->length); // as in ct_beam_divide
+    const double close = CT_SAME_PLACE * ct_model_number(w->r->m, beam->length);
     int n = 0, k = 0;
     for (int i = 0; i < beam->nelement; i++) {
         const double to = ct_model_number(w->r->m, beam->end[i]);
@@ -272,6 +273,7 @@ static bool fill_elements(const struct work *w)
 // ---- the section along the axis ----------------------------------------------------------------
 
 // Sample points inside an element for checks of the section; its ends may be jumps or cusps.
+// Limit: of what is checked in advance; the rule of a product of four lines or less.
 enum { NSAMPLE = 5 };
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
@@ -321,10 +323,9 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
 // Relative error of element-wise quadrature of the key's i-th value, against a finer quadrature.
 static double quadrature_error(const struct work *w, const struct ct_value *v, size_t i)
 {
-    enum {
-        POINTS = 8,
-        PARTS = 256
-    }; // as many as the stiffness has; the error of a jump falls with the parts
+    // Derived: a jump in one of 256 parts is off by 0.4 % of its height, so that the two digits
+    // which are printed hold.
+    enum { POINTS = CT_ELEMENT_POINTS, PARTS = 256 };
     double point[POINTS], weight[POINTS], coarse = 0, fine = 0, size = 0, from = 0;
     ct_gauss(POINTS, point, weight);
     for (int k = 0; k < w->beam->nelement; k++) {
@@ -357,7 +358,7 @@ static void cut_elements(const struct work *w)
         = {"E",           "G",  "nu", "density",         "area",
            "Iy",          "Iz", "J",  "mass_per_length", "rotary_inertia",
            "shear_factor"};
-    enum { MOST = 100 };
+    enum { MOST = 100 }; // Limit: jumps of one value, with a warning
     struct ct_beam *beam = w->beam;
     const double length = ct_model_number(w->r->m, beam->length);
     double place[MOST], *cut = NULL;
@@ -382,7 +383,7 @@ static void cut_elements(const struct work *w)
     ct_sort(w->r->ctx->scratch, cut, ncut, sizeof *cut, ascending, NULL);
     size_t kept = 0;
     for (size_t i = 0; i < ncut; i++)
-        if (!kept || cut[i] - cut[kept - 1] > 1e-9 * length) // as in ct_beam_divide
+        if (!kept || cut[i] - cut[kept - 1] > CT_SAME_PLACE * length)
             cut[kept++] = cut[i];
     beam->cut = cut;
     beam->ncut = (int)kept;
@@ -474,7 +475,6 @@ static bool check_section(const struct work *w)
 // elements.
 static ct_ex integrate_mass(const struct work *w)
 {
-    enum { POINTS = 8 };
     struct ct_exs *x = w->r->m->x;
     const struct ct_beam *beam = w->beam;
     const ct_ex m = beam->mass_per_length;
@@ -485,7 +485,8 @@ static ct_ex integrate_mass(const struct work *w)
         return ct_ex_integral(x, m, beam->x, CT_EX_ZERO, beam->length, degree / 2 + 1);
     ct_ex sum = CT_EX_ZERO, from = CT_EX_ZERO;
     for (int i = 0; i < beam->nelement; i++) {
-        sum = ct_ex_add(x, sum, ct_ex_integral(x, m, beam->x, from, beam->end[i], POINTS));
+        sum = ct_ex_add(x, sum,
+                        ct_ex_integral(x, m, beam->x, from, beam->end[i], CT_ELEMENT_POINTS));
         from = beam->end[i];
     }
     return sum;

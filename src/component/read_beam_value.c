@@ -4,7 +4,7 @@
 static bool read_elements(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_key *key, struct ct_value *v)
 {
-    enum { MOST = 10000 };
+    enum { MOST = 10000 }; // Limit: with a message
     if (node->kind != CT_NODE_LIST)
         return ct_read_count(r, node, key->name, 1, &v->count);
     if (!ct_read_list(r, node, 1, MOST, "a list of the places where elements end"))

@@ -125,7 +125,7 @@ static void order(double *a, double *b)
 // I is diagonal.
 static void principal_moments(const double I[6], double lam[3])
 {
-    enum { SWEEPS = 8 }; // they converge quadratically
+    enum { SWEEPS = 8 }; // Derived: they converge quadratically, three digits in the first four
     double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
     for (int n = 0; n < SWEEPS; n++)
         for (int k = 2; k >= 0; k--)
@@ -153,7 +153,7 @@ static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
     for (int i = 0; i < 6; i++)
         I[i] /= largest; // so that cubes neither over- nor underflow
     principal_moments(I, lam);
-    // moments are copied from data sheets and programs that print six or seven digits
+    // Derived: moments are copied from data sheets and programs that print six or seven digits
     const double roundoff = 1e-6 * lam[2];
     if (lam[0] >= -roundoff && lam[2] <= lam[0] + lam[1] + roundoff)
         return true;

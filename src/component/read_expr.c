@@ -1,6 +1,8 @@
 // Expressions of the file and the names that are known in them: parameters, signals, frames.
 #include "component/read.h"
 
+#include "base/pi.h"
+#include "component/roundoff.h"
 #include "expr/parse.h"
 #include "expr/unit.h"
 
@@ -250,7 +252,7 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
     return false;
 }
 
-const double ct_read_full_turn = 6.283185307179586;
+const double ct_read_full_turn = 2 * CT_PI; // Definition: [rad]
 
 // Warn of angles that are probably degrees: a number beyond a full turn without a unit, or a
 // parameter that is such an integer, which no multiple of pi is.
@@ -362,14 +364,13 @@ static bool read_structural_number(struct ct_reader *r, ct_ex e, double *v)
 bool ct_read_count(struct ct_reader *r, const struct ct_node *node, const char *name,
                    long least, long *count)
 {
-    enum { MOST = 10000 };
+    enum { MOST = 10000 }; // Limit: with a message
     ct_ex e;
     double v;
     *count = least;
     if (!ct_read_expr(r, node, 0, "", &e) || !read_structural_number(r, e, &v))
         return false;
-    // an integer computed from parameters: n * eps of round-off
-    if (fabs(v - round(v)) > 1e-9 * fabs(v))
+    if (fabs(v - round(v)) > CT_DATA_ROUNDOFF * fabs(v))
         return ct_error(r->ctx, node->mark, CT_E_RANGE, "'%s' is %g; it must be an integer",
                         name, v);
     if (!(v > (double)least - 0.5 && v <= MOST))

@@ -118,7 +118,7 @@ static double field_at(const struct field_check *c, ct_ex e, double place)
 // Largest of its values inside and at the ends; not finite if one is not.
 static double size_of(const struct field_check *c, ct_ex e)
 {
-    enum { PLACES = 33 };
+    enum { PLACES = 33 }; // Limit: of the search for the largest value, which is a scale
     double most = 0;
     for (int i = 0; i < PLACES; i++) {
         const double v = fabs(field_at(c, e, c->length * i / (PLACES - 1)));
@@ -132,6 +132,7 @@ static double size_of(const struct field_check *c, ct_ex e)
 static bool vanishes_at(const struct field_check *c, ct_ex e, double size, double place,
                         const char *what, enum ct_code code)
 {
+    // Derived: round-off, or a shape with coefficients of ten digits
     const double roundoff = 1e-9, v = field_at(c, e, place);
     if (fabs(v) <= roundoff * size)
         return true;

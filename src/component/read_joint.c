@@ -316,7 +316,7 @@ static bool check_start(struct ct_reader *r, const struct joint *j, size_t i, co
     if (!given->given || i >= given->n || given->hole[i] || !ct_read_number(r, given->e[i], &v)
         || !value_at_start(r, driven, &d))
         return true;
-    // a start copied from a computation of the driver, printed with twelve digits
+    // Derived: a start copied from a computation of the driver, printed with nine digits
     if (fabs(v - d) <= 1e-9 * fmax(1, fabs(d)))
         return true;
     ct_error(r->ctx, given->at[i], CT_E_INITIAL,

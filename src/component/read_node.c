@@ -7,7 +7,7 @@
 
 bool ct_read_wants_suggestions(const struct ct_reader *r)
 {
-    enum { MOST = 200 };
+    enum { MOST = 200 }; // Limit: nobody reads more errors
     return r->ctx->nerror < MOST;
 }
 

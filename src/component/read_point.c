@@ -1,6 +1,8 @@
 // Points of bodies: position and orientation in the body frame, on beams along their axis.
 #include "component/read.h"
 
+#include "component/roundoff.h"
+
 // A point of a beam turns with the section it sits on, which must be one of the beam's.
 static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct ct_mark at)
 {
@@ -8,8 +10,8 @@ static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct 
     double x, l;
     if (!length->n || !ct_read_number(r, length->e[0], &l) || !(l > 0)
         || !ct_read_number(r, f->at.e[0], &x))
-        return true;                   // which has been reported
-    const double roundoff = 1e-12 * l; // as in 0.1 + 0.2
+        return true; // which has been reported
+    const double roundoff = CT_DATA_ROUNDOFF * l;
     if (x >= -roundoff && x <= l + roundoff)
         return true;
     return ct_error(r->ctx, at, CT_E_RANGE,

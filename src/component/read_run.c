@@ -1,6 +1,7 @@
 // What is asked of a run: outputs and simulation.
 #include "component/read.h"
 
+#include "component/roundoff.h"
 #include "expr/parse.h"
 
 #include <limits.h>
@@ -151,7 +152,7 @@ static bool read_optional(struct ct_reader *r, const struct ct_node *section, co
     return !node || read_bounded(r, node, key, unit, 0, true, value);
 }
 
-static const double most_samples = 1e9;
+static const double most_samples = 1e9; // Limit: of a file, with a message
 
 static bool read_samples(struct ct_reader *r, const struct ct_node *node,
                          struct ct_simulation *s)
@@ -160,8 +161,7 @@ static bool read_samples(struct ct_reader *r, const struct ct_node *node,
     double v;
     if (!read_bounded(r, node, "samples", "", at_rest ? 1 : 2, false, &v))
         return false;
-    // an integer computed from parameters: n * eps of round-off
-    if (fabs(v - round(v)) > 1e-9 * v)
+    if (fabs(v - round(v)) > CT_DATA_ROUNDOFF * v)
         return ct_error(r->ctx, node->mark, CT_E_RANGE,
                         "'samples' is %g; it must be an integer", v);
     if (v > most_samples)
@@ -177,7 +177,7 @@ static bool read_interval(struct ct_reader *r, const struct ct_node *node,
     if (!read_bounded(r, node, "interval", "s", 0, true, &s->interval))
         return false;
     // 10/0.01 may come out as 1000.0000000000001: that is no further sample
-    const double steps = ceil(s->duration / s->interval * (1 - 1e-12));
+    const double steps = ceil(s->duration / s->interval * (1 - CT_DATA_ROUNDOFF));
     if (!(steps < most_samples))
         return ct_error(r->ctx, node->mark, CT_E_RANGE,
                         "an 'interval' of %g s gives more than %g samples", s->interval,
@@ -254,6 +254,7 @@ void ct_read_simulation(struct ct_reader *r)
         = {"duration", "samples", "interval",   "tolerance", "absolute",
            "method",   "step",    "rate_jumps", "small"};
     struct ct_simulation *s = &r->m->simulation;
+    // Default: accuracy against time, as docs/format.md tells. Test: usage.
     *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
     s->small.frame = -1;
     s->mark = (struct ct_mark){r->m->file, 0, 0};

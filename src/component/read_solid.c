@@ -86,7 +86,7 @@ static bool read_sizes(struct ct_reader *r, const struct ct_node *node, size_t n
 
 static bool read_lines(struct ct_reader *r, const struct ct_node *node, struct ct_solid *s)
 {
-    enum { MOST = 100000 };
+    enum { MOST = 100000 }; // Limit: with a message
     if (!ct_read_list(r, node, 2, MOST, "a list of at least two points [x, y, z]"))
         return false;
     s->npoint = node->n;

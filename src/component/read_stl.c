@@ -17,8 +17,9 @@
 #include <string.h>
 #include <strings.h>
 
+// Definition: bytes before the triangles and of one, numbers of its corners, of binary STL.
 enum { HEAD = 84, RECORD = 50, CORNERS = 9 };
-static const size_t max_bytes = (size_t)64 << 20;
+static const size_t max_bytes = (size_t)64 << 20; // Limit: with a message
 
 // ---- binary -----------------------------------------------------------------------------------
 

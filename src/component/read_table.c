@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-static const size_t max_bytes = (size_t)256 << 20;
+static const size_t max_bytes = (size_t)256 << 20; // Limit: with a message
 
 const char *ct_read_path_beside(struct ct_reader *r, const char *file)
 {

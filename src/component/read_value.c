@@ -73,7 +73,7 @@ static bool is_one_turn(const struct ct_node *node)
 bool ct_read_rotations(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                        struct ct_turn **turn, size_t *nturn)
 {
-    enum { MOST = 1000 };
+    enum { MOST = 1000 }; // Limit: with a message
     *nturn = 0;
     *turn = NULL;
     if (!ct_read_list(r, node, 1, MOST, "[axis, angle] or a list of such"))
@@ -121,6 +121,7 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
             return true;
     for (int i = 0; i < 3; i++)
         c += u[i] * u[3 + i];
+    // Derived: axes that are given with six digits; round-off is some 1e-15
     if (1 - c * c > 1e-12)
         return true;
     return ct_error(r->ctx, v->mark, CT_E_AXIS, "the two axes are parallel");

@@ -178,11 +178,11 @@ static void push_beam(struct ct_build *b, struct values *v, const struct ct_flex
 static void push_load(struct ct_build *b, struct values *v, struct ct_scene_force *force)
 {
     force->first = SIZE_MAX;
-    for (size_t i = 0; i < b->dynamics.nload && force->from < 0; i++)
-        if (b->dynamics.load[i].self == force->self) {
+    for (size_t i = 0; i < b->loads->nload && force->from < 0; i++)
+        if (b->loads->load[i].self == force->self) {
             force->first = v->n;
-            push3(v, b->dynamics.load[i].force);
-            push3(v, b->dynamics.load[i].torque);
+            push3(v, b->loads->load[i].force);
+            push3(v, b->loads->load[i].torque);
             return;
         }
 }

@@ -78,7 +78,7 @@ static void record_elsewhere(struct ct_exported *w, const double *y)
     double *mode = m->input + m->at_switch;
     const double *before = copy(w->sim->own.scratch, mode, m->e->nswitch);
     ct_evaluator_set(m, 0, y);
-    ct_switches_start(m, 0, y, NULL);
+    ct_switches_start(m, 0, y, NULL, NULL);
     record(w, 0, y);
     if (m->e->nswitch)
         memcpy(mode, before, m->e->nswitch * sizeof *mode);

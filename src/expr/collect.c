@@ -22,7 +22,7 @@ static struct ct_collector *start(struct ct_exs *x, const struct ct_collect_opti
     return c;
 }
 
-// Tree sizes of the nodes below e by id; the room grows with the store.
+// Tree sizes of the nodes below e, in the order of the walk.
 struct sizes {
     double *at;
     size_t cap;
@@ -31,19 +31,19 @@ struct sizes {
 static double tree_size(struct sizes *s, struct ct_exs *x, struct ct_arena *arena, ct_ex e)
 {
     const size_t n = ct_ex_walk(x, &e, 1);
-    if (!s->at || s->cap < x->nnode) {
-        s->cap = 2 * x->nnode;
+    if (s->cap < n) {
+        s->cap = 2 * n;
         s->at = CT_NEWN(arena, double, s->cap);
     }
     for (size_t k = 0; k < n; k++) {
-        const uint32_t id = x->stack[k];
-        const struct ct_exnode *node = &x->node[id];
+        const struct ct_exnode *node = &x->node[x->stack[k]];
         const uint32_t arg[3] = {node->a, node->b, node->c};
-        s->at[id] = 1;
+        x->memo[x->stack[k]].id = (uint32_t)k;
+        s->at[k] = 1;
         for (int i = 0; i < ct_op_info[node->op].narg; i++)
-            s->at[id] += s->at[arg[i]];
+            s->at[k] += s->at[x->memo[arg[i]].id];
     }
-    return s->at[e.id];
+    return s->at[n - 1];
 }
 
 double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e)
@@ -62,10 +62,9 @@ static ct_ex finish(struct ct_collector *c, struct ct_poly p)
 // operands are collected.
 struct descent {
     struct ct_collector *c;
-    const struct ct_poly *expanded; // by id
     struct sizes sizes;
-    ct_ex *done; // by id, 0 where not yet collected
-    size_t left; // nodes that may still be tried: a try can take milliseconds
+    struct ct_pairs done; // by node: what it was collected to
+    size_t left;          // nodes that may still be tried: a try can take milliseconds
 };
 
 static ct_ex collect_node(struct descent *d, ct_ex e);
@@ -91,16 +90,18 @@ static ct_ex collect_operands(struct descent *d, ct_ex e)
 static ct_ex collect_node(struct descent *d, ct_ex e)
 {
     struct ct_exs *x = d->c->x;
-    if (d->done[e.id].id || !d->left)
-        return d->done[e.id].id ? d->done[e.id] : e;
+    const int done = ct_pairs_get(&d->done, (int)e.id, 0);
+    if (done >= 0 || !d->left)
+        return done >= 0 ? (ct_ex){(uint32_t)done} : e;
     d->left--;
-    ct_ex r = finish(d->c, d->expanded[e.id]);
+    ct_ex r = finish(d->c, ct_expanded(d->c, e.id));
     const double size = tree_size(&d->sizes, x, d->c->arena, e);
     if (tree_size(&d->sizes, x, d->c->arena, r) > size)
         r = collect_operands(d, e);
     if (tree_size(&d->sizes, x, d->c->arena, r) > size)
         r = e;
-    return d->done[e.id] = r;
+    ct_pairs_put(d->c->arena, &d->done, (int)e.id, 0, (int)r.id);
+    return r;
 }
 
 struct attempt {
@@ -113,8 +114,7 @@ static struct attempt attempt(struct ct_exs *x, ct_ex e,
 {
     struct ct_collector *c = start(x, options, early);
     struct descent d = {.c = c, .left = 100};
-    d.expanded = ct_expand(c, e);
-    d.done = CT_NEWN(c->arena, ct_ex, (size_t)e.id + 1);
+    ct_expand(c, e);
     return (struct attempt){collect_node(&d, e), c->bundled, c->nangle > 0};
 }
 
@@ -234,7 +234,7 @@ static struct form form_by_terms(struct ct_exs *x, ct_ex e, const ct_ex *s, size
 {
     struct ct_collector *c = start(x, options, early);
     struct form f = {.coefficient = CT_NEWN(c->arena, ct_ex, n)};
-    const struct ct_poly p = ct_expand(c, e)[e.id];
+    const struct ct_poly p = ct_expand(c, e);
     f.bundled = c->bundled;
     f.linear = linear_by_terms(c, p, s, n, f.coefficient, &f.rest);
     f.size = ct_ex_tree_size(x, c->arena, f.rest);

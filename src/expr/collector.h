@@ -5,6 +5,7 @@
 #ifndef CT_EXPR_COLLECTOR_H
 #define CT_EXPR_COLLECTOR_H
 
+#include "base/pairs.h"
 #include "expr/ex.h"
 #include "expr/polynomial.h"
 
@@ -31,9 +32,10 @@ struct ct_collector {
     size_t natom, atom_cap;
     struct ct_angle *angle;
     size_t nangle, angle_cap;
-    uint32_t *atom_of;  // by node: 1 + atom
-    uint32_t *angle_of; // by node: 1 + the angle with this argument
-    size_t of_cap;
+    struct ct_poly *expanded; // of the nodes below the one expanded last
+    size_t nexpanded, expanded_cap;
+    // what a node has: its atom, the angle with this argument, its place in `expanded`
+    struct ct_pairs atom_of, angle_of, place_of;
     bool early; // merge the pairs of each sum on the way up, see expand.c
     bool has_roots;
     bool bundled; // a sum was too long and became an atom
@@ -49,8 +51,10 @@ void ct_collector_add_quaternion(struct ct_collector *c, const ct_ex p[4]);
 struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op,
                                  struct ct_poly argument);
 
-/// e and the nodes below it as polynomials, by id.
-struct ct_poly *ct_expand(struct ct_collector *c, ct_ex e);
+/// e as a polynomial. Cost: what is expanded; nothing of the size of the store.
+struct ct_poly ct_expand(struct ct_collector *c, ct_ex e);
+/// The same of a node below the one expanded last.
+struct ct_poly ct_expanded(const struct ct_collector *c, uint32_t node);
 /// p by the identities of sines and cosines, where that is shorter.
 struct ct_poly ct_identity_apply(struct ct_collector *c, struct ct_poly p);
 /// The same with pairs of terms only, which costs little.

@@ -22,7 +22,7 @@ struct list {
     uint8_t size; // room for 2^size
 };
 
-enum { NSIZE = 32 };
+enum { NSIZE = 32 }; // Definition: bits of a length, one list for each power of two
 
 struct walk {
     struct ct_exs *x;

@@ -21,10 +21,22 @@ double ct_op_apply(enum ct_op op, double a, double b, double c)
     return NAN;
 }
 
-// Interval i with x[i] <= at <= x[i + 1].
+// Interval i with x[i] <= at <= x[i + 1]. The search begins where `at` were among equal intervals, and
+// widens by doubling: a constant cost for those, that of a bisection for any others.
 static size_t find_interval(const struct ct_table *t, double at)
 {
-    size_t low = 0, high = t->n - 1;
+    const size_t last = t->n - 1;
+    const double guess = (at - t->x[0]) / (t->x[last] - t->x[0]) * (double)last;
+    size_t low = !(guess > 0) ? 0 : guess < (double)last ? (size_t)guess : last - 1;
+    size_t high = low + 1;
+    for (size_t step = 1; low > 0 && t->x[low] > at; step *= 2) {
+        high = low;
+        low -= step < low ? step : low;
+    }
+    for (size_t step = 1; high < last && t->x[high] <= at; step *= 2) {
+        low = high;
+        high += step < last - high ? step : last - high;
+    }
     while (high - low > 1) {
         const size_t middle = (low + high) / 2;
         if (t->x[middle] <= at)

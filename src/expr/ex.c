@@ -13,9 +13,10 @@ const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-// Initial capacities of an empty store and of a copy, which is made to grow.
+// Limit: memory of an empty store and of a copy, which is made to grow.
 enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
-// Longest list of nodes with one newest operand; further ones are in the hash table.
+// Limit: time to walk the list of nodes with one newest operand; further ones are in the hash
+// table, which starts with so many places.
 enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
 
 static bool is_node(const struct ct_exnode *m, const struct ct_exnode *n)

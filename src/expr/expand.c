@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Terms made before expansion stops: bounds time and memory; beyond, sums stay as they are.
+// Limit: terms made before expansion stops, which bounds time and memory. Beyond, sums stay as
+// they are.
 static const size_t budget = 1000000;
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,
@@ -24,22 +25,6 @@ void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena
 
 // ---- atoms ------------------------------------------------------------------------------------
 
-static void reach(struct ct_collector *c, uint32_t id)
-{
-    if (id < c->of_cap)
-        return;
-    const size_t cap = 2 * (size_t)id + 64;
-    uint32_t *atom_of = CT_NEWN(c->arena, uint32_t, cap);
-    uint32_t *angle_of = CT_NEWN(c->arena, uint32_t, cap);
-    if (c->of_cap) {
-        memcpy(atom_of, c->atom_of, c->of_cap * sizeof *atom_of);
-        memcpy(angle_of, c->angle_of, c->of_cap * sizeof *angle_of);
-    }
-    c->atom_of = atom_of;
-    c->angle_of = angle_of;
-    c->of_cap = cap;
-}
-
 static uint32_t new_atom(struct ct_collector *c, struct ct_atom atom)
 {
     CT_PUSH(c->arena, c->atom, c->natom, c->atom_cap, atom);
@@ -48,10 +33,12 @@ static uint32_t new_atom(struct ct_collector *c, struct ct_atom atom)
 
 uint32_t ct_collector_atom(struct ct_collector *c, ct_ex e)
 {
-    reach(c, e.id);
-    if (!c->atom_of[e.id])
-        c->atom_of[e.id] = new_atom(c, (struct ct_atom){.e = e}) + 1;
-    return c->atom_of[e.id] - 1;
+    const int known = ct_pairs_get(&c->atom_of, (int)e.id, 0);
+    if (known >= 0)
+        return (uint32_t)known;
+    const uint32_t atom = new_atom(c, (struct ct_atom){.e = e});
+    ct_pairs_put(c->arena, &c->atom_of, (int)e.id, 0, (int)atom);
+    return atom;
 }
 
 void ct_collector_add_quaternion(struct ct_collector *c, const ct_ex p[4])
@@ -109,19 +96,19 @@ static double leading_coefficient(const struct ct_collector *c, struct ct_poly p
 static const struct ct_angle *find_angle(struct ct_collector *c, struct ct_poly argument)
 {
     const ct_ex e = ct_regroup(c, argument);
-    reach(c, e.id);
-    if (!c->angle_of[e.id]) {
-        const uint32_t angle = (uint32_t)c->nangle + 1;
-        struct ct_atom sine = {.angle = angle, .is_sine = true}, cosine = {.angle = angle};
-        sine.e = ct_ex_fun(c->x, CT_OP_SIN, e);
-        cosine.e = ct_ex_fun(c->x, CT_OP_COS, e);
-        struct ct_angle a = {.argument = argument};
-        a.sine = new_atom(c, sine);
-        a.cosine = new_atom(c, cosine);
-        CT_PUSH(c->arena, c->angle, c->nangle, c->angle_cap, a);
-        c->angle_of[e.id] = angle;
-    }
-    return &c->angle[c->angle_of[e.id] - 1];
+    const int known = ct_pairs_get(&c->angle_of, (int)e.id, 0);
+    if (known >= 0)
+        return &c->angle[known];
+    const uint32_t number = (uint32_t)c->nangle + 1;
+    struct ct_atom sine = {.angle = number, .is_sine = true}, cosine = {.angle = number};
+    sine.e = ct_ex_fun(c->x, CT_OP_SIN, e);
+    cosine.e = ct_ex_fun(c->x, CT_OP_COS, e);
+    struct ct_angle a = {.argument = argument};
+    a.sine = new_atom(c, sine);
+    a.cosine = new_atom(c, cosine);
+    ct_pairs_put(c->arena, &c->angle_of, (int)e.id, 0, (int)c->nangle);
+    CT_PUSH(c->arena, c->angle, c->nangle, c->angle_cap, a);
+    return &c->angle[c->nangle - 1];
 }
 
 struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op, struct ct_poly argument)
@@ -197,7 +184,7 @@ static struct ct_poly reduce_roots(struct ct_collector *c, struct ct_poly p)
     return p;
 }
 
-// Powers a reader would not want multiplied out any further; far from the range of exponents, too.
+// Limit: powers beyond this stay as they are; sums of exponents stay far from the range of int32_t.
 enum { LARGEST_EXPONENT = 100 };
 
 static int32_t largest_exponent(const struct ct_collector *c, struct ct_poly p)
@@ -271,7 +258,7 @@ static struct ct_poly root(struct ct_collector *c, struct ct_poly a)
     if (ct_ex_node(c->x, e)->op == CT_OP_SQRT) {
         struct ct_poly *square = CT_NEW(c->arena, struct ct_poly);
         *square = a;
-        c->atom[c->atom_of[e.id] - 1].square = square;
+        c->atom[ct_collector_atom(c, e)].square = square;
         c->has_roots = true;
     }
     return p;
@@ -305,13 +292,18 @@ static struct ct_poly function(struct ct_collector *c, const struct ct_exnode *n
                                : ct_ex_fun2(c->x, (enum ct_op)n->op, e[0], e[1]));
 }
 
-static struct ct_poly expand_node(struct ct_collector *c, ct_ex e, const struct ct_poly *done)
+struct ct_poly ct_expanded(const struct ct_collector *c, uint32_t node)
+{
+    return c->expanded[ct_pairs_get(&c->place_of, (int)node, 0)];
+}
+
+static struct ct_poly expand_node(struct ct_collector *c, ct_ex e)
 {
     const struct ct_exnode n = *ct_ex_node(c->x, e);
     const uint32_t arg[3] = {n.a, n.b, n.c};
     struct ct_poly p[3] = {{0}};
     for (int k = 0; k < ct_op_info[n.op].narg; k++)
-        p[k] = done[arg[k]];
+        p[k] = ct_expanded(c, arg[k]);
     switch (n.op) {
     case CT_OP_CONST:
     case CT_OP_SYM:
@@ -338,14 +330,18 @@ static struct ct_poly expand_node(struct ct_collector *c, ct_ex e, const struct 
     }
 }
 
-struct ct_poly *ct_expand(struct ct_collector *c, ct_ex e)
+struct ct_poly ct_expand(struct ct_collector *c, ct_ex e)
 {
     const size_t n = ct_ex_walk(c->x, &e, 1);
     uint32_t *id
         = CT_NEWN(c->arena, uint32_t, n); // the walk's own list holds until the next walk
-    struct ct_poly *done = CT_NEWN(c->arena, struct ct_poly, (size_t)e.id + 1);
     memcpy(id, c->x->stack, n * sizeof *id);
-    for (size_t k = 0; k < n; k++)
-        done[id[k]] = expand_node(c, (ct_ex){id[k]}, done);
-    return done;
+    c->place_of = (struct ct_pairs){0};
+    c->nexpanded = 0;
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_poly p = expand_node(c, (ct_ex){id[k]});
+        ct_pairs_put(c->arena, &c->place_of, (int)id[k], 0, (int)c->nexpanded);
+        CT_PUSH(c->arena, c->expanded, c->nexpanded, c->expanded_cap, p);
+    }
+    return ct_expanded(c, e.id);
 }

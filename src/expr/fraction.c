@@ -1,18 +1,21 @@
 // See fraction.h.
 #include "expr/fraction.h"
+#include "base/pi.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-// Bounds on numerator and denominator: [v, 2 v] has at most 0.3 largest_product such fractions
-// among 4.5e15 doubles, so a match by chance is unlikely (1e-7). Beam elements have divisors up to
-// 138600.
-static const double largest_divisor = 1e6, largest_number = 1e9, largest_product = 1e9;
+// Numerator times denominator. Derived: [v, 2 v] has at most 0.3e9 such fractions among 4.5e15
+// doubles, so that a number is within 8 of one by chance in one case of 10^6.
+static const double largest_product = 1e9;
+// Default: divisors of beam elements, up to 138600, and few others are shown. Test: fraction.
+static const double largest_divisor = 1e6;
+// Derived: a number that up to sixteen operations give, each of which rounds by half a unit.
 static const double few_roundoffs = 8 * DBL_EPSILON;
-static const double many_roundoffs = 64 * DBL_EPSILON; // of an integral over an element
-static const double pi = 3.14159265358979323846;
+// Derived: an integral over an element is a sum of up to 64 products, and products and sums round.
+static const double many_roundoffs = 64 * DBL_EPSILON;
 
 static bool is_short(double v)
 {
@@ -25,12 +28,11 @@ static bool nearest(double v, double tolerance, double *n, double *d)
 {
     const double size = fabs(v);
     double p0 = 0, p = 1, q0 = 1, q = 0, x = size; // the last two convergents
-    if (!(size < largest_number))
+    if (!(size < largest_product))
         return false;
     for (;;) {
         const double whole = floor(x), next_p = whole * p + p0, next_q = whole * q + q0;
-        if (next_q > largest_divisor || next_p > largest_number
-            || next_p * next_q > largest_product)
+        if (next_q > largest_divisor || next_p * next_q > largest_product)
             return false;
         p0 = p;
         q0 = q;
@@ -88,9 +90,13 @@ double ct_fraction_tidy(double v)
 int ct_fraction_of_pi(double v, double *n, double *d)
 {
     static const int powers[] = {1, 2, -1, -2};
-    const double most = 1000, tolerance = 4 * DBL_EPSILON;
+    // Derived: the power and the division round, and so do v and what it was computed from.
+    const double tolerance = 4 * DBL_EPSILON;
+    // Derived: four powers with 0.6e6 fractions each meet a double by chance in one case of 10^9.
+    const double most = 1000;
     for (size_t i = 0; i < sizeof powers / sizeof *powers && !is_short(v); i++)
-        if (nearest(v / pow(pi, powers[i]), tolerance, n, d) && fabs(*n) <= most && *d <= most)
+        if (nearest(v / pow(CT_PI, powers[i]), tolerance, n, d) && fabs(*n) <= most
+            && *d <= most)
             return powers[i];
     return 0;
 }

@@ -297,7 +297,7 @@ static struct turn add_turns(struct ct_polys *ps, struct turn a, struct turn b, 
     return (struct turn){ct_poly_add(ps, sc, sign, cs), ct_poly_add(ps, cc, -sign, ss)};
 }
 
-// Whole multiples up to this are multiplied out: cos(2 q) = cos^2 q - sin^2 q.
+// Whole multiples up to this are multiplied out: cos(2 q) = cos^2 q - sin^2 q. XXX
 enum { LARGEST_MULTIPLE = 4 };
 
 static struct turn expand_angle(struct ct_collector *c, struct ct_poly argument)

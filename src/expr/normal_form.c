@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-// Terms of a sum, as many as collecting expands (collect.c): formulas that are printed term by term have fewer.
+// Limit: terms of a sum, which bounds time and memory; two forms of more terms are not compared.
 enum { MOST_TERMS = 2000 };
 // A multiple of an angle beyond this stays as it is: cos(8 a) has 8 terms.
 enum { MOST_TURNS = 8 };
@@ -192,7 +192,7 @@ bool ct_normal_monomials(struct ct_normal_store *s, ct_ex e, struct ct_normal_mo
     *n = 0;
     s->c.bundled = false;
     s->c.spent = 0;
-    struct ct_poly p = ct_expand(&s->c, e)[e.id];
+    struct ct_poly p = ct_expand(&s->c, e);
     if (s->c.bundled || !normalise(s, &p))
         return false;
     for (size_t i = 0; i < p.n; i++)

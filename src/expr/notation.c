@@ -11,7 +11,8 @@
 const char *ct_number_text(struct ct_arena *a, double v)
 {
     char s[40];
-    if (v == floor(v) && fabs(v) < 1e7) // 60, not 6e+01
+    // Layout: whole numbers of up to seven digits are written out: 60, not 6e+01
+    if (v == floor(v) && fabs(v) < 1e7)
         return ct_arena_printf(a, "%.0f", v);
     for (int digits = 1; digits <= 17; digits += digits < 15 ? 14 : 1) {
         snprintf(s, sizeof s, "%.*g", digits, v);
@@ -221,7 +222,8 @@ static double fraction_width(const char **at, const char *end, double size)
 // Up to the end or the brace that closes; is_one: one item, a sign, a command or a group.
 static double width_of(const char **at, const char *end, double size, bool is_one)
 {
-    const double script = 0.8; // letters of 7 pt are wider for their size
+    const double script
+        = 0.8; // Layout: letters of 7 pt, which are wider for their size than of 10
     double width = 0;
     while (*at < end && **at != '}') {
         const char c = *(*at)++;

@@ -1,6 +1,6 @@
 // Recursive descent over one line of text; the grammar is in parse.h.
 #include "expr/parse.h"
-
+#include "base/pi.h"
 #include "expr/character.h"
 #include "expr/quantity.h"
 #include "expr/unit.h"
@@ -8,9 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
-// longer or deeper than anyone writes, short enough that walks over the result may recurse
+// Limit: longer or deeper than anyone writes, short enough that walks over the result may recurse
 enum { MAX_LENGTH = 16384, MAX_DEPTH = 100 };
 
 static const struct {
@@ -128,7 +126,7 @@ static bool is_known(const struct ct_scope *s, const char *name)
 
 static void report_unknown_name(struct parser *s, const char *name, const char *start)
 {
-    // a search costs all names each time; after so many errors nobody reads on
+    // Limit: a search compares all names each time, and after so many errors nobody reads on
     enum { MOST_SUGGESTIONS = 200 };
     const char *near = s->ctx->nerror < MOST_SUGGESTIONS
                          ? ct_nearest(name, s->scope->known, s->scope->nknown)
@@ -161,7 +159,7 @@ static bool parse_plain_name(struct parser *s, const char *name, const char *sta
     const char *why = "";
     *e = CT_EX_ZERO;
     if (strcmp(name, "pi") == 0) {
-        *e = ct_ex_const(s->scope->x, PI);
+        *e = ct_ex_const(s->scope->x, CT_PI);
         return true;
     }
     enum ct_name_result result = CT_NAME_UNKNOWN;
@@ -252,7 +250,7 @@ static bool report_unknown_function(struct parser *s, const char *name, const ch
 // p stands behind the opening parenthesis
 static bool parse_call(struct parser *s, const char *name, const char *start, ct_ex *e)
 {
-    enum { MOST = 64 };
+    enum { MOST = 64 }; // Limit: arguments of a call
     ct_ex arg[MOST];
     const int f = find_function(name);
     if (f < 0)
@@ -372,6 +370,7 @@ static bool parse_unary(struct parser *s, ct_ex *e)
 
 // Result of a chain of operators. A chain of n terms is summed in parts of PART, so that it nests
 // no deeper than PART + n / PART instead of n: walks over it recurse.
+// Limit: of that depth; MAX_LENGTH allows n of 8192, so 528 levels.
 enum { PART = 16 };
 struct row {
     ct_ex whole, part; // whole: of the parts that are complete

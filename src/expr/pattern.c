@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 64 };
+enum { WIDTH = 64 }; // Definition: bits of a uint64_t
 
 struct word {
     uint64_t bits;

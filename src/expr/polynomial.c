@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-// A coefficient is the sum of some tens of products, each rounded: 16 eps of the largest is noise.
+// Derived: a coefficient is the sum of up to 32 products, each rounded by half a unit: so much of
+// the largest is noise.
 static const double noise = 16 * DBL_EPSILON;
 
 static bool is_noise(const struct ct_term *t)
@@ -86,7 +87,7 @@ uint32_t ct_mono_atom(struct ct_polys *ps, uint32_t atom, int32_t exponent)
     return intern(ps, &p, exponent != 0);
 }
 
-// Monomials are short, those that are not get their room from the arena.
+// Limit: of the stack; longer monomials get their room from the arena.
 enum { SHORT = 32 };
 
 uint32_t ct_mono_times(struct ct_polys *ps, uint32_t a, uint32_t b)

@@ -129,6 +129,7 @@ static const char *without_group(struct ct_arena *a, const char *s, const struct
 // Too wide for a line that is indented.
 static bool is_wide(const struct ct_printer *pr, const char *s)
 {
+    // Layout: [pt], about what stands left of a term
     const size_t indent = 40, line = pr->p.line ? pr->p.line : CT_LATEX_LINE;
     return ct_latex_width(s, strlen(s)) + indent > line;
 }
@@ -390,7 +391,7 @@ static const char *symbol_text(const struct ct_printer *pr, const struct ct_sym 
     }
 }
 
-// Parentheses within parentheses: far beyond reading, well within the stack.
+// Limit: of the stack, for parentheses within parentheses; deeper ones are printed as "...".
 enum { DEEPEST = 500 };
 
 // Is e printed as a sum of products, of one too?

@@ -75,7 +75,7 @@ const char *ct_latex_quoted(struct ct_arena *a, const char *name);
 /// Width of LaTeX mathematics (length) on the page [pt], in Computer Modern of 10 pt, to a few per
 /// cent.
 size_t ct_latex_width(const char *s, size_t length);
-/// Width of a line [pt]: that of the class article at 10 pt, 345 pt; a fraction with a part that
+/// Layout: width of a line [pt], that of the class article at 10 pt, 345 pt; a fraction with a part that
 /// is wider is printed as a product.
 enum { CT_LATEX_LINE = 345 };
 /// A C identifier from a name: characters that are not allowed become _, a prime becomes d.

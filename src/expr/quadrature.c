@@ -1,5 +1,6 @@
 // Gauss-Legendre quadrature of expressions.
 #include "expr/quadrature.h"
+#include "base/pi.h"
 
 #include <assert.h>
 #include <math.h>
@@ -19,11 +20,10 @@ static double legendre(int n, double z, double *slope)
 
 void ct_gauss(int n, double point[], double weight[])
 {
-    const double pi = 3.14159265358979323846;
     assert(n >= 1 && n <= CT_GAUSS_MOST);
     for (int i = 0; i < (n + 1) / 2; i++) {
         const bool middle = 2 * i + 1 == n;
-        double z = middle ? 0 : cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+        double z = middle ? 0 : cos(CT_PI * (i + 0.75) / (n + 0.5)), slope = 1;
         // the estimate is good to 1e-2 / n^2, each step doubles the digits
         for (int step = 0; step < 5 && !middle; step++)
             z -= legendre(n, z, &slope) / slope;
@@ -35,7 +35,8 @@ void ct_gauss(int n, double point[], double weight[])
 }
 
 static const uint32_t none = UINT32_MAX; // not a polynomial
-static const uint32_t most = 1000;       // far beyond any use; keeps sums small
+// Limit: degree that is told, far beyond that of a rule; sums of two stay far below `none`
+static const uint32_t most = 1000;
 
 static uint32_t larger(uint32_t a, uint32_t b)
 {

@@ -4,6 +4,7 @@
 
 #include "expr/ex.h"
 
+/// Limit: points of a rule, by the size of local arrays.
 enum { CT_GAUSS_MOST = 32 };
 
 /// n points and weights on (0, 1), ascending; exact for polynomials of degree 2 n - 1. 1 <= n <=

@@ -78,7 +78,7 @@ static double without_noise(double k)
 static double as_fraction(double k, double *divisor)
 {
     *divisor = 1;
-    if (k * 1e6 == floor(k * 1e6))
+    if (k * 1e6 == floor(k * 1e6)) // Layout: six decimals are short enough
         return k;
     // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): small integers are exact
     for (double d = 3; d < 100; d++) {
@@ -304,7 +304,7 @@ static ct_ex sum_of_terms(struct ct_collector *c, struct ct_poly p)
     return e;
 }
 
-// Beyond this a grouping is not read by anyone, and choosing costs the square of the terms.
+// Limit: choosing costs the square of the terms; longer sums are printed without groups.
 enum { LARGEST_GROUPED = 1000 };
 
 static ct_ex grouped(struct ct_collector *c, struct ct_poly p)

@@ -4,6 +4,7 @@
 // is printed; a name counts as short text, and what is below it is printed once.
 #include "expr/share.h"
 
+#include "base/names.h"
 #include "base/sort.h"
 
 #include <math.h>
@@ -133,6 +134,7 @@ static double worth_of(const struct sharing *s, uint32_t id)
 
 // Graphs of more nodes than this get many names at a time: all that save half as much as the best.
 // Those that others make useless are taken back at the end.
+// Limit: one name at a time costs the square of the nodes.
 enum { LARGE_GRAPH = 1000 };
 
 // Names the node that saves most; ties go to the older one. Returns how many were named.
@@ -177,38 +179,36 @@ static bool drop_useless(struct sharing *s)
 
 // ---- names ------------------------------------------------------------------------------------
 
-static bool is_taken(const struct sharing *s, const struct ct_share *list, const char *name)
+static bool is_taken(const struct ct_names *taken, const char *name)
 {
-    for (size_t k = 0; k < s->x->nsym; k++)
-        if (!strcmp(s->x->sym[k].name, name))
-            return true;
-    for (size_t k = 0; k < list->n; k++)
-        if (!strcmp(list->at[k].name, name))
-            return true;
-    return false;
+    return ct_names_get(taken, name) >= 0;
 }
 
-static const char *free_name(const struct sharing *s, const struct ct_share *list,
+static const char *free_name(const struct sharing *s, const struct ct_names *taken,
                              size_t *number)
 {
     const char *name;
     do
         name = ct_arena_printf(s->arena, "t%zu", ++*number);
-    while (is_taken(s, list, name));
+    while (is_taken(taken, name));
     return name;
 }
 
 static struct ct_share list_definitions(struct sharing *s)
 {
     struct ct_share list = {.size = s->total};
+    struct ct_names taken = {0};
     size_t cap = 0, number = 0;
+    for (size_t k = 0; k < s->x->nsym; k++)
+        ct_names_put(s->arena, &taken, s->x->sym[k].name, 0);
     for (size_t k = 0; k < s->n; k++) {
         const uint32_t id = s->id[k];
         if (!(s->saving[id] > 0))
             continue;
         struct ct_definition d = {{id}, s->meaning[id], s->saving[id]};
-        if (!d.name || is_taken(s, &list, d.name))
-            d.name = free_name(s, &list, &number);
+        if (!d.name || is_taken(&taken, d.name))
+            d.name = free_name(s, &taken, &number);
+        ct_names_put(s->arena, &taken, d.name, 0);
         CT_PUSH(s->arena, list.at, list.n, cap, d);
     }
     return list;

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// Beyond this n = 2 a/pi exceeds the 20 bits for which the reduction is exact.
+// Derived: beyond this n = 2 a/pi exceeds the 20 bits for which the reduction is exact.
 static const double largest = 1e6;
 
 // Adding 1.5 * 2^52 rounds to an integer, which the last bits of the sum then hold.
@@ -62,6 +62,7 @@ static inline double number_of(uint64_t bits)
 // have 26 bits.
 static inline double lost(double a, double b, double p)
 {
+    // Definition: Veltkamp's splitting of 53 bits into halves, key dekker1971
     const double split = 0x1p27 + 1, x = split * a, y = split * b;
     const double ah = x - (x - a), al = a - ah, bh = y - (y - b), bl = b - bh;
     return ((ah * bh - p) + ah * bl + al * bh) + al * bl;
@@ -108,7 +109,7 @@ static void one_by_one(const double *a, double *s, double *c, size_t n)
 
 #include <immintrin.h>
 
-enum { LANES = 4 };
+enum { LANES = 4 }; // Definition: doubles of a 256-bit register
 typedef double four __attribute__((vector_size(32)));
 typedef uint64_t four_integers __attribute__((vector_size(32)));
 

@@ -6,10 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-static const double same = 1e-9; // of the whole: places that are one
-static const double least
-    = 0x1p-48; // of the whole: an interval that is a place, some round-off errors wide
-enum { MOST_INTERVALS = 20000 }; // for one argument; a simple root takes about 100
+// Width of an interval that is a place, as part of the whole. Derived: 16 units of round-off, what
+// about ten operations of interval arithmetic leave, are 0x1p-48.
+static const double least = 0x1p-48;
+// Limit: of the search for one argument; a simple root takes about 100. Beyond, the caller is told.
+enum { MOST_INTERVALS = 20000 };
 
 struct interval {
     double low, high;
@@ -257,7 +258,7 @@ int ct_ex_switches(struct ct_exs *x, struct ct_arena *scratch, ct_ex f, ct_ex s,
     }
     ct_sort(scratch, place, (size_t)w.nplace, sizeof *place, ascending, NULL);
     int kept = 0;
-    const double close = same * (to - from);
+    const double close = CT_SAME_PLACE * (to - from);
     for (int i = 0; i < w.nplace; i++)
         if (place[i] - from > close && to - place[i] > close
             && (!kept || place[i] - place[kept - 1] > close))

@@ -5,6 +5,10 @@
 
 #include "expr/ex.h"
 
+/// Places closer than this part of the whole are one. Default: a short element is stiff and costs
+/// steps, and places have round-off. Test: switches.
+#define CT_SAME_PLACE 1e-9
+
 /**
  * Switching points of f in (from, to) as a function of the symbol s: roots of the arguments of abs
  * and sign, and of the difference of those of min, max, <, <=, > and >=.

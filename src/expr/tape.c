@@ -69,23 +69,23 @@ typedef SLOT(8) slot8;
 #define RUN run_1
 #define TARGET
 #include "expr/tape_run.def"
-#define LANES 4
+#define LANES 4 // Definition: runs in a slot
 #define V slot4
 #define RUN run_4
 #define TARGET
 #include "expr/tape_run.def"
-#define LANES 8
+#define LANES 8 // Definition: runs in a slot
 #define V slot8
 #define RUN run_8
 #define TARGET
 #include "expr/tape_run.def"
 #ifdef __x86_64__ // the same operations, four lanes in one register
-#define LANES 4
+#define LANES 4   // Definition: runs in a slot
 #define V slot4
 #define RUN run_4_avx2
 #define TARGET __attribute__((target("avx2")))
 #include "expr/tape_run.def"
-#define LANES 8
+#define LANES 8 // Definition: runs in a slot
 #define V slot8
 #define RUN run_8_avx2
 #define TARGET __attribute__((target("avx2")))

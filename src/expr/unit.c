@@ -1,6 +1,6 @@
 // Units by recursive descent over a table; see unit.h.
 #include "expr/unit.h"
-
+#include "base/pi.h"
 #include "base/ctx.h"
 
 #include <locale.h>
@@ -8,12 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 static const struct {
     const char *name;
     struct ct_unit unit;
 } units[] = {
+    // Definition: SI units, their decimal multiples and usual others
     {"m", {1, 1, 0, 0}},
     {"mm", {1e-3, 1, 0, 0}},
     {"cm", {1e-2, 1, 0, 0}},
@@ -26,7 +25,7 @@ static const struct {
     {"min", {60, 0, 0, 1}},
     {"h", {3600, 0, 0, 1}},
     {"rad", {1, 0, 0, 0}},
-    {"deg", {PI / 180, 0, 0, 0}},
+    {"deg", {CT_PI / 180, 0, 0, 0}},
     {"N", {1, 1, 1, -2}},
     {"kN", {1e3, 1, 1, -2}},
     {"MN", {1e6, 1, 1, -2}},
@@ -37,7 +36,7 @@ static const struct {
     {"J", {1, 2, 1, -2}},
     {"W", {1, 2, 1, -3}},
     {"Hz", {1, 0, 0, -1}},
-    {"rpm", {PI / 30, 0, 0, -1}}, // turns per minute as an angular velocity
+    {"rpm", {CT_PI / 30, 0, 0, -1}}, // turns per minute as an angular velocity
 };
 
 static bool is_letter(char c)
@@ -125,7 +124,7 @@ static enum ct_unit_result scan_factor(struct scan *s, struct ct_unit *u)
 
 static bool exponents_are_small(const struct ct_unit *u)
 {
-    enum { LARGEST = 1000 };
+    enum { LARGEST = 1000 }; // Limit: far from overflow, with a message
     return abs(u->m) < LARGEST && abs(u->kg) < LARGEST && abs(u->s) < LARGEST;
 }
 
@@ -212,7 +211,7 @@ size_t ct_number_parse(const char *text, double *value)
             n += 1 + sign + power;
     }
     // strtod reads the locale's point; its result is correctly rounded, ours would not be
-    enum { LONGEST = 400 };
+    enum { LONGEST = 400 }; // Limit: of the stack; more digits than a double has exponents
     char copy[LONGEST + 1];
     const size_t used = n < LONGEST ? n : LONGEST;
     memcpy(copy, text, used);

@@ -108,7 +108,8 @@ ct_ex33 ct_ex33_transpose(const ct_ex33 *A)
 static ct_ex exact_quarter(struct ct_exs *x, ct_ex e)
 {
     double v;
-    const double roundoff = 4 * DBL_EPSILON; // of angles up to a few turns
+    // Derived: an angle of up to 8 quarter turns is rounded by 2 eps quarter turns, its sine by half
+    const double roundoff = 4 * DBL_EPSILON;
     if (ct_ex_is_const(x, e, &v) && fabs(v - round(v)) < roundoff)
         return ct_ex_const(x, round(v));
     return e;

@@ -4,7 +4,7 @@
 //     struct ct_topology        linear graph, plane of a planar mechanism      topology/
 //     struct ct_kinematics      clusters, axes, anchors, places of nodes       kinematics/
 //     struct ct_row_wrenches    what multipliers of constraint rows do         kinematics/
-//     struct ct_dynamics        loads, lumped masses, sweeps of forces         dynamics/
+//     struct ct_loads           forces and torques of the model                dynamics/
 //     struct ct_equations       the result (equations.h)
 //
 //   rotation    ground cluster --axis, angle--> cluster --> ...     a cluster is a set of frames that
@@ -41,10 +41,7 @@ struct ct_coordinate {
     bool in_translation, in_rotation; // enters d, enters the turns
     bool is_driven;
     int q, u, driver;  // index of the unknown or the driver; -1 where not
-    ct_ex value, rate; // of unknown and driven ones; measured ones: constraint_row.h
-    ct_ex measured;    // value of a measured one, once asked for
-    bool has_measured;
-    int motion_row; // driven and measured: its row, plus one
+    ct_ex value, rate; // of unknown and driven ones; measured ones: coordinate.h
 };
 
 struct ct_edge_info {
@@ -61,7 +58,7 @@ struct ct_edge_info {
     bool has_rotation; // false where a particle is reached
     bool must_be_branch, never_branch;
     int weight_t, weight_r;            // freedoms in the translational and rotational graph
-    int first_coordinate, ncoordinate; // plain coordinates in build->coordinate
+    int first_coordinate, ncoordinate; // among the plain coordinates
     int beam; // arms of beams: number in build->flexible, with the section at `along`; else -1
     ct_ex along; // [m]
 };
@@ -72,8 +69,9 @@ struct ct_topology {
     struct ct_graph graph;
     struct ct_node_info *node;
     struct ct_edge_info *edge;
-    struct ct_edge *wiring; // of graph
-    size_t nnode, node_cap, nedge, edge_cap, wiring_cap;
+    struct ct_edge *wiring;           // of graph
+    struct ct_coordinate *coordinate; // of all edges, without unknowns and values
+    size_t nnode, node_cap, nedge, edge_cap, wiring_cap, ncoordinate, coordinate_cap;
     int *node_of_frame, *node_of_com; // by frame, by body
     int *edge_of_joint, *edge_of_body;
 
@@ -167,7 +165,8 @@ struct ct_node_placement {
 /// Where frames are and how they move, in coordinates of the chosen trees: written by ct_unknowns_choose,
 /// ct_rotation_derive and ct_translation_derive (kinematics/), const for all that follows.
 struct ct_kinematics {
-    struct ct_edge_kinematics *edge; // by edge
+    struct ct_edge_kinematics *edge;  // by edge
+    struct ct_coordinate *coordinate; // those of topology, with unknowns and values
     struct ct_cluster *cluster;
     struct ct_rotation_axis *rotation_axis;
     struct ct_anchor *anchor;
@@ -187,7 +186,11 @@ struct ct_kinematics_cache {
         ct_ex3 p;       // [m]
         ct_ex3 v, a[2]; // [m/s], [m/s^2]
         bool has_d, has_p, has_v, has_a[2];
-    } * anchor;             // by anchor
+    } * anchor; // by anchor
+    struct ct_measured {
+        bool made;
+        ct_ex value;
+    } * measured;           // by coordinate, of those that are neither unknown nor driven
     struct ct_piece *piece; // of the path sought last (nanchor + 2)
     bool *marked;           // clusters that matter to it (ncluster)
     ct_ex *coefficient;     // of the speeds, in the row in hand (nu)
@@ -258,18 +261,25 @@ struct ct_build_options {
     bool is_rigid; // beams keep their shape: for assembly, where they are not deformed yet
 };
 
-/// What the multipliers of constraint rows do: written by ct_rows_derive (constraint_row.h).
+/// What the multipliers of constraint rows do: written by ct_rows_derive (constraint_row.h), const
+/// for all that follows.
 struct ct_row_wrenches {
     struct ct_multiplier_wrench *multiplier_wrench;
     size_t nmultiplier_wrench, multiplier_wrench_cap;
     struct ct_coupling *coupling;
     size_t ncoupling, coupling_cap;
+    int *motion_row; // by coordinate: the row of a driven chord plus one; else 0
 };
 
-/// Loads and what dynamics/ sums of them: loads by ct_loads_derive, the rest when it is first asked for.
-struct ct_dynamics {
+/// Forces and torques: written by ct_loads_derive (dynamics.h), const for all that follows.
+struct ct_loads {
     struct ct_load *load;
     size_t nload, load_cap;
+    ct_ex *effort; // of joints along their unknown coordinates (nu)
+};
+
+/// What functions of dynamics/ have been asked for so far.
+struct ct_dynamics_cache {
     struct ct_lumped_masses masses;
     struct ct_speed_axis { // a rotation axis or an anchor's translation axis that a speed moves
         bool is_translation;
@@ -278,8 +288,7 @@ struct ct_dynamics {
     } * speed_axis;
     size_t nspeed_axis, speed_axis_cap;
     size_t *first_speed_axis;        // by speed, numbers plus one; NULL: not listed yet
-    const struct ct_sweep *sweep[2]; // by level, once asked for
-    ct_ex *effort;                   // of joints along their unknown coordinates (nu)
+    const struct ct_sweep *sweep[2]; // by level
 };
 
 /// Equations under construction. Each stage fills its part, which later stages only read (stage.h).
@@ -294,8 +303,6 @@ struct ct_build {
 
     // topology/: graph, coordinates without values, beams with what deforms; then the trees
     const struct ct_topology *topology;
-    struct ct_coordinate *coordinate; // kinematics/ gives those of T and R their unknowns
-    size_t ncoordinate, coordinate_cap;
     struct ct_flexible *flexible; // one per beam
     size_t nflexible;
     struct ct_tree T, R;
@@ -303,10 +310,13 @@ struct ct_build {
     // kinematics/: positions, velocities and accelerations; rows and their multipliers
     const struct ct_kinematics *kinematics;
     struct ct_kinematics_cache cache;
-    struct ct_row_wrenches rows;
+    const struct ct_row_wrenches *rows;
+    struct ct_row_wrenches *open_rows; // while ct_rows_derive lists them; else NULL
 
     // dynamics/: loads, mass matrix, forces
-    struct ct_dynamics dynamics;
+    const struct ct_loads *loads;
+    struct ct_loads *open_loads; // while ct_loads_derive lists them; else NULL
+    struct ct_dynamics_cache dynamics;
 
     // signals/, outputs/
     struct ct_signal_state signals;

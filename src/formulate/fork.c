@@ -57,21 +57,16 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     struct ct_build *b = copy(a, from, 1, sizeof *b);
     b->ctx = ctx;
     b->arena = a;
-    COPY(a, b->coordinate, b->ncoordinate);
     COPY(a, b->cache.cluster, b->kinematics->ncluster);
     COPY(a, b->cache.anchor, b->kinematics->nanchor);
+    COPY(a, b->cache.measured, b->topology->ncoordinate);
     if (b->flexible)
         COPY(a, b->flexible, b->nflexible);
     for (size_t i = 0; i < b->nflexible; i++)
         fork_flexible(a, &b->flexible[i]);
-    b->coordinate_cap = b->ncoordinate;
     COPY(a, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body);
     b->dynamics.masses.augmented_body_cap = b->dynamics.masses.naugmented_body;
     b->dynamics.masses.of = (struct ct_pairs){0}; // listed anew when one is added
-    COPY(a, b->dynamics.load, b->dynamics.nload);
-    b->dynamics.load_cap = b->dynamics.nload;
-    b->rows.multiplier_wrench_cap = b->rows.nmultiplier_wrench;
-    b->rows.coupling_cap = b->rows.ncoupling;
     b->dynamics.speed_axis_cap = b->dynamics.nspeed_axis;
     if (b->signals.quaternion)
         COPY(a, b->signals.quaternion, b->topology->nnode);
@@ -118,7 +113,6 @@ void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_m
     to->build->model = model;
     to->build->x = to->x;
     to->build->eqs = copy(a, to, 1, sizeof *to);
-    to->coordinate = to->build->coordinate;
 }
 
 struct ct_model *ct_model_fork(struct ct_arena *a, const struct ct_model *from)

@@ -44,7 +44,14 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
         .has_offsets = o->gaps,
         .like = o->like,
         .is_linear = is_linear};
-    *b = (struct ct_build){.ctx = ctx, .arena = a, .model = m, .options = options};
+    static const struct ct_row_wrenches no_rows; // what stages see that come before these
+    static const struct ct_loads no_loads;
+    *b = (struct ct_build){.ctx = ctx,
+                           .arena = a,
+                           .model = m,
+                           .options = options,
+                           .rows = &no_rows,
+                           .loads = &no_loads};
     b->eqs = CT_NEW(a, struct ct_equations);
     b->x = b->eqs->x = ct_exs_clone(a, m->x);
     b->value = start_values(a, m);
@@ -72,8 +79,6 @@ struct ct_build *ct_build_clone(struct ct_ctx *ctx, struct ct_arena *a,
     b->x = b->eqs->x = ct_exs_clone(a, from->x);
     const size_t ndecided = b->x->ndecided;
     b->x->decided = copy(a, from->x->decided, ndecided, ndecided + 1, 1);
-    b->coordinate
-        = copy(a, from->coordinate, b->ncoordinate, b->coordinate_cap, sizeof *b->coordinate);
     return b;
 }
 

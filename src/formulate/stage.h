@@ -3,7 +3,7 @@
 //
 //     ct_build_create         model -> b->topology and the list of coordinates
 //     ct_build_choose_trees   b->T and b->R, trees of translation and rotation
-//     ct_build_derive         b->kinematics, then Phi, J, gam (b->rows), then loads (b->dynamics)
+//     ct_build_derive         b->kinematics, then Phi, J, gam (b->rows), then b->loads
 #ifndef CT_FORMULATE_STAGE_H
 #define CT_FORMULATE_STAGE_H
 

@@ -8,8 +8,10 @@
 
 enum { TRANS, ROT, NTREE };
 
-// Documented defaults of struct ct_search_options; tests/unit/test_exchange.c sets others.
+// Defaults of struct ct_search_options.
+// Default: pairs of trees up to which all are tried, rather than the descent. Test: exchange.
 static const double default_limit = 500;
+// Default: evaluations of a descent, and edges above the least weight. Test: exchange.
 static const int default_budget = 200, default_excess = 3;
 
 struct pair {

@@ -4,8 +4,9 @@
 #include <stdarg.h>
 #include <string.h>
 
-static const int page_width = 100; // columns; wider lines are wrapped, wider matrices left out
-static const int max_equations = 60; // of each kind
+// Layout: [columns] wider lines are wrapped, wider matrices left out
+static const int page_width = 100;
+static const int max_equations = 60; // Layout: of each kind
 
 // ---- columns ------------------------------------------------------------------------------
 

@@ -9,8 +9,9 @@
 // rank across clusters.
 #include "graph/print.h"
 
-static const int large_graph = 12; // nodes; a slider-crank with its arms has 8
-static const int deep_tree = 10;   // edges from ground; beyond, a row of nodes overflows a page
+static const int large_graph = 12; // Layout: nodes; a slider-crank with its arms has 8
+// Layout: edges from ground; beyond, a row of nodes overflows a page
+static const int deep_tree = 10;
 
 // How an edge looks by the trees it is a branch of; a quiet or marked edge means what its kind
 // says. The colours are those of Okabe and Ito, which the colour-blind can tell apart.

@@ -10,14 +10,16 @@
 
 static void put_row(struct ct_html *h, const char *what, double v, const char *unit)
 {
-    fprintf(h->out, "<tr><td>%s</td><td class=\"number\">", what);
+    fprintf(h->out, "<tr><td class=\"words\">%s</td><td class=\"number\">", what);
     ct_html_put_number(h->out, v);
     fprintf(h->out, "</td><td>%s</td></tr>\n", unit);
 }
 
 static void put_count(struct ct_html *h, const char *what, long n)
 {
-    fprintf(h->out, "<tr><td>%s</td><td class=\"number\">%ld</td><td></td></tr>\n", what, n);
+    fprintf(h->out,
+            "<tr><td class=\"words\">%s</td><td class=\"number\">%ld</td><td></td></tr>\n",
+            what, n);
 }
 
 static void put_ledger(struct ct_html *h)

@@ -1,5 +1,6 @@
 // Section `equations`: the equations of motion and of the constraints, a row per term with its value, the components that each
 // term comes from, and the named expressions that they use.
+#include "html/components.h"
 #include "html/html.h"
 #include "html/terms.h"
 #include "report/mathml.h"
@@ -31,60 +32,42 @@ struct writer {
     struct ct_derivation *plain; // terms are plain text; NULL: they are typeset
 };
 
-static const char *value_of(const struct writer *w, size_t term)
+static const char *value_of(const struct writer *w, size_t column)
 {
     const struct ct_terms_recording *t = w->h->terms;
-    return t->nvalue && t->nrow ? ct_arena_printf(w->h->a, "%.5g", t->value[term]) : NULL;
+    return t->nvalue && t->nrow ? ct_arena_printf(w->h->a, "%.5g", t->value[column]) : NULL;
 }
 
 // A side without terms is zero.
 static struct ct_mathml_side side_of(const struct writer *w, size_t first, size_t last)
 {
-    const struct ct_provenance *p = &w->h->terms->provenance;
+    const struct ct_terms_recording *t = w->h->terms;
     struct ct_mathml_term *term = CT_NEWN(w->h->a, struct ct_mathml_term, last - first + 1);
     if (first == last) {
         term[0].latex = "0";
         return (struct ct_mathml_side){term, 1};
     }
-    for (size_t i = first; i < last; i++)
-        term[i - first] = (struct ct_mathml_term){.latex = p->term[i].text,
-                                                  .components = origins_of(w->h, &p->term[i]),
-                                                  .value = value_of(w, i)};
+    for (size_t i = first; i < last; i++) {
+        const struct ct_equation_term *e = &t->provenance.term[i];
+        term[i - first] = (struct ct_mathml_term){
+            .latex = e->text,
+            .plain = w->plain ? ct_derivation_text(w->plain, e->e) : NULL,
+            .components = origins_of(w->h, e),
+            .value = value_of(w, t->column[i])};
+    }
     return (struct ct_mathml_side){term, last - first};
 }
 
-static void put_plain_side(const struct writer *w, size_t first, size_t last)
+// The output whose terms begin with number `first`: its name is the left side.
+static struct ct_mathml_side output_of(const struct writer *w, size_t first, const char *name)
 {
-    FILE *out = w->out;
-    fputs("<mrow class=\"side\">", out);
-    if (first == last)
-        fputs("<mn>0</mn>", out);
-    for (size_t i = first; i < last; i++) {
-        const struct ct_equation_term *t = &w->h->terms->provenance.term[i];
-        const char *text = ct_derivation_text(w->plain, t->e), *value = value_of(w, i);
-        fputs("<mrow class=\"term\"", out);
-        ct_html_put_components(out, origins_of(w->h, t));
-        fputs("><mtext>", out);
-        if (i > first && *text != '-')
-            fputs("+ ", out);
-        ct_html_put(out, text);
-        fputs("</mtext></mrow>", out);
-        if (value)
-            fprintf(out, "<mtext class=\"value\">%s</mtext>", value);
-    }
-    fputs("</mrow>", out);
-}
-
-static void put_plain(const struct writer *w, const char *name, const struct range *r)
-{
-    FILE *out = w->out;
-    fputs("<math class=\"equation plain\" display=\"block\" data-equation=\"", out);
-    ct_html_put(out, name);
-    fputs("\">", out);
-    put_plain_side(w, r->first, r->middle);
-    fputs("<mrow class=\"right\"><mo>=</mo>", out);
-    put_plain_side(w, r->middle, r->last);
-    fputs("</mrow></math>\n", out);
+    const struct ct_terms_recording *t = w->h->terms;
+    struct ct_mathml_term *term = CT_NEW(w->h->a, struct ct_mathml_term);
+    *term = (struct ct_mathml_term){.plain = name,
+                                    .components = ct_components_of_result(
+                                        w->h->a, w->h->sys, t->provenance.term[first].equation),
+                                    .value = value_of(w, t->column[first] - 1)};
+    return (struct ct_mathml_side){term, 1};
 }
 
 // The equation whose terms begin with number `first`; returns the number behind them.
@@ -100,17 +83,19 @@ static size_t put_equation(const struct writer *w, size_t first)
     for (r.last = r.middle; r.last < p->nterm && p->term[r.last].kind == t->kind
                             && p->term[r.last].equation == t->equation;)
         r.last++;
-    const char *name = ct_provenance_equation(h->terms->derivation.e, t);
-    fputs("<div class=\"labelled\"><span class=\"label\">", w->out);
-    ct_html_put(w->out, name);
-    fputs("</span>\n", w->out);
-    if (w->plain)
-        put_plain(w, name, &r);
-    else
-        ct_mathml_equation(w->out,
-                           &(struct ct_mathml_equation){.name = name,
-                                                        .left = side_of(w, r.first, r.middle),
-                                                        .right = side_of(w, r.middle, r.last)});
+    struct ct_mathml_equation e = {.name = ct_provenance_equation(h->terms->derivation.e, t)};
+    fputs("<div class=\"labelled\">", w->out);
+    if (t->kind == CT_EQUATION_OUTPUT) {
+        e.left = output_of(w, r.first, e.name);
+        e.right = side_of(w, r.first, r.last);
+    } else {
+        e.left = side_of(w, r.first, r.middle);
+        e.right = side_of(w, r.middle, r.last);
+        fputs("<span class=\"label\">", w->out);
+        ct_html_put(w->out, e.name);
+        fputs("</span>\n", w->out);
+    }
+    ct_mathml_equation(w->out, &e);
     fputs("</div>\n", w->out);
     return r.last;
 }
@@ -180,12 +165,12 @@ static void put_data(struct ct_html *h)
 static void put_all(const struct writer *w)
 {
     const struct ct_terms_recording *t = w->h->terms;
-    fputs("<p class=\"note\">Each term has the value that it takes at the time of the page "
-          "beside it.",
+    fputs("<p class=\"note\">The number beside a term is its value at <span "
+          "class=\"clock\">t = 0 s</span>.",
           w->out);
     if (t->stride > 1)
-        fprintf(w->out, " Values between every %zuth row of the outputs are interpolated.",
-                t->stride);
+        fprintf(w->out, " Values are kept at one of %zu samples and interpolated between.",
+                t->stride * w->h->recording->stride);
     if (!t->nvalue && t->provenance.nterm)
         fputs(" There are too many terms to carry their values.", w->out);
     fputs("</p>\n", w->out);
@@ -194,6 +179,7 @@ static void put_all(const struct writer *w)
     put_kind(w, CT_EQUATION_POSITION, "Constraints");
     put_kind(w, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
     put_kind(w, CT_EQUATION_EFFORT, "Efforts of the drivers");
+    put_kind(w, CT_EQUATION_OUTPUT, "Outputs that are reactions or accelerations");
 }
 
 // The section with terms of one look; NULL where it would be too long.

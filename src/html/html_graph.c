@@ -20,6 +20,7 @@ enum {
     ARM = 80,
     MARGIN = 60,
     RADIUS = 7,  // [px] of a vertex
+    ARROW = 7,   // [px] from the middle of an arrow to its tip, and a gap
     SPREAD = 44, // [px] between the middles of edges that join the same vertices
     WIDE = 1100  // [px] a page
 };
@@ -108,8 +109,10 @@ static void put_edge(struct picture *p, int i)
     const double nx = -(b.y - a.y) / length, ny = (b.x - a.x) / length;
     const double off = offset_of(e->graph, i);
     const struct ct_place c = {(a.x + b.x) / 2 + 2 * off * nx, (a.y + b.y) / 2 + 2 * off * ny};
-    const struct ct_place middle = curve(a, c, b, 0.5), tip = curve(a, c, b, 0.72),
-                          before = curve(a, c, b, 0.70);
+    // the arrow touches the vertex at its head, off the name in the middle
+    const double at_head = fmax(1 - (RADIUS + ARROW) / length, 0.6);
+    const struct ct_place middle = curve(a, c, b, 0.5), tip = curve(a, c, b, at_head),
+                          before = curve(a, c, b, at_head - 0.02);
     const double turn = hypot(tip.x - before.x, tip.y - before.y);
     const double tx = (tip.x - before.x) / turn, ty = (tip.y - before.y) / turn;
     fputs("<g class=\"", out);

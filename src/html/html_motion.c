@@ -31,7 +31,7 @@ void ct_html_motion(struct ct_html *h)
     ct_html_open_section(h, "motion", "Motion");
     fputs("<div id=\"motion-panel\">\n", h->out);
     ct_picture_print(h->out, h->a, &p);
-    fputs("</div>\n", h->out);
+    fputs("<p class=\"note start\">The start, t = 0 s.</p>\n</div>\n", h->out);
     ct_html_open_data(h, &d, "data-motion");
     ct_animation_write(h->a, &d.json, &r->animation, most_rows(&r->animation));
     ct_json_bool(&d.json, "open_reactions", has_open_reactions(h));

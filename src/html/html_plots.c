@@ -71,11 +71,13 @@ void ct_html_plots(struct ct_html *h)
         ct_html_close_section(h);
         return;
     }
-    fprintf(h->out,
-            "<p class=\"note\">Values beside the names are those at the time of the page. "
-            "Click in a plot to go to a time, drag to zoom, double-click for all of it.");
+    fprintf(
+        h->out,
+        "<p class=\"note\">Values beside the names are those at <span class=\"clock\">t = 0 "
+        "s</span>. "
+        "Click in a plot to go to a time, drag to zoom, double-click for all of it.");
     if (r->stride > 1)
-        fprintf(h->out, " Every %zuth of %zu samples is shown.", r->stride, r->nsample);
+        fprintf(h->out, " One of %zu of the %zu samples is shown.", r->stride, r->nsample);
     fputs("</p>\n<div class=\"tools\" hidden><button type=\"button\" disabled>Whole "
           "time</button><button type=\"button\" title=\"Save what is shown as a "
           "table\">CSV</button></div>\n",

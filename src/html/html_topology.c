@@ -49,7 +49,7 @@ static void put_pairs(struct ct_html *h)
     const struct ct_equations *e = &h->sys->equations;
     const struct ct_tree_report *r = &h->sys->tree;
     const int chosen = ct_tree_pairs_chosen(e, r);
-    fputs("<p>", h->out);
+    fputs("<p>Chosen: ", h->out);
     ct_html_put(h->out, ct_tree_pairs_reason(h->a, e, r));
     fputs(".</p>\n", h->out);
     if (!r->ncandidate)

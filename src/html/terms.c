@@ -8,6 +8,22 @@
 // A fifth of a megabyte of the page, at some three bytes for each number.
 enum { MOST_NUMBERS = 60000, LEAST_ROWS = 21 };
 
+static void list_expressions(struct ct_terms_recording *t, struct ct_arena *a,
+                             const struct ct_equations *e)
+{
+    const struct ct_provenance *p = &t->provenance;
+    size_t cap = 0;
+    t->column = CT_NEWN(a, size_t, p->nterm + 1);
+    for (size_t i = 0; i < p->nterm; i++) {
+        const struct ct_equation_term *term = &p->term[i];
+        if (term->kind == CT_EQUATION_OUTPUT
+            && (i == 0 || term[-1].kind != term->kind || term[-1].equation != term->equation))
+            CT_PUSH(a, t->expression, t->nexpression, cap, e->result[term->equation].value);
+        t->column[i] = t->nexpression;
+        CT_PUSH(a, t->expression, t->nexpression, cap, term->full);
+    }
+}
+
 void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct_system *sys)
 {
     struct ct_equations *e = &sys->equations;
@@ -15,11 +31,11 @@ void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct
     ct_derivation_init(&t->derivation, a, e, &sys->model, CT_LOOK_HTML);
     ct_derivation_reduce(&t->derivation, &t->reduced);
     ct_provenance_derive(&t->derivation, &t->reduced, &t->provenance);
-    if (t->provenance.nterm * LEAST_ROWS <= MOST_NUMBERS)
-        t->nvalue = t->provenance.nterm;
+    list_expressions(t, a, e);
+    if (t->nexpression * LEAST_ROWS <= MOST_NUMBERS)
+        t->nvalue = t->nexpression;
     for (size_t i = 0; i < t->nvalue; i++)
-        t->uses_multipliers
-            |= (ct_ex_kinds(e->x, t->provenance.term[i].full) & 1u << CT_SYM_LAM) != 0;
+        t->uses_multipliers |= (ct_ex_kinds(e->x, t->expression[i]) & 1u << CT_SYM_LAM) != 0;
 }
 
 void ct_terms_compile(struct ct_arena *a, struct ct_terms_recording *t, struct ct_run *run,
@@ -30,8 +46,8 @@ void ct_terms_compile(struct ct_arena *a, struct ct_terms_recording *t, struct c
     const size_t most = MOST_NUMBERS / t->nvalue;
     if (nrow > most)
         t->stride = (nrow + most - 3) / (most - 1);
-    ct_evaluator_add_program(a, ct_run_evaluator(run), t->derivation.e->x,
-                             ct_provenance_values(a, &t->provenance), t->nvalue, &t->program);
+    ct_evaluator_add_program(a, ct_run_evaluator(run), t->derivation.e->x, t->expression,
+                             t->nvalue, &t->program);
 }
 
 void ct_terms_keep(struct ct_arena *a, struct ct_terms_recording *t, struct ct_run *run,

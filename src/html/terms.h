@@ -10,7 +10,11 @@ struct ct_terms_recording {
     struct ct_reduced reduced;
     struct ct_provenance provenance;
     bool uses_multipliers;
-    size_t nvalue; // terms with values: all of them, or none where there are too many
+    ct_ex
+        *expression; // in the order of the page: terms, an output before its own  (nexpression)
+    size_t nexpression;
+    size_t *column; // of each term in these; that of an output stands before its first term
+    size_t nvalue;  // expressions with values: all of them, or none where there are too many
     struct ct_program program;
     size_t stride, nrow, cap; // of the rows of the page
     double *value;            // nrow x nvalue, a row after the other

@@ -384,6 +384,9 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
         e = ct_event_location_search(&r->events, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
+    s->leaves_rest = theta == 0;
+    if (s->leaves_rest)
+        return CT_EVAL_RETRY;
     s->is_event = true;
     if (s->method == &ct_crossing)
         return cut_on_event(r, s, theta);
@@ -510,6 +513,33 @@ static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned
     return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
 }
 
+// --- events ----------------------------------------------------------------------------------
+
+static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
+{
+    const struct ct_problem *p = r->p;
+    r->stats->events++;
+    r->stop = -INFINITY;
+    if (is_state && ct_event_location_accumulates(&r->events, r->t, r->o->t1 - r->o->t0))
+        return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
+                        "%d events in a row at t = %.9g without time going on",
+                        CT_EVENT_ACCUMULATION, r->t);
+    const double *dy = ct_driver_has_remainder(r) ? r->dy : NULL;
+    const enum ct_eval e
+        = p->event ? p->event(p->user, r->t, r->y, dy, r->events.crossed, is_time) : CT_EVAL_OK;
+    if (e != CT_EVAL_OK)
+        return state_refused(r, e);
+    r->reach = INFINITY; // of the position ahead everything may have changed
+    r->failed_crossings = 0;
+    r->is_locked = false;
+    if (dy) {
+        start_anew(r);
+        return true;
+    }
+    ct_driver_look_ahead(r, r->t);
+    return take_bearings(r);
+}
+
 // One step that everybody accepts: from y to end.
 static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_planned_step *s)
 {
@@ -529,6 +559,15 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             e = finish_step(r, s, h);
         if (e == CT_EVAL_FATAL)
             return false;
+        if (s->leaves_rest) {
+            restore_speeds(r, s);
+            r->stats->rejected_steps++;
+            if (!handle_event(r, true, false))
+                return false;
+            r->stop = stop = ct_driver_next_stop(r, &is_time);
+            r->is_stop_time = is_time;
+            continue;
+        }
         if (s->is_off_between) {
             r->ends_on_samples = true;
             r->stats->rejected_steps++;
@@ -583,31 +622,6 @@ static void commit(struct ct_driver *r, const struct ct_planned_step *s)
         r->method->restart(r->work);
     else if (r->method->accept)
         r->method->accept(r->work);
-}
-
-static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
-{
-    const struct ct_problem *p = r->p;
-    r->stats->events++;
-    r->stop = -INFINITY;
-    if (is_state && ct_event_location_accumulates(&r->events, r->t, r->o->t1 - r->o->t0))
-        return ct_error(r->ctx, nowhere, CT_E_EVENT_PILE,
-                        "%d events in a row at t = %.9g without time going on",
-                        CT_EVENT_ACCUMULATION, r->t);
-    const double *dy = ct_driver_has_remainder(r) ? r->dy : NULL;
-    const enum ct_eval e
-        = p->event ? p->event(p->user, r->t, r->y, dy, r->events.crossed, is_time) : CT_EVAL_OK;
-    if (e != CT_EVAL_OK)
-        return state_refused(r, e);
-    r->reach = INFINITY; // of the position ahead everything may have changed
-    r->failed_crossings = 0;
-    r->is_locked = false;
-    if (dy) {
-        start_anew(r);
-        return true;
-    }
-    ct_driver_look_ahead(r, r->t);
-    return take_bearings(r);
 }
 
 // Is the rest of a crossing to come?

@@ -81,6 +81,7 @@ struct ct_planned_step {
     double begin; // of a crossing: where the step begins, as part of the whole; 0 but for rests
     bool reaches_stop;     // t1 is the stop it was planned for
     bool is_event;         // a state event ends it
+    bool leaves_rest;      // a root has left its rest on zero: an event where the step begins
     bool leaves_remainder; // of a crossing, which is to be the next step
     bool is_interpolated;  // the method is ready to interpolate it
     bool is_off_between;   // outputs err too much in a sample before its end

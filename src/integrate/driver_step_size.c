@@ -115,7 +115,7 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
     s->method = r->method;
     s->work = r->work;
     s->reaches_stop = s->is_event = s->is_interpolated = false;
-    s->is_off_between = s->is_damping = s->leaves_remainder = false;
+    s->is_off_between = s->is_damping = s->leaves_remainder = s->leaves_rest = false;
     s->error = s->begin = 0;
     if (ct_driver_has_remainder(r)) {
         plan_remainder(r, stop, is_time, s);

@@ -98,14 +98,31 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
     };
 }
 
+// Sides of roots on zero: those to which they go.
+static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, const double *y,
+                               const double *dy)
+{
+    const double later = glance * h;
+    for (int i = 0; i < w->p->ny; i++)
+        w->point[i] = y[i] + later * dy[i];
+    const enum ct_eval e = evaluate(w, t + later, w->point, w->g);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
+        if (w->side[i] == 0)
+            w->side[i] = (signed char)sign(w->g[i] - w->g0[i]);
+        if (w->side[i] == 0) // without a slope it goes on to where it was going
+            w->side[i] = w->crossed[i];
+    }
+    return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
+}
+
 enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, double h,
                                      const double *y, const double *dy)
 {
     const int n = w->p->nroot;
-    bool has_doubt = false;
     enum ct_eval e = n ? evaluate(w, t, y, w->g0) : CT_EVAL_OK;
-    if (e != CT_EVAL_OK)
+    if (e != CT_EVAL_OK || n == 0)
         return e;
+    bool has_doubt = false;
     for (int i = 0; i < n; i++) {
         w->side[i] = (signed char)sign(w->g0[i]);
         // where it fired the value is noise, unless the event has moved the state away
@@ -113,22 +130,54 @@ enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, doub
             w->side[i] = 0;
         else
             w->recently_fired[i] = 0;
-        w->crossed[i] = 0;
         has_doubt |= w->side[i] == 0;
     }
-    if (!has_doubt)
-        return CT_EVAL_OK;
-    const double later = glance * h;
-    for (int i = 0; i < w->p->ny; i++)
-        w->point[i] = y[i] + later * dy[i];
-    e = evaluate(w, t + later, w->point, w->g);
-    for (int i = 0; i < n && e == CT_EVAL_OK; i++)
-        if (w->side[i] == 0)
-            w->side[i] = (signed char)sign(w->g[i] - w->g0[i]);
-    return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
+    if (w->p->sides)
+        w->p->sides(w->p->user, w->side);
+    else if (has_doubt)
+        e = find_sides(w, t, h, y, dy);
+    memset(w->crossed, 0, (size_t)n);
+    return e;
 }
 
-// Reaching zero is crossing it; a root at rest on zero does not fire. One that has just fired may
+static bool any_rests(const struct ct_event_location *w)
+{
+    for (int i = 0; i < w->p->nroot; i++)
+        if (w->side[i] == 0)
+            return true;
+    return false;
+}
+
+// Roots at rest that are not zero at y any more fire, to where they are there.
+static enum ct_eval find_leaving(struct ct_event_location *w, double t, const double *y,
+                                 bool *any)
+{
+    const enum ct_eval e = evaluate(w, t, y, w->g);
+    for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
+        if (w->side[i] != 0 || w->g[i] == 0)
+            continue;
+        w->crossed[i] = (signed char)sign(w->g[i]);
+        w->recently_fired[i] = DBL_MIN; // zero itself is no crossing back
+        *any = true;
+    }
+    return e;
+}
+
+// Does a root at rest leave zero in a step to y_end? The end tells first, as the interpolant is
+// less accurate.
+static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_stepper_span *s,
+                                   const double *y_end, bool *any)
+{
+    *any = false;
+    enum ct_eval e = find_leaving(w, s->t + s->h, y_end, any);
+    for (int j = 0; probes[j] < 1 && e == CT_EVAL_OK && !*any; j++) {
+        ct_stepper_point(s, probes[j], w->point);
+        e = find_leaving(w, s->t + probes[j] * s->h, w->point, any);
+    }
+    return e;
+}
+
+// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just fired may
 // still be on the wrong side: until it has got away it must go further than it was then.
 static bool has_crossed(const struct ct_event_location *w, int i, const double *g)
 {
@@ -136,15 +185,12 @@ static bool has_crossed(const struct ct_event_location *w, int i, const double *
     return w->side[i] && (w->recently_fired[i] > 0 ? x < -w->recently_fired[i] : x <= 0);
 }
 
-// A probe without an event: roots that rested take sides, those that have fired got away.
-static void set_sides(struct ct_event_location *w, const double *g)
+// A probe without an event: roots that have fired got away.
+static void note_away(struct ct_event_location *w, const double *g)
 {
-    for (int i = 0; i < w->p->nroot; i++) {
-        if (w->side[i] == 0)
-            w->side[i] = (signed char)sign(g[i]);
+    for (int i = 0; i < w->p->nroot; i++)
         if (w->side[i] * g[i] > w->recently_fired[i])
             w->recently_fired[i] = 0;
-    }
 }
 
 static bool any_crossed(const struct ct_event_location *w, const double *g)
@@ -341,6 +387,14 @@ enum ct_eval ct_event_location_search(struct ct_event_location *w,
     double before = 0;
     *theta = 2;
     memset(w->crossed, 0, n);
+    if (any_rests(w)) {
+        bool leaves;
+        const enum ct_eval e = search_leaving(w, s, y_end, &leaves);
+        if (leaves)
+            *theta = 0;
+        if (leaves || e != CT_EVAL_OK)
+            return e;
+    }
     memcpy(w->probed, w->g0, n * sizeof *w->g0);
     for (int j = 0; j < (int)COUNT(probes); j++) {
         double *seen = w->probed + n * (size_t)j;
@@ -358,7 +412,7 @@ enum ct_eval ct_event_location_search(struct ct_event_location *w,
             memcpy(w->high, seen + n, n * sizeof *w->high);
             return narrow(w, s, before, probes[j], false, theta);
         }
-        set_sides(w, w->high);
+        note_away(w, w->high);
         before = probes[j];
     }
     const enum ct_eval e = narrow_dip(w, s, COUNT(probes), 1, theta);
@@ -398,8 +452,9 @@ enum ct_eval ct_event_location_accept(struct ct_event_location *w, double t, dou
         }
         // ten resolutions: the location and its refinement are each good to a few
         if (w->crossed[i])
-            w->recently_fired[i]
-                = fabs(w->g0[i]) + 10 * fabs(w->slope[i]) * ct_event_location_resolution(t, h);
+            w->recently_fired[i] = fmax(
+                DBL_MIN, // zero itself is no crossing back
+                fabs(w->g0[i]) + 10 * fabs(w->slope[i]) * ct_event_location_resolution(t, h));
     }
     return e;
 }

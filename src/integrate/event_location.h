@@ -1,6 +1,8 @@
 // Event location: which root functions (state events) change sign within a step, and when.
 //
-//     side      -1 or +1 for each root: where it was last seen; 0: resting on zero, not watched
+//     side      -1 or +1 for each root: where it was last seen; 0: at rest on zero
+//     rest      a root at rest fires as soon as it is not zero: at the start of the step in which it
+//               is seen to have left, since smooth motions leave zero at once or at an event
 //     probes    a step is looked at in a few places, and where a parabola through three of them turns
 //               about zero, so that a root that crosses and comes back is seen
 //
@@ -47,12 +49,13 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
                             struct ct_arena *a);
 
 /// Take bearings at the start, or after an event in which `crossed` fired; clears `crossed`.
-/// h is the size of a usual step: a root that fired is looked at a tiny part of it later.
+/// h is the size of a usual step: without p->sides a root that fired is looked at a tiny part of it
+/// later.
 enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, double h,
                                      const double *y, const double *dy);
 
 /// Look for the first event in a step that ends in y_end (projected). *theta (out): its place,
-/// or 2 if there is none. The roots that fire there are in `crossed`. When this or a later stage
+/// 0 where a root leaves its rest, or 2 if there is none. The roots that fire there are in `crossed`. When this or a later stage
 /// refuses the step, look again after the next try.
 enum ct_eval ct_event_location_search(struct ct_event_location *w,
                                       const struct ct_stepper_span *s, const double *y_end,

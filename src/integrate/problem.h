@@ -176,6 +176,9 @@ struct ct_problem {
     /// continuous within the step.
     int nroot;
     enum ct_eval (*root)(void *user, double t, const double *y, double *g);
+    /// side (nroot, out): the sides of zero that f stands for, -1 or 1, at a start and after an event; 0 for
+    /// a root at rest on zero. NULL: those to which roots go from there.
+    void (*sides)(void *user, signed char *side);
 
     /// The first time event after t (never t itself), or INFINITY. May be NULL. Steps end exactly
     /// on it.

@@ -389,7 +389,7 @@ bool ct_data_enter(struct ct_data *d)
     }
     ct_evaluator_normalise(m, d->y);
     ct_evaluator_set(m, d->t, d->y);
-    ct_switches_start(m, d->t, d->y, NULL);
+    ct_switches_start(m, d->t, d->y, NULL, NULL);
     ct_memory_update(m);
     d->known = 0;
     return true;
@@ -475,8 +475,8 @@ static bool put(struct ct_data *d)
     const bool was_off = is_off(d);
     if (was_off && !close_loops(d))
         return false;
-    if (!d->is_moved && d->is_changed)
-        ct_advance_refresh(d->advance, d->t);
+    if (!d->is_moved && d->is_changed && !ct_advance_refresh(d->advance, d->t))
+        return false;
     d->is_changed = false;
     if (!d->is_moved)
         return true;

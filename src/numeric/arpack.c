@@ -19,7 +19,10 @@ extern void dseupd_(const int *rvec, const char *howmny, const int *select, doub
                     int *ipntr, double *workd, double *workl, const int *lworkl, int *info,
                     size_t, size_t, size_t);
 
-enum { FEWEST_VECTORS = 20, MOST_RESTARTS = 300, NO_LARGER_BASIS = -9999 /* of dsaupd */ };
+// Limit: restarts, after which fewer vectors are returned. Definition: a status of dsaupd.
+enum { MOST_RESTARTS = 300, NO_LARGER_BASIS = -9999 };
+// Vectors of the basis. Definition: max(2 nev + 1, 20), as in SciPy's eigsh.
+enum { FEWEST_VECTORS = 20 };
 
 struct run {
     const struct ct_operator *op;

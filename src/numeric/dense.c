@@ -70,11 +70,6 @@ double ct_vector_largest(const double *v, size_t n)
     return max;
 }
 
-double ct_vector_max_norm_many(const double *v, size_t n)
-{
-    return ct_vector_max_norm_few(v, n);
-}
-
 double ct_vector_dot(const double *x, const double *y, size_t n)
 {
     double sum = 0;
@@ -83,7 +78,7 @@ double ct_vector_dot(const double *x, const double *y, size_t n)
     return sum;
 }
 
-void ct_vector_add_many(double *restrict y, double c, const double *restrict x, size_t n)
+void ct_vector_add(double *restrict y, double c, const double *restrict x, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         y[i] += c * x[i];
@@ -228,7 +223,8 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
     return ok;
 }
 
-// Systems of up to this many rows are solved by code with all loops unrolled.
+// Definition: systems of up to this many rows are solved by code with all loops unrolled, which
+// gives the same numbers; the cases of lu_solve.
 enum { FEW = 4 };
 
 static inline void substitute(double *x, const double *LU, const int *pivot, const int n,
@@ -520,8 +516,8 @@ size_t ct_symmetric_eigenvalues_work(int n)
 
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
-    const double certain
-        = 1e-6; // element growth of at most 1e6 leaves round-off of n 1e-10 of the largest entry
+    // Derived: element growth of at most 1e6 leaves round-off of n 1e-10 of the largest entry
+    const double certain = 1e-6;
     double largest = 0;
     int count = 0;
     for (int k = 0; k < n; k++) {

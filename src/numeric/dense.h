@@ -23,10 +23,8 @@
 
 /// Largest |v_i| of n, 0 for n = 0. NaN entries are ignored.
 double ct_vector_largest(const double *v, size_t n);
-/// Max norm of n numbers; NaN if an entry is NaN. Out of line, vectorised.
-double ct_vector_max_norm_many(const double *v, size_t n);
-/// The same inline and scalar, for short vectors.
-static inline double ct_vector_max_norm_few(const double *v, size_t n)
+/// Max norm of n numbers; NaN if an entry is NaN.
+static inline double ct_vector_max_norm(const double *v, size_t n)
 {
     // without the sign bit, doubles compare as their bit patterns do, NaN last
     uint64_t most = 0;
@@ -40,31 +38,12 @@ static inline double ct_vector_max_norm_few(const double *v, size_t n)
     memcpy(&size, &most, sizeof size);
     return size;
 }
-/// Max norm of n numbers; NaN if an entry is NaN.
-static inline double ct_vector_max_norm(const double *v, size_t n)
-{
-    enum { FEW = 4 };
-    return n > FEW ? ct_vector_max_norm_many(v, n) : ct_vector_max_norm_few(v, n);
-}
 
 /// x . y of n numbers
 double ct_vector_dot(const double *x, const double *y, size_t n);
 
-/// y (n) += c x, n being large.
-void ct_vector_add_many(double *restrict y, double c, const double *restrict x, size_t n);
-/// y (n) += c x. Short vectors are handled by scalar code.
-static inline void ct_vector_add(double *restrict y, double c, const double *restrict x,
-                                 size_t n)
-{
-    enum { MOST_ALONE = 12 };
-    const volatile double *one_by_one = x;
-    if (n > MOST_ALONE) {
-        ct_vector_add_many(y, c, x, n);
-        return;
-    }
-    for (size_t i = 0; i < n; i++)
-        y[i] += c * one_by_one[i];
-}
+/// y (n) += c x
+void ct_vector_add(double *restrict y, double c, const double *restrict x, size_t n);
 
 /// C (n x k) = A (n x m) B (m x k), stored without gaps.
 void ct_matrix_multiply(double *restrict C, const double *restrict A, const double *restrict B,

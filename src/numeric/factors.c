@@ -49,9 +49,6 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 // the rest. Where growth is larger they are sought by threshold partial pivoting, and these kept while growth is at most so
 // many times that of the search. Growth costs as many digits: three of sixteen are given up.
 static const double growth_limit = 1e3;
-// A diagonal entry is then the pivot if it is at least this part of the largest one in its column, rows scaled by their
-// largest entry. 0.1 bounds growth by 11 a step.
-static const double diagonal_preference = 0.1;
 
 // ---- orders ------------------------------------------------------------------------------------
 
@@ -88,8 +85,8 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
     ct_arena_on_destroy(a, release_order, o);
     klu_defaults(&o->common);
-    o->common.btf = 0; // equations of motion hang together
-    o->common.tol = diagonal_preference;
+    o->common.btf = 0;                  // equations of motion hang together
+    o->common.tol = CT_PIVOT_THRESHOLD; // rows are scaled by their largest entry
     o->symbolic = klu_analyze_given(p->n, p->start, p->row, first, first, &o->common);
     if (!o->symbolic)
         return false;
@@ -193,7 +190,7 @@ bool ct_factors_compute(struct ct_factors *f, double *value)
         return true;
     f->npivoting++;
     return (factor(f, value, 0) && f->growth * growth_limit >= 1)
-        || factor(f, value, diagonal_preference);
+        || factor(f, value, CT_PIVOT_THRESHOLD);
 }
 
 void ct_factors_solve(struct ct_factors *f, double *x)

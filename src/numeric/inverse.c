@@ -6,13 +6,11 @@
 
 #include <math.h>
 
-enum { FEW = 4, PAIR = CT_SIMD2 };
-
 // y + i z -= (c + i d) (r + i s)
 static inline void subtract_multiple_complex(double *y, double *z, double c, double d,
                                              const double *r, const double *s, int rows)
 {
-    for (int i = 0; i < rows; i += PAIR) {
+    for (int i = 0; i < rows; i += CT_SIMD2) {
         const ct_simd2 re = ct_simd2_load(r + i), im = ct_simd2_load(s + i);
         ct_simd2_store(y + i, ct_simd2_add(ct_simd2_add(ct_simd2_load(y + i), re, -c), im, d));
         ct_simd2_store(z + i, ct_simd2_add(ct_simd2_add(ct_simd2_load(z + i), im, -c), re, -d));
@@ -81,9 +79,9 @@ static inline bool invert(double *restrict A, int *pivot, int n, const int rows)
 
 bool ct_inverse(double *A, int *pivot, int n)
 {
-    return n <= FEW     ? invert(A, pivot, n, FEW)
-         : n <= 2 * FEW ? invert(A, pivot, n, 2 * FEW)
-                        : invert(A, pivot, n, CT_MOST_INVERTED);
+    return n <= CT_SIMD4     ? invert(A, pivot, n, CT_SIMD4)
+         : n <= 2 * CT_SIMD4 ? invert(A, pivot, n, 2 * CT_SIMD4)
+                             : invert(A, pivot, n, CT_MOST_INVERTED);
 }
 
 // Blocks of eight rows, then one of four: two independent sums per column hide the latency.
@@ -91,17 +89,17 @@ CT_SIMD4_INLINE void matrix_vector(double *restrict x, const double *restrict A,
                                    const double *restrict b, int rows, int n)
 {
     int i = 0;
-    for (; i + 2 * FEW <= rows; i += 2 * FEW) {
+    for (; i + 2 * CT_SIMD4 <= rows; i += 2 * CT_SIMD4) {
         const double *column = A + i;
         ct_simd4 first, second;
         ct_simd4_fill(&first, 0);
         ct_simd4_fill(&second, 0);
         for (int j = 0; j < n; j++, column += rows) {
             ct_simd4_add_times(&first, b[j], column);
-            ct_simd4_add_times(&second, b[j], column + FEW);
+            ct_simd4_add_times(&second, b[j], column + CT_SIMD4);
         }
         ct_simd4_put(x + i, &first);
-        ct_simd4_put(x + i + FEW, &second);
+        ct_simd4_put(x + i + CT_SIMD4, &second);
     }
     if (i < rows) {
         const double *column = A + i;
@@ -180,7 +178,7 @@ void ct_matrix_vector_complex(double *restrict x, double *restrict y, const doub
                               const double *restrict im, const double *restrict a,
                               const double *restrict b, int rows, int n)
 {
-    for (int i = 0; i < rows; i += PAIR) {
+    for (int i = 0; i < rows; i += CT_SIMD2) {
         const double *X = re + i, *Y = im + i;
         ct_simd2 real = {0}, imaginary = {0}, less = {0}, more = {0};
         for (int j = 0; j < n; j++, X += rows, Y += rows) {

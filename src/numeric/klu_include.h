@@ -10,4 +10,9 @@
 #endif
 #endif
 
+/// Threshold partial pivoting: a diagonal entry is the pivot if it is at least this part of the
+/// largest one in its column. Definition: the usual choice, key duff2017; it bounds growth by 11 a
+/// step.
+#define CT_PIVOT_THRESHOLD 0.1
+
 #endif

@@ -5,7 +5,7 @@
 #ifndef CT_NUMERIC_SIMD4_H
 #define CT_NUMERIC_SIMD4_H
 
-enum { CT_SIMD4 = 4 };
+enum { CT_SIMD4 = 4 }; // Definition: of the type
 
 #if defined(__GNUC__)
 

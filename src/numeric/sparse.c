@@ -10,12 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Threshold partial pivoting: a diagonal entry is the pivot from this part of the largest in its
-// column. 0.1 bounds growth by 11 a step.
-static const double diagonal_preference = 0.1;
-// The same in an order that was chosen for the values too (KLU's own default).
+// CT_PIVOT_THRESHOLD in an order that was chosen for the values too. Definition: KLU's own default.
 static const double order_preference = 1e-3;
-// Backward error above which a solution is refined: some tens of units of round-off.
+// Backward error above which a solution is refined: some tens of units of round-off. XXX
 static const double refinement_limit = 1e-14;
 
 struct ct_sparse {
@@ -82,7 +79,7 @@ static struct ct_sparse *create(struct ct_arena *a, int n, const int *row, const
     s->sum = CT_NEWN(a, long double, n);
     s->scale = CT_NEWN(a, double, n);
     klu_defaults(&s->common);
-    s->common.tol = diagonal_preference;
+    s->common.tol = CT_PIVOT_THRESHOLD;
     s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
     ct_arena_on_destroy(a, release, s);
     return s;
@@ -190,11 +187,9 @@ static void residual_extended(struct ct_sparse *s, const double *x, const double
 
 void ct_sparse_solve_extended(struct ct_sparse *s, double *x, const double *b)
 {
-    enum { MOST = 8 };
-    double last = INFINITY;
     memcpy(x, b, (size_t)s->n * sizeof *x);
     klu_solve(s->symbolic, s->numeric, s->n, 1, x, &s->common);
-    for (int i = 0; i < MOST; i++) {
+    for (double last = INFINITY;;) { // each correction is less than half of the last
         residual_extended(s, x, b);
         klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
         const double size = ct_vector_largest(s->r, (size_t)s->n);

@@ -114,6 +114,7 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
                         const struct ct_model *m, enum ct_look look)
 {
     *d = (struct ct_derivation){.a = a, .e = e, .m = m, .page = {.arena = a, .look = look}};
+    d->work = ct_arena_create_under(a);
     d->print = (struct ct_print){
         .style = look == CT_LOOK_TEXT ? CT_PRINT_TEXT : CT_PRINT_LATEX,
         .symbol = symbol,
@@ -126,16 +127,23 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
     d->rank = rank_parameters(d);
 }
 
+const char *ct_derivation_text_as(struct ct_derivation *d, ct_ex v, const struct ct_print *p)
+{
+    const char *text = ct_arena_strdup(d->a, ct_ex_text(d->work, d->e->x, v, p));
+    ct_arena_clear(d->work);
+    return text;
+}
+
 const char *ct_derivation_text(struct ct_derivation *d, ct_ex v)
 {
-    return ct_ex_text(d->a, d->e->x, v, &d->print);
+    return ct_derivation_text_as(d, v, &d->print);
 }
 
 const char *ct_derivation_exact(struct ct_derivation *d, ct_ex v)
 {
     struct ct_print p = d->print;
     p.no_data = true;
-    return ct_ex_text(d->a, d->e->x, v, &p);
+    return ct_derivation_text_as(d, v, &p);
 }
 
 const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v)

@@ -8,6 +8,7 @@
 
 struct ct_derivation {
     struct ct_arena *a;
+    struct ct_arena *work; // of one text, then cleared
     struct ct_equations *e;
     const struct ct_model *m;
     struct ct_page page;
@@ -19,6 +20,8 @@ struct ct_derivation {
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
                         const struct ct_model *m, enum ct_look look);
 
+/// An expression in a style of print.
+const char *ct_derivation_text_as(struct ct_derivation *d, ct_ex v, const struct ct_print *p);
 /// An expression as mathematics of the page.
 const char *ct_derivation_text(struct ct_derivation *d, ct_ex v);
 /// The same where no number comes from the model's data: q/2, not 0.5*q.

@@ -44,9 +44,9 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     if (s->kind == CT_SYM_SWITCH || s->kind == CT_SYM_MEMORY)
         return ct_arena_printf(a, s->kind == CT_SYM_SWITCH ? "mode[%u]" : "kept[%u]", s->index);
     if (!n->of[k]) {
-        const char *name = ct_c_name(a, s->name);
+        const char *name = ct_c_name(n->d->a, s->name); // stays, unlike what is in a
         for (int i = 2; is_taken(n, name); i++)
-            name = ct_arena_printf(a, "%s_%d", ct_c_name(a, s->name), i);
+            name = ct_arena_printf(n->d->a, "%s_%d", ct_c_name(a, s->name), i);
         n->of[k] = name;
     }
     return n->of[k];
@@ -62,7 +62,7 @@ struct writer {
 
 static const char *text(struct writer *w, ct_ex e)
 {
-    return ct_ex_text(w->d->a, w->d->e->x, e, &w->print);
+    return ct_derivation_text_as(w->d, e, &w->print);
 }
 
 static void mark_below(struct writer *w, const ct_ex *root, size_t nroot)

@@ -19,7 +19,7 @@ struct writer {
 static const char *text(struct writer *w, ct_ex v)
 {
     const struct ct_print plain = {.limit = 1000000};
-    return ct_ex_text(w->d->a, w->d->e->x, v, &plain);
+    return ct_derivation_text_as(w->d, v, &plain);
 }
 
 // ---- topology -----------------------------------------------------------------------------------

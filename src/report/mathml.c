@@ -659,18 +659,35 @@ static void put_note(FILE *out, const char *note)
     }
 }
 
-// is_first: of its side; the sign of a further one stands between terms.
-static void put_term(FILE *out, const struct ct_mathml_term *t, bool is_first)
+static void open_term(FILE *out, const struct ct_mathml_term *t, const char *classes)
 {
-    const struct span all = {t->latex, t->latex + strlen(t->latex)};
-    const bool is_wide = width_of(all) > PHONE_LINE;
-    fputs(is_wide ? "<mrow class=\"term wide\"" : "<mrow class=\"term\"", out);
+    fprintf(out, "<mrow class=\"%s\"", classes);
     if (t->components) {
         fputs(" data-component=\"", out);
         ct_html_text(out, t->components, SIZE_MAX);
         fputc('"', out);
     }
     fputc('>', out);
+}
+
+static void put_plain(FILE *out, const struct ct_mathml_term *t, bool is_first)
+{
+    const char *s = t->plain;
+    open_term(out, t, "term plain");
+    fputs("<mtext>", out);
+    if (!is_first) {
+        fputs(*s == '-' ? "- " : "+ ", out);
+        s += *s == '-';
+    }
+    ct_html_text(out, s, SIZE_MAX);
+    fputs("</mtext></mrow>", out);
+}
+
+static void put_typeset(FILE *out, const struct ct_mathml_term *t, bool is_first)
+{
+    const struct span all = {t->latex, t->latex + strlen(t->latex)};
+    const bool is_wide = width_of(all) > PHONE_LINE;
+    open_term(out, t, is_wide ? "term wide" : "term");
     const char *s = skip_blanks(all.s, all.end);
     struct pieces p = {.out = out};
     if (is_wide)
@@ -687,6 +704,15 @@ static void put_term(FILE *out, const struct ct_mathml_term *t, bool is_first)
         put_row(out, (struct span){s, all.end});
     }
     fputs("</mrow>", out);
+}
+
+// is_first: of its side; the sign of a further one stands between terms.
+static void put_term(FILE *out, const struct ct_mathml_term *t, bool is_first)
+{
+    if (t->plain)
+        put_plain(out, t, is_first);
+    else
+        put_typeset(out, t, is_first);
     if (t->value) {
         fputs("<mtext class=\"value\">", out);
         ct_html_text(out, t->value, SIZE_MAX);

@@ -37,6 +37,7 @@ void ct_mathml_inline(FILE *out, const char *latex);
 /// A term at the top level of a side of an equation.
 struct ct_mathml_term {
     const char *latex;      ///< with its sign, as of ct_ex_terms: "m \\, g", " - m \\, g"
+    const char *plain;      ///< text in place of latex, of class `plain`; NULL: latex
     const char *components; ///< names separated by blanks; NULL: not known, no attribute
     const char *value; ///< text of an element of class `value` after it; NULL: no such element
     const char *note;  ///< plain words behind all this, of class `note`; NULL: none

@@ -9,7 +9,15 @@
 
 // What browsers would say: readable in print, in the dark, at 390 px; only tables and matrices scroll, and on their own.
 const char ct_page_style[]
-    = ".table { overflow-x: auto }\n"
+    // what is wider than its place scrolls, with a shadow at the end where there is more
+    = ".table, .matrix, div.wide, pre.wide { overflow-x: auto; "
+      "background: linear-gradient(to right, var(--paper, Canvas) 40%, transparent) 0 0 / 3em "
+      "100% "
+      "local, linear-gradient(to left, var(--paper, Canvas) 40%, transparent) 100% 0 / 3em "
+      "100% "
+      "local, linear-gradient(to right, #8886, transparent) 0 0 / 1em 100%, "
+      "linear-gradient(to left, #8886, transparent) 100% 0 / 1em 100%; "
+      "background-repeat: no-repeat }\n"
       "table { border-collapse: collapse }\n"
       "td, th { padding: 0 1em 0 0; text-align: left; vertical-align: top }\n"
       "th, td { white-space: nowrap }\n"
@@ -23,6 +31,8 @@ const char ct_page_style[]
       ".labelled > math.equation { margin-left: 1.2em }\n"
       "mtext.note { margin-left: .3em }\n"
       "summary { cursor: pointer }\n"
+      "@media (max-width: 40rem) { th, td { font-size: .875em; padding-right: .7em } "
+      "th { white-space: normal } td.words { min-width: 8em } }\n"
       "@media print { details::details-content { content-visibility: visible; block-size: auto "
       "} }\n";
 

@@ -72,7 +72,8 @@ static size_t break_place(const char *s, size_t room)
 // s from `column` on, continued on further lines at `indent`.
 static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
 {
-    while (column + ct_text_width(s) > CT_PAGE_WIDTH) {
+    size_t width = ct_text_width(s);
+    while (column + width > CT_PAGE_WIDTH) {
         const size_t room = CT_PAGE_WIDTH > column ? CT_PAGE_WIDTH - column : 0;
         const size_t at = break_place(s, room);
         if (!at)
@@ -80,7 +81,8 @@ static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
         const bool keep = s[at] == '*'; // a factor's sign stays on the next line
         fprintf(out, "%.*s\n", (int)at, s);
         put_indent(out, indent);
-        s += at + !keep;
+        for (const char *end = s + at + !keep; s < end; s++)
+            width -= ((unsigned char)*s & 0xC0) != 0x80;
         column = indent;
     }
     fputs(s, out);

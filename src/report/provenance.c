@@ -215,9 +215,9 @@ static void take_marked(struct finder *f, struct ct_build *b)
         m->phi[i] = own->row[i].phi;
         m->gam[i] = own->row[i].gam;
     }
-    for (size_t i = 0; i < b->ncoordinate; i++)
-        if (b->coordinate[i].driver >= 0)
-            m->effort[b->coordinate[i].driver] = ct_driver_effort(b, (int)i);
+    for (size_t i = 0; i < b->topology->ncoordinate; i++)
+        if (b->kinematics->coordinate[i].driver >= 0)
+            m->effort[b->kinematics->coordinate[i].driver] = ct_driver_effort(b, (int)i);
     for (size_t i = 0; f->r->output && i < own->nresult; i++)
         m->output[i] = own->result[i].value;
     const size_t most = e->nq + 2 * e->nu + e->nrow + e->nswitch + e->nmemory;

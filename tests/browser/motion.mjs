@@ -86,7 +86,7 @@ async function checkStandsStill(page) {
 }
 
 async function checkPanel(browser) {
-  const { page, close } = await open(browser, report(system("slider_crank"), "motion.html"));
+  const { page, close } = await open(browser, await report(system("slider_crank"), "motion.html"));
   await checkSeek(page, 2);
   await checkStandsStill(page);
   await checkPicking(page);
@@ -114,7 +114,7 @@ async function checkNarrow(browser) {
 }
 
 async function checkBeams(browser) {
-  const file = report(system("slider_crank_flexible"), "beams.html");
+  const file = await report(system("slider_crank_flexible"), "beams.html");
   const { page, close } = await open(browser, file, { dark: true });
   await checkSeek(page, 1);
   const slider = page.locator(".factor", { hasText: "deflection" }).locator("input");
@@ -144,9 +144,8 @@ async function checkFallback(browser) {
 }
 
 async function checkModes(browser) {
-  const make = (name) => cotree(["modes", system("cantilever"), "-q", "--count", "4", "-o", "modes.csv", "--report", name], { stdio: "ignore" });
-  make("modes.html");
-  make("again.html");
+  const make = (name) => cotree(["modes", system("cantilever"), "-q", "--count", "4", "-o", `${name}.csv`, "--report", name]);
+  await Promise.all([make("modes.html"), make("again.html")]);
   const file = join(folder, "modes.html");
   assert.ok(readFileSync(file).equals(readFileSync(join(folder, "again.html"))), "other bytes");
   const { page, close } = await open(browser, file);

@@ -4,7 +4,7 @@ import { readFileSync, rmSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { cotree, folder, launch, open, report, simulate } from "./browser.mjs";
-import { checkClock, checkEquations, checkFile, checkGraph, checkLights, checkManifest, checkNoScripts, checkSections } from "./checks.mjs";
+import { checkClock, checkEquations, checkFile, checkGraph, checkLayout, checkLights, checkManifest, checkNoScripts, checkPrint, checkSections } from "./checks.mjs";
 
 const models = join(dirname(fileURLToPath(import.meta.url)), "models");
 const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
@@ -43,27 +43,38 @@ async function checkCutOff(browser, file) {
   await close();
 }
 
-async function checkModel({ name, size, light, more }, browser) {
-  const model = system(name);
-  const file = report(model, `${name}.html`);
-  const run = simulate(model);
-  const graph = JSON.parse(cotree(["graph", model, "--format", "json"]));
+// All that cotree says about a model: begun at once for all models.
+function ask(model, name, page = `${name}.html`) {
+  const answers = [report(model, page), simulate(model, `${name}.csv`), cotree(["graph", model, "--format", "json"])];
+  answers.forEach((answer) => answer.catch(() => {}));
+  return async () => {
+    const [file, run, graph] = await Promise.all(answers);
+    return { file, run, graph: JSON.parse(graph) };
+  };
+}
+
+async function checkModel({ size, light, more, answers }, browser) {
+  const { file, run, graph } = await answers();
   checkFile(file, size);
   const { page, close } = await open(browser, file);
   await checkSections(page);
   await checkClock(page, run);
   await checkGraph(page, graph);
   await checkEquations(page, run.t[Math.floor(run.t.length / 2)]);
+  await checkLayout(page);
   await checkMotion(page, run.t.at(-1));
   if (light) await checkLights(page, ...light);
   if (more) await checkLights(page, ...more);
+  await page.setViewportSize({ width: 390, height: 600 });
+  await checkLayout(page);
+  await checkPrint(page);
   await close();
 }
 
 // What does not depend on the model.
 async function checkControls(browser) {
   const file = join(folder, "slider_crank.html");
-  const { header } = simulate(system("slider_crank"));
+  const { header } = await simulate(system("slider_crank"), "controls.csv");
   const { page, close } = await open(browser, file);
   // the table that is saved
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "CSV" }).click()]);
@@ -112,19 +123,33 @@ async function checkControls(browser) {
   await checkCutOff(browser, file);
   // a phone, in the dark: nothing is wider than the screen
   const phone = await open(browser, file, { viewport: { width: 390, height: 844 }, dark: true });
-  assert.ok((await phone.page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await checkLayout(phone.page);
   await phone.close();
+  await checkTables(browser);
+}
+
+// The pages of `cotree equations`: on a phone words wrap in tables, and what is still wider scrolls.
+async function checkTables(browser) {
+  const name = "equations.html";
+  await cotree(["equations", system("slider_crank"), "-q", "--show", "all", "-o", name]);
+  const context = await browser.newContext({ viewport: { width: 390, height: 844 } });
+  const page = await context.newPage();
+  await page.goto(`file://${join(folder, name)}`);
+  const places = await page.$$eval(".table, .matrix", (all) => all.map((e) => [e.scrollWidth - e.clientWidth, getComputedStyle(e).overflowX]));
+  assert.ok(places[0][0] <= 0, "the terminal equations are cut off");
+  assert.ok(places.every(([more, overflow]) => more <= 0 || overflow === "auto"));
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
+  await context.close();
 }
 
 async function checkHostile(browser) {
   const model = join(models, "hostile.yaml");
-  const file = report(model, "it's; $(touch taken) & \"quoted\".html");
-  const run = simulate(model);
+  const { file, run, graph } = await ask(model, "hostile", "it's; $(touch taken) & \"quoted\".html")();
   checkFile(file, 1);
   const { page, close } = await open(browser, file);
   await checkSections(page);
   await checkClock(page, run);
-  await checkGraph(page, JSON.parse(cotree(["graph", model, "--format", "json"])));
+  await checkGraph(page, graph);
   await checkLights(page, "__proto__", ["model", "graph"]);
   assert.equal(await page.evaluate(() => window.taken), undefined);
   assert.equal(await page.locator("main img, main b b").count(), 0);
@@ -136,18 +161,18 @@ async function checkHostile(browser) {
 }
 
 async function checkStill(browser) {
-  const file = report(join(models, "still.yaml"), "still.html");
+  const file = await report(join(models, "still.yaml"), "still.html");
   const { page, close } = await open(browser, file);
   await checkSections(page);
   assert.equal(await page.evaluate(() => (window.cotree.seek(3), window.cotree.time)), 0);
   await close();
-  const again = report(join(models, "still.yaml"), "again.html");
+  const again = await report(join(models, "still.yaml"), "again.html");
   assert.ok(readFileSync(file).equals(readFileSync(again)), "the name of the file changes its bytes");
 }
 
 // A run that stops before its end: an error, and a page of what there is.
 async function checkStop(browser) {
-  assert.throws(() => report(join(models, "stops.yaml"), "stops.html"), (error) => error.status === 1 && /E301/.test(error.stderr));
+  await assert.rejects(report(join(models, "stops.yaml"), "stops.html"), (error) => error.code === 1 && /E301/.test(error.stderr));
   const { page, close } = await open(browser, join(folder, "stops.html"));
   await checkSections(page);
   const end = await page.evaluate(() => (window.cotree.seek(1), window.cotree.time));
@@ -156,9 +181,11 @@ async function checkStop(browser) {
   await close();
 }
 
-const browser = await launch();
-const steps = [...cases.map((model) => [model.name, () => checkModel(model, browser)]), ["controls", () => checkControls(browser)], ["hostile", () => checkHostile(browser)], ["still", () => checkStill(browser)], ["stop", () => checkStop(browser)]];
 const wanted = process.argv.slice(2);
+const chosen = cases.filter(({ name }) => !wanted.length || wanted.includes(name));
+for (const model of chosen) model.answers = ask(system(model.name), model.name);
+const browser = await launch();
+const steps = [...chosen.map((model) => [model.name, () => checkModel(model, browser)]), ["controls", () => checkControls(browser)], ["hostile", () => checkHostile(browser)], ["still", () => checkStill(browser)], ["stop", () => checkStop(browser)]];
 let failed = 0;
 for (const [name, step] of steps) {
   if (wanted.length && !wanted.includes(name)) continue;

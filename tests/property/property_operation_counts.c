@@ -255,7 +255,7 @@ static void six_axis_arm_needs_no_more_than_its_goals(void **state)
     assert_int_equal(v.e.formulation, CT_FORMULATION_COMPOSITE);
     ct_ex *all = CT_NEWN(v.arena, ct_ex, 42);
     struct ct_build *b = v.e.build;
-    ct_composite_derive(b, ct_members_derive(b), b->dynamics.effort, all, all + 36);
+    ct_composite_derive(b, ct_members_derive(b), b->loads->effort, all, all + 36);
     const struct ct_tape_counts c = ct_ex_count(v.arena, v.e.x, all, 42);
     print_message("M, Q: %ld/%ld\n", c.multiplications, c.additions);
     assert_in_range(c.multiplications, 1, 514);

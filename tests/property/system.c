@@ -328,7 +328,7 @@ bool system_random_state(struct system *s, double t, double amplitude,
         for (size_t k = 0; k < m->nu; k++)
             wish[k] = chance();
         ct_evaluator_set(m, t, y);
-        ct_switches_start(m, t, y, NULL);
+        ct_switches_start(m, t, y, NULL, NULL);
         ct_evaluator_constraint(m);
         ct_evaluator_dynamics(m);
         ok = ct_partition_choose(s->embed);
@@ -389,7 +389,7 @@ void variant_close(struct variant *v)
 void variant_renew(struct variant *v, double t)
 {
     ct_evaluator_set(v->m, t, v->y);
-    ct_switches_start(v->m, t, v->y, NULL);
+    ct_switches_start(v->m, t, v->y, NULL, NULL);
     ct_evaluator_set(v->m, t, v->y);
     ct_memory_start(v->m);
     ct_evaluator_dynamics(v->m);

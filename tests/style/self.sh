@@ -100,6 +100,39 @@ fails_with 'src/high/b.c:1:' classes
 echo '#include "low/a.h"' >src/high/b.c
 rm -r src/component components
 
+# ---- kinds of constants
+if command -v python3 >/dev/null; then
+  mkdir -p src/kinds tests
+  touch tests/trade.sh
+  constants() {
+    PYTHONDONTWRITEBYTECODE=1 python3 "$tests/style/constants.py" . src/kinds
+  }
+  constant() {
+    printf '%s\n' "$@" >src/kinds/k.c
+  }
+  constant '// Derived: a sum of four terms.' 'static const double a = 4 * DBL_EPSILON, b = 1e-3;'
+  passes constants
+  constant 'static const double a = 4; // [m]'
+  fails_with 'src/kinds/k.c:1: a = 4: no kind' constants
+  constant '    const double a = 2 * x, b = 1, c = f(3);' '#define GUARD' 'enum { ONE, TWO, NKIND };'
+  passes constants
+  constant '#define MOST 12'
+  fails_with 'MOST = 12: no kind' constants
+  constant '// Limit: a message beyond' 'enum {' '    MOST = 12,' '    LEAST = 3, // Derived: of it' '};'
+  passes constants
+  constant 'enum { A = 12 }; // Default: trades. Test: trade.'
+  passes constants
+  constant 'enum { A = 12 }; // Default: trades. Test: nothing.'
+  fails_with "no test is called 'nothing'" constants
+  constant 'enum { A = 12 }; // Default: trades'
+  fails_with 'names a test' constants
+  constant 'int f(double x)' '{' '    return x < 1e-6; // 1e-7' '}'
+  fails_with 'src/kinds/k.c:3: 1e-6: a number without' constants
+  constant 'int f(double x)' '{' '    // Definition: of a micrometre' '    return x < 1e-6;' '}'
+  passes constants
+  rm -r src/kinds
+fi
+
 # ---- search terms
 mkdir -p src/integrate
 fails_with "'dense output' leads to nothing" sh "$tests/style/terms.sh" .

@@ -258,6 +258,39 @@ static void a_root_at_rest_on_zero_does_not_fire(void **unused)
     end(r);
 }
 
+// y'' = t: zero with its slope at the start. The root fires once, at the start.
+static enum ct_eval force_from_zero(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    dy[0] = y[1];
+    dy[1] = t;
+    return CT_EVAL_OK;
+}
+
+static void a_root_that_leaves_its_rest_fires_where_it_rested(void **unused)
+{
+    (void)unused;
+    for (int m = 0; m < ct_nmethod && !ct_methods[m]->is_implicit; m++)
+        for (int is_fixed = 0; is_fixed < 2; is_fixed++) {
+            struct record *r = begin();
+            double y[NY] = {0, 0};
+            check_fine(r, run(r, ct_methods[m],
+                              (struct ct_problem){.ny = 2,
+                                                  .rhs = force_from_zero,
+                                                  .nroot = 1,
+                                                  .root = height,
+                                                  .event = note_event},
+                              (struct ct_integrate_options){
+                                  .t1 = 1, .atol = 1e-8, .step = is_fixed ? 0.01 : 0},
+                              y));
+            assert_int_equal(r->nevent, 1);
+            assert_true(r->event[0] == 0);
+            assert_int_equal(r->crossed[0][0], 1);
+            check_close("y", y[0], 1.0 / 6, 1e-8);
+            end(r);
+        }
+}
+
 static void a_sample_on_an_event_is_taken_after_it(void **unused)
 {
     (void)unused;
@@ -298,6 +331,7 @@ int main(void)
         cmocka_unit_test(roots_that_fire_together_fire_once),
         cmocka_unit_test(a_root_may_jump_at_its_event),
         cmocka_unit_test(a_root_at_rest_on_zero_does_not_fire),
+        cmocka_unit_test(a_root_that_leaves_its_rest_fires_where_it_rested),
         cmocka_unit_test(a_sample_on_an_event_is_taken_after_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -171,6 +171,43 @@ static void inputs_are_held_between_steps(void **state)
     ct_data_destroy(d);
 }
 
+// A cart of 1 kg with dry friction of 0.1 N under a force that the program sets, and with drag that
+// begins with the square of time.
+static void friction_holds_or_lets_go_as_inputs_change(void **state)
+{
+    (void)state;
+    static const char cart[] = "cotree: 1\n"
+                               "inputs: {f: {value: 0, unit: N}, g: {value: 0, unit: N}}\n"
+                               "bodies: {cart: {mass: 1}}\n"
+                               "joints:\n"
+                               "  s: {type: prismatic, from: ground, to: cart,\n"
+                               "      effort: \"f - 0.1*sign(s.u) + g*t*t\"}\n"
+                               "outputs: [s.q]\n"
+                               "simulation: {duration: 1}\n";
+    enum { E_STUCK = 406 };
+    const double dt = 0x1p-7;
+    struct ct_system *s = ct_system_load_text(ctx, cart, strlen(cart), "cart.yaml", NULL);
+    struct ct_data *d = ct_data_create(ctx, s, NULL);
+    assert_true(ct_data_step(ctx, d, dt) && ct_data_step(ctx, d, dt));
+    assert_true(ct_data_value(d, CT_COORDINATE, 0) == 0);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        assert_true(ct_data_set_one(ctx, d, CT_INPUT, "f", sign * 0.05));
+        assert_false(ct_data_step(ctx, d, dt));
+        assert_int_equal(code_of_last(), E_STUCK);
+    }
+    assert_true(ct_data_set_one(ctx, d, CT_INPUT, "f", 0.5));
+    for (int i = 0; i < 128; i++)
+        assert_true(ct_data_step(ctx, d, dt));
+    CLOSE(ct_data_value(d, CT_COORDINATE, 0), 0.2, 1e-9);
+    assert_true(ct_data_reset(ctx, d));
+    assert_true(ct_data_set_one(ctx, d, CT_INPUT, "f", 0));
+    assert_true(ct_data_set_one(ctx, d, CT_INPUT, "g", 1));
+    assert_false(ct_data_step(ctx, d, dt) && ct_data_step(ctx, d, dt));
+    assert_int_equal(code_of_last(), E_STUCK);
+    ct_data_destroy(d);
+    ct_system_destroy(s);
+}
+
 static void parameters_carry_what_is_derived_from_them(void **state)
 {
     (void)state;
@@ -735,6 +772,7 @@ int main(void)
         cmocka_unit_test(steps_lead_where_a_run_leads),
         cmocka_unit_test(events_are_on_the_way),
         cmocka_unit_test(inputs_are_held_between_steps),
+        cmocka_unit_test(friction_holds_or_lets_go_as_inputs_change),
         cmocka_unit_test(parameters_carry_what_is_derived_from_them),
         cmocka_unit_test(a_clone_goes_the_same_way),
         cmocka_unit_test(equations_hold_with_what_get_gives),

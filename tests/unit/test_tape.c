@@ -330,6 +330,34 @@ static void compiling_is_linear_in_the_graph(void **unused)
     assert_true(large < 40 * small + 0.02);
 }
 
+// Points that crowd at either end, or are spaced equally: between two of them and at each the value is that of the
+// interval which a search from the first one on finds.
+static void tables_with_uneven_points_are_read_right(void **unused)
+{
+    (void)unused;
+    enum { N = 300 };
+    double x[N], y[N];
+    for (int shape = 0; shape < 3; shape++) {
+        for (int i = 0; i < N; i++) {
+            x[i] = shape == 0 ? 0.1 * i : shape == 1 ? ldexp(1, i - N) : -ldexp(1, -i);
+            y[i] = i % 7;
+        }
+        const struct ct_table t = {.n = N, .x = x, .y = y},
+                              held = {.n = N, .x = x, .y = y, .holds = true};
+        for (int i = 0; i < N - 1; i++)
+            for (int k = 0; k < 3; k++) {
+                const double at = x[i] + 0.25 * k * (x[i + 1] - x[i]);
+                const double want
+                    = y[i] + (at - x[i]) * ((y[i + 1] - y[i]) / (x[i + 1] - x[i]));
+                assert_true(ct_table_value(&t, 0, at) == want);
+                assert_true(ct_table_value(&held, 0, at) == y[i]);
+            }
+        CHECK_CLOSE(ct_table_value(&t, 0, x[N - 1]), y[N - 1], 1e-14, 1e-14);
+        assert_true(isnan(ct_table_value(&t, 0, x[0] - 1))
+                    && isnan(ct_table_value(&t, 0, NAN)));
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc > 1 && !strcmp(argv[1], "--time")) {
@@ -346,6 +374,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(no_outputs_need_nothing),
         cmocka_unit_test(unused_inputs_and_dead_nodes_take_no_room),
         cmocka_unit_test(parameters_are_free_and_pairs_count_twice),
+        cmocka_unit_test(tables_with_uneven_points_are_read_right),
         cmocka_unit_test(compiling_is_linear_in_the_graph),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,7 +5,8 @@
 
 #include "component/beam.h"
 
-enum { CT_SHAPE_SIZE = 13, CT_MAX_GAUSS = 8 };
+/// Definition: coefficients up to degree 12, that of products of two shape functions.
+enum { CT_SHAPE_SIZE = 13, CT_MAX_GAUSS = CT_ELEMENT_POINTS };
 
 /// (c[0] + c[1] xi + ...) h^power, h the element's length.
 struct ct_shape {

@@ -68,8 +68,8 @@ void ct_energies_derive(struct ct_build *b)
     e->kinetic = ct_ex_scale(x, 0.5, kinetic);
     e->continuity = b->model->simulation.rate_jumps == CT_RATE_CONTINUOUS ? continuous_speeds(b)
                                                                           : CT_EX_ZERO;
-    for (size_t i = 0; i < b->ncoordinate; i++) {
-        const struct ct_coordinate *c = &b->coordinate[i];
+    for (size_t i = 0; i < b->topology->ncoordinate; i++) {
+        const struct ct_coordinate *c = &b->kinematics->coordinate[i];
         if (c->driver < 0)
             continue;
         struct ct_driver *d = &e->driver[c->driver];

@@ -60,8 +60,8 @@ static void warn_of_load(struct ct_ctx *ctx, struct ct_build *b, const struct ct
 
 void ct_warn_of_excluded_loads(struct ct_ctx *ctx, struct ct_build *b)
 {
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        const struct ct_load *load = &b->dynamics.load[i];
+    for (size_t i = 0; i < b->loads->nload; i++) {
+        const struct ct_load *load = &b->loads->load[i];
         const struct ct_flexible *f = ct_flexible_of(b, b->topology->node[load->head].body);
         if (f && f->beam->deformation_given && load->self->cls->family == CT_FAMILY_FORCE)
             warn_of_load(ctx, b, load, f);

@@ -17,7 +17,8 @@
 
 void ct_load_add(struct ct_build *b, const struct ct_load *load)
 {
-    CT_PUSH(b->arena, b->dynamics.load, b->dynamics.nload, b->dynamics.load_cap, *load);
+    struct ct_loads *loads = b->open_loads;
+    CT_PUSH(b->arena, loads->load, loads->nload, loads->load_cap, *load);
 }
 
 ct_ex3 ct_load_vector(struct ct_build *b, const struct ct_instance *self)
@@ -80,14 +81,14 @@ static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 
 static void apply_loads(struct work *w)
 {
     struct ct_build *b = w->b;
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        const struct ct_load *l = &b->dynamics.load[i];
+    for (size_t i = 0; i < b->loads->nload; i++) {
+        const struct ct_load *l = &b->loads->load[i];
         apply_pair(w, l->tail, l->head, l->force, l->torque, !l->is_central);
     }
     if (w->level == CT_BIAS)
         return;
-    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows->nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows->multiplier_wrench[i];
         const ct_ex lam = b->eqs->row[p->row].lam;
         apply_pair(w, p->tail, p->head, ct_ex3_scale(b->x, lam, p->force),
                    ct_ex3_scale(b->x, lam, p->torque), p->carried);
@@ -296,7 +297,7 @@ void ct_forces_derive(struct ct_build *b)
     const struct ct_sweep *s = ct_sweep_run(b, CT_BIAS);
     struct ct_equations *e = b->eqs;
     for (size_t k = 0; k < e->nu; k++)
-        e->Q[k] = ct_ex_sub(b->x, b->dynamics.effort[k], sweep_row(b, s, (int)k));
+        e->Q[k] = ct_ex_sub(b->x, b->loads->effort[k], sweep_row(b, s, (int)k));
 }
 
 void ct_dynamics_derive(struct ct_build *b)
@@ -313,9 +314,9 @@ void ct_dynamics_derive(struct ct_build *b)
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
 {
     if (ct_speed_is_state(b->eqs, (size_t)speed))
-        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->dynamics.effort[speed]);
+        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->loads->effort[speed]);
     return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed),
-                     b->dynamics.effort[speed]);
+                     b->loads->effort[speed]);
 }
 
 // ---- efforts of joints ------------------------------------------------------------------------------
@@ -329,7 +330,7 @@ static ct_ex element(const struct ct_value *v, int k)
 static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential,
                             ct_ex power)
 {
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     const struct ct_edge_info *e = &b->topology->edge[c->edge];
     struct ct_equations *s = b->eqs;
     if (c->u >= 0)
@@ -381,23 +382,24 @@ static struct effort own_effort(struct ct_build *b, const struct ct_edge_info *e
 ct_ex ct_driver_effort(struct ct_build *b, int coordinate)
 {
     struct ct_exs *x = b->x;
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
-    if (c->motion_row)
-        return b->eqs->row[c->motion_row - 1].lam;
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
+    const int motion_row = b->rows->motion_row[coordinate];
+    if (motion_row)
+        return b->eqs->row[motion_row - 1].lam;
     const struct effort own = own_effort(b, &b->topology->edge[c->edge], c->index);
     ct_ex rest
         = ct_ex_sub(x, sweep_driver_row(b, ct_sweep_run(b, CT_FULL), c->driver), own.total);
-    for (size_t i = 0; i < b->rows.ncoupling; i++)
-        if (b->rows.coupling[i].coordinate == coordinate)
+    for (size_t i = 0; i < b->rows->ncoupling; i++)
+        if (b->rows->coupling[i].coordinate == coordinate)
             rest = ct_ex_sub(x, rest,
-                             ct_ex_mul(x, b->rows.coupling[i].factor,
-                                       b->eqs->row[b->rows.coupling[i].row].lam));
+                             ct_ex_mul(x, b->rows->coupling[i].factor,
+                                       b->eqs->row[b->rows->coupling[i].row].lam));
     return rest;
 }
 
 static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k)
 {
-    const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
     const struct ct_value *stiffness = ct_instance_value(e->self, "stiffness");
     if (!c->in_translation && !c->in_rotation)
         return; // the joint reaches a particle: this freedom does not exist
@@ -428,6 +430,8 @@ static void derive_rates(struct ct_build *b)
 bool ct_loads_derive(struct ct_build *b)
 {
     const size_t before = b->ctx->nerror;
+    struct ct_loads *loads = CT_NEW(b->arena, struct ct_loads);
+    b->loads = b->open_loads = loads;
     for (size_t i = 0; i < b->topology->nedge; i++) {
         const struct ct_edge_info *e = &b->topology->edge[i];
         b->signals.holding = e->mark;
@@ -437,13 +441,14 @@ bool ct_loads_derive(struct ct_build *b)
         if (e->kind == CT_EDGE_FORCE)
             e->self->cls->apply(b, e->self);
     }
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, b->dynamics.load[i].potential);
-        b->eqs->power = ct_ex_add(b->x, b->eqs->power, b->dynamics.load[i].power);
+    for (size_t i = 0; i < loads->nload; i++) {
+        b->eqs->potential = ct_ex_add(b->x, b->eqs->potential, loads->load[i].potential);
+        b->eqs->power = ct_ex_add(b->x, b->eqs->power, loads->load[i].power);
     }
     derive_rates(b);
-    b->dynamics.effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    loads->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
-        b->dynamics.effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
+        loads->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
+    b->open_loads = NULL;
     return b->ctx->nerror == before;
 }

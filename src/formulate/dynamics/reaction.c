@@ -43,18 +43,18 @@ static ct_ex3 own_force(struct ct_build *b, int node)
             add(b, &sum,
                 ct_ex3_scale(x, b->model->body[i].mass, ct_ex3_sub(x, a, b->model->gravity)));
         }
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        if (b->dynamics.load[i].head == node)
-            take(b, &sum, b->dynamics.load[i].force);
-        if (b->dynamics.load[i].tail == node)
-            add(b, &sum, b->dynamics.load[i].force);
+    for (size_t i = 0; i < b->loads->nload; i++) {
+        if (b->loads->load[i].head == node)
+            take(b, &sum, b->loads->load[i].force);
+        if (b->loads->load[i].tail == node)
+            add(b, &sum, b->loads->load[i].force);
     }
-    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
-        const ct_ex3 f = ct_ex3_scale(x, b->eqs->row[b->rows.multiplier_wrench[i].row].lam,
-                                      b->rows.multiplier_wrench[i].force);
-        if (b->rows.multiplier_wrench[i].head == node)
+    for (size_t i = 0; i < b->rows->nmultiplier_wrench; i++) {
+        const ct_ex3 f = ct_ex3_scale(x, b->eqs->row[b->rows->multiplier_wrench[i].row].lam,
+                                      b->rows->multiplier_wrench[i].force);
+        if (b->rows->multiplier_wrench[i].head == node)
             take(b, &sum, f);
-        if (b->rows.multiplier_wrench[i].tail == node)
+        if (b->rows->multiplier_wrench[i].tail == node)
             add(b, &sum, f);
     }
     return sum;
@@ -85,8 +85,8 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
     for (size_t i = 1; i < b->model->nbody; i++)
         if (b->topology->node_of_com[i] == node && !b->model->body[i].is_particle)
             add(b, &sum, body_torque(b, (int)i, node));
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        const struct ct_load *l = &b->dynamics.load[i];
+    for (size_t i = 0; i < b->loads->nload; i++) {
+        const struct ct_load *l = &b->loads->load[i];
         if (l->head == node)
             take(b, &sum, l->torque);
         if (l->tail == node) {
@@ -95,8 +95,8 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
                 add(b, &sum, pair_moment(b, l->tail, l->head, l->force));
         }
     }
-    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows->nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows->multiplier_wrench[i];
         const ct_ex lam = b->eqs->row[p->row].lam;
         const ct_ex3 T = ct_ex3_scale(x, lam, p->torque), F = ct_ex3_scale(x, lam, p->force);
         if (p->head == node)
@@ -317,15 +317,15 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
     const int edge = b->topology->edge_of_joint[joint];
     const bool in_T = b->T.is_branch[edge], in_R = b->R.is_branch[edge];
     ct_reaction_of_edge(b, edge, force, torque);
-    for (size_t i = 0; i < b->dynamics.nload; i++)
-        if (b->dynamics.load[i].self == b->topology->edge[edge].self) {
+    for (size_t i = 0; i < b->loads->nload; i++)
+        if (b->loads->load[i].self == b->topology->edge[edge].self) {
             if (!in_T)
-                add(b, force, b->dynamics.load[i].force);
+                add(b, force, b->loads->load[i].force);
             if (!in_R)
-                add(b, torque, b->dynamics.load[i].torque);
+                add(b, torque, b->loads->load[i].torque);
         }
-    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows->nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows->multiplier_wrench[i];
         if (p->joint != joint || p->head != b->topology->wiring[edge].head
             || p->tail != b->topology->wiring[edge].tail)
             continue; // rows of the weld behind a joint carry its number, too

@@ -34,7 +34,7 @@ static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_
         return true; // a gear has no coordinate
     const struct ct_edge_info *e = &b->topology->edge[b->topology->edge_of_joint[j]];
     for (int k = 0; k < e->ncoordinate; k++) {
-        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         if (c->driver >= 0 || (!c->in_translation && !c->in_rotation))
             continue;
         if (e->trial->quaternion >= 0 && k >= e->trial->quaternion)

@@ -73,7 +73,7 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
 static void coordinate_terms(struct ct_build *b, int coordinate, ct_ex factor,
                              struct ct_linear *l)
 {
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     struct ct_wrench w;
     if (ct_coordinate_is_known(c)) {
         add_term(b, l, c->u, c->driver, factor);
@@ -105,6 +105,13 @@ static int push_row(struct ct_build *b, const char *name, int joint, const struc
     return index;
 }
 
+static void push_wrench(struct ct_build *b, const struct ct_multiplier_wrench *p)
+{
+    struct ct_row_wrenches *rows = b->open_rows;
+    CT_PUSH(b->arena, rows->multiplier_wrench, rows->nmultiplier_wrench,
+            rows->multiplier_wrench_cap, *p);
+}
+
 static void add_row(struct ct_build *b, int joint, const char *name, struct ct_ends n,
                     const struct ct_wrench *w, bool carried, ct_ex phi, ct_ex gam)
 {
@@ -117,15 +124,14 @@ static void add_row(struct ct_build *b, int joint, const char *name, struct ct_e
         row->lever = ct_path_levers(b, n.tail, n.head, carried, &row->nlever);
     const struct ct_multiplier_wrench p
         = {index, n.tail, n.head, joint, w->force, w->torque, carried};
-    CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
-            b->rows.multiplier_wrench_cap, p);
+    push_wrench(b, &p);
 }
 
 const ct_ex *ct_row_coefficients(struct ct_build *b, int row)
 {
     struct ct_linear l = linear_zero(b);
-    for (size_t i = 0; i < b->rows.nmultiplier_wrench; i++) {
-        const struct ct_multiplier_wrench *p = &b->rows.multiplier_wrench[i];
+    for (size_t i = 0; i < b->rows->nmultiplier_wrench; i++) {
+        const struct ct_multiplier_wrench *p = &b->rows->multiplier_wrench[i];
         const struct ct_wrench w = {p->force, p->torque};
         if (p->row == row)
             wrench_terms(b, (struct ct_ends){p->tail, p->head}, &w, p->carried, &l);
@@ -169,12 +175,13 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
         // a multiplier on a measured coordinate is a wrench pair; on a branch it is a force on its
         // row
         struct ct_wrench w;
-        const struct ct_coordinate *c = &b->coordinate[coupled[i]];
+        const struct ct_coordinate *c = &b->kinematics->coordinate[coupled[i]];
         const struct ct_ends n = ct_edge_ends(b, c->edge);
         const ct_ex f = i ? ct_ex_neg(x, ratio) : CT_EX_ONE;
         if (ct_coordinate_is_known(c)) {
             const struct ct_coupling own = {row, coupled[i], f};
-            CT_PUSH(b->arena, b->rows.coupling, b->rows.ncoupling, b->rows.coupling_cap, own);
+            struct ct_row_wrenches *rows = b->open_rows;
+            CT_PUSH(b->arena, rows->coupling, rows->ncoupling, rows->coupling_cap, own);
             continue;
         }
         if (!ct_coordinate_wrench(b, coupled[i], &w))
@@ -186,8 +193,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
                                                ct_ex3_scale(x, f, w.force),
                                                ct_ex3_scale(x, f, w.torque),
                                                true};
-        CT_PUSH(b->arena, b->rows.multiplier_wrench, b->rows.nmultiplier_wrench,
-                b->rows.multiplier_wrench_cap, p);
+        push_wrench(b, &p);
     }
 }
 
@@ -319,7 +325,7 @@ static void rotation_rows(struct ct_build *b, int edge)
         return;
     }
     for (int k = 0; k < e->ncoordinate; k++)
-        if (b->coordinate[e->first_coordinate + k].in_rotation)
+        if (b->kinematics->coordinate[e->first_coordinate + k].in_rotation)
             return;
     planar_angle_row(b, edge);
 }
@@ -329,7 +335,7 @@ static void rotation_rows(struct ct_build *b, int edge)
 static void driven_row(struct ct_build *b, int coordinate)
 {
     struct ct_exs *x = b->x;
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     const struct ct_edge_info *e = &b->topology->edge[c->edge];
     const struct ct_value *motion = ct_instance_value(e->self, "motion");
     struct ct_wrench w;
@@ -345,7 +351,7 @@ static void driven_row(struct ct_build *b, int coordinate)
     struct ct_row *row = &b->eqs->row[b->eqs->nrow - 1];
     row->v = ct_ex_sub(x, row->v, rate);
     b->eqs->power = ct_ex_add(x, b->eqs->power, ct_ex_mul(x, row->lam, rate));
-    b->coordinate[coordinate].motion_row = (int)b->eqs->nrow; // one too large: 0 is none
+    b->open_rows->motion_row[coordinate] = (int)b->eqs->nrow; // one too large: 0 is none
 }
 
 // Do joints close no loop? Gears couple coordinates across bodies, so that they count as one.
@@ -368,6 +374,8 @@ static bool is_open(const struct ct_build *b)
 bool ct_rows_derive(struct ct_build *b)
 {
     b->eqs->is_open = is_open(b);
+    b->rows = b->open_rows = CT_NEW(b->arena, struct ct_row_wrenches);
+    b->open_rows->motion_row = CT_NEWN(b->arena, int, b->topology->ncoordinate + 1);
     for (size_t i = 0; i < b->topology->nedge; i++) {
         const struct ct_edge_info *e = &b->topology->edge[i];
         const bool moves
@@ -379,7 +387,7 @@ bool ct_rows_derive(struct ct_build *b)
         if (!b->R.is_branch[i] && e->has_rotation && e->trial->quaternion < 0)
             rotation_rows(b, (int)i);
         for (int k = 0; k < e->ncoordinate; k++) {
-            const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+            const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
             if (c->is_driven && c->driver < 0)
                 driven_row(b, e->first_coordinate + k);
         }
@@ -387,5 +395,6 @@ bool ct_rows_derive(struct ct_build *b)
     for (size_t j = 0; j < b->model->njoint; j++)
         if (b->model->joint[j].cls->apply)
             b->model->joint[j].cls->apply(b, &b->model->joint[j]);
+    b->open_rows = NULL;
     return true;
 }

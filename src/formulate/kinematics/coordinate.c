@@ -172,8 +172,7 @@ static void measure_quaternion(struct ct_build *b, const struct ct_coordinate *c
     ct_ex q[4];
     ct_quaternion_follow(b, c->name, &R, q);
     for (int i = 0; i < 4; i++) {
-        b->coordinate[first + i].measured = q[i];
-        b->coordinate[first + i].has_measured = true;
+        b->cache.measured[first + i] = (struct ct_measured){true, q[i]};
     }
 }
 
@@ -184,32 +183,33 @@ bool ct_coordinate_is_known(const struct ct_coordinate *c)
 
 ct_ex ct_coordinate_value(struct ct_build *b, int coordinate)
 {
-    struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
+    struct ct_measured *measured = &b->cache.measured[coordinate];
     if (ct_coordinate_is_known(c))
         return c->value;
-    if (!c->has_measured && (c->in_translation || c->in_rotation)) {
+    if (!measured->made && (c->in_translation || c->in_rotation)) {
         const struct ct_measure *m = measure_of(b, c);
         const struct ct_ends p = ct_edge_ends(b, c->edge);
-        c->has_measured = true;
+        measured->made = true;
         switch (m->kind) {
         case CT_MEASURE_LENGTH:
-            c->measured = ct_ex3_dot(b->x, ct_node_turn(b, p.tail, m->along),
-                                     ct_path_position(b, p.tail, p.head));
+            measured->value = ct_ex3_dot(b->x, ct_node_turn(b, p.tail, m->along),
+                                         ct_path_position(b, p.tail, p.head));
             break;
         case CT_MEASURE_ANGLE:
-            c->measured = measure_angle(b, c, m);
+            measured->value = measure_angle(b, c, m);
             break;
         case CT_MEASURE_QUATERNION:
             measure_quaternion(b, c);
             break;
         }
     }
-    return c->measured;
+    return measured->value;
 }
 
 bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *w)
 {
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     const struct ct_measure *m = measure_of(b, c);
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     *w = (struct ct_wrench){zero3, zero3};
@@ -251,7 +251,7 @@ ct_ex ct_load_power(struct ct_build *b, int tail, int head, ct_ex3 force, ct_ex3
 
 ct_ex ct_coordinate_speed(struct ct_build *b, int coordinate)
 {
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     struct ct_wrench w;
     if (c->u >= 0)
@@ -283,7 +283,7 @@ ct_ex ct_along_acceleration(struct ct_build *b, struct ct_ends n, ct_ex3 p, enum
 ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_level level)
 {
     struct ct_exs *x = b->x;
-    const struct ct_coordinate *c = &b->coordinate[coordinate];
+    const struct ct_coordinate *c = &b->kinematics->coordinate[coordinate];
     const struct ct_measure *m = measure_of(b, c);
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     struct ct_wrench w;
@@ -311,8 +311,9 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
 int ct_coordinate_find(const struct ct_build *b, const char *name)
 {
     const char *const plain = ct_arena_printf(b->arena, "%s.q", name);
-    for (size_t i = 0; i < b->ncoordinate; i++) {
-        if (!strcmp(b->coordinate[i].name, name) || !strcmp(b->coordinate[i].name, plain))
+    for (size_t i = 0; i < b->topology->ncoordinate; i++) {
+        if (!strcmp(b->kinematics->coordinate[i].name, name)
+            || !strcmp(b->kinematics->coordinate[i].name, plain))
             return (int)i;
     }
     return -1;

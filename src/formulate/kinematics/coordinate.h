@@ -21,7 +21,7 @@ struct ct_wrench {
     ct_ex3 force, torque; // ground components
 };
 
-/// Coordinate of a joint or body edge by index in b->coordinate: unknown, driven or measured; its
+/// Coordinate of a joint or body edge by index in b->kinematics->coordinate: unknown, driven or measured; its
 /// rate and its acceleration at a level. For a number of a quaternion the speed is the component of
 /// angular velocity of the same place.
 ct_ex ct_coordinate_value(struct ct_build *b, int coordinate);
@@ -33,7 +33,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
 
 /// Quaternion of R, followed continuously from its last value.
 void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R, ct_ex out[4]);
-/// Index in b->coordinate of a name such as "a" or "a.q2"; -1 if it is not one.
+/// Index in b->kinematics->coordinate of a name such as "a" or "a.q2"; -1 if it is not one.
 int ct_coordinate_find(const struct ct_build *b, const char *name);
 
 /// Is it an unknown, or driven? Else it is measured.

@@ -9,6 +9,7 @@
 #include "formulate/kinematics/switch.h"
 
 #include <assert.h>
+#include <string.h>
 
 // ---- unknowns -----------------------------------------------------------------------------------
 
@@ -56,26 +57,23 @@ static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
         q[1 + i].rate = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
 }
 
-static void choose_quaternion(struct ct_build *b, const struct ct_edge_info *e, int k,
-                              int speed)
+// The four numbers c[0..3] of a quaternion and the speeds of its three freedoms.
+static void choose_quaternion(struct ct_build *b, const struct ct_edge_info *e,
+                              struct ct_coordinate *c)
 {
     ct_ex w[3];
     const int first = (int)b->eqs->nq;
     for (int i = 0; i < 4; i++) {
-        struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k + i];
-        c->q = new_coordinate(b, c->name, i);
-        c->value = b->eqs->q[c->q].symbol;
+        c[i].q = new_coordinate(b, c[i].name, i);
+        c[i].value = b->eqs->q[c[i].q].symbol;
     }
     for (int i = 0; i < 3; i++) {
-        const int u = new_speed(b, e, ct_arena_printf(b->arena, "%d", speed + i + 1), -1, true);
-        b->coordinate[e->first_coordinate + k + i].u = u;
-        w[i] = b->eqs->u[u].symbol;
+        c[i].u = new_speed(b, e, ct_arena_printf(b->arena, "%d", c[i].index + 1), -1, true);
+        w[i] = b->eqs->u[c[i].u].symbol;
     }
     quaternion_rates(b, first, w);
-    for (int i = 0; i < 4; i++) {
-        struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k + i];
-        c->rate = b->eqs->q[c->q].rate;
-    }
+    for (int i = 0; i < 4; i++)
+        c[i].rate = b->eqs->q[c[i].q].rate;
 }
 
 static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
@@ -157,17 +155,23 @@ static void add_state(struct ct_build *b, const char *name)
 void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 {
     static const struct ct_motion none = {.quaternion = -1};
+    const size_t ncoordinate = b->topology->ncoordinate;
     kinematics->edge = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
+    kinematics->coordinate = CT_NEWN(b->arena, struct ct_coordinate, ncoordinate + 1);
+    if (ncoordinate)
+        memcpy(kinematics->coordinate, b->topology->coordinate,
+               ncoordinate * sizeof *kinematics->coordinate);
+    b->cache.measured = CT_NEWN(b->arena, struct ct_measured, ncoordinate + 1);
     for (size_t i = 0; i < b->topology->nedge; i++) {
         const struct ct_edge_info *e = &b->topology->edge[i];
         for (int k = 0; k < e->ncoordinate; k++) {
-            struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+            struct ct_coordinate *c = &kinematics->coordinate[e->first_coordinate + k];
             if (!is_branch_coordinate(b, c))
                 continue;
             if (c->is_driven) {
                 choose_driven(b, e, c);
             } else if (e->trial->quaternion == k) {
-                choose_quaternion(b, e, k, k);
+                choose_quaternion(b, e, c);
                 break;
             } else {
                 choose_plain(b, e, c);
@@ -176,7 +180,7 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
         struct ct_edge_kinematics *kept = &kinematics->edge[i];
         struct ct_motion m = {.ncoord = e->trial->ncoord, .nfree = e->trial->nfree};
         for (int k = 0; k < e->ncoordinate; k++)
-            m.coord[k] = b->coordinate[e->first_coordinate + k].value;
+            m.coord[k] = b->kinematics->coordinate[e->first_coordinate + k].value;
         ct_linear_graph_edge_motion(b, e, &m);
         const bool is_fixed = e->kind == CT_EDGE_ARM || e->kind == CT_EDGE_FORCE;
         *kept = (struct ct_edge_kinematics){
@@ -306,7 +310,7 @@ static void add_rotation_axis(struct ct_build *b, struct ct_kinematics *kinemati
     } else {
         s.term = CT_NEWN(b->arena, struct ct_term, e->ncoordinate + 1);
         for (int k = 0; k < e->ncoordinate; k++) {
-            const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+            const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
             add_term(b, &s, c->u, c->driver, sign,
                      ct_edge_partial(b, e, e->trial->turn[i].angle, k));
         }
@@ -383,7 +387,8 @@ static int quaternion_cluster(struct ct_build *b, struct ct_kinematics *kinemati
     kinematics->cluster[c].S = ct_ex33_mul(x, S, &A);
     const ct_ex33 *to = sign > 0 ? &kinematics->cluster[c].R : &P;
     for (int i = 0; i < 3; i++) {
-        const struct ct_coordinate *coordinate = &b->coordinate[e->first_coordinate + k + i];
+        const struct ct_coordinate *coordinate
+            = &b->kinematics->coordinate[e->first_coordinate + k + i];
         struct ct_rotation_axis s = {.cluster = c, .nterm = 1};
         s.axis = (ct_ex3){{to->e[3 * i], to->e[3 * i + 1], to->e[3 * i + 2]}};
         if (sign < 0)

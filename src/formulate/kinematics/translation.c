@@ -98,7 +98,7 @@ static void place_translating(struct ct_build *b, struct ct_kinematics *kinemati
     else
         a->translation_axis = CT_NEWN(b->arena, struct ct_translation_axis, e->ncoordinate + 1);
     for (int k = 0; k < e->ncoordinate; k++) {
-        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
         for (int j = 0; j < 3; j++)
             p_tail.e[j] = ct_edge_partial(b, e, e->trial->d.e[j], k);

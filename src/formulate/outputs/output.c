@@ -147,7 +147,7 @@ static bool effort_columns(struct ct_build *b, size_t j)
     const int edge = b->topology->edge_of_joint[j];
     bool ok = true;
     for (int k = 0; edge >= 0 && joint->cls->motion && k < joint->nfree; k++)
-        if (b->coordinate[b->topology->edge[edge].first_coordinate + k].is_driven) {
+        if (b->kinematics->coordinate[b->topology->edge[edge].first_coordinate + k].is_driven) {
             const char *number
                 = joint->nfree == 1 ? "" : ct_arena_printf(b->arena, "%d", k + 1);
             ok &= new_columns(b, ct_arena_printf(b->arena, "%s.effort%s", joint->name, number),

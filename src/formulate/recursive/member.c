@@ -141,7 +141,7 @@ static void add_translations(struct ct_member_build *w, int member,
     m->drift = ct_build_rate3(b, m->r);
     m->drift_bias = ct_build_rate3(b, m->drift);
     for (int k = 0; k < e->ncoordinate; k++) {
-        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         ct_ex3 p;
         if (c->u < 0 || c->q < 0)
             continue;
@@ -165,7 +165,7 @@ static bool moves_slide(const struct ct_build *b, const struct ct_edge_info *e,
                         const struct ct_term *t)
 {
     for (int k = 0; k < e->ncoordinate; k++) {
-        const struct ct_coordinate *c = &b->coordinate[e->first_coordinate + k];
+        const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         if (t->speed >= 0 && c->u == t->speed)
             return c->in_translation;
     }

@@ -60,7 +60,7 @@ void ct_members_add_bodies(struct ct_member_build *w);
 void ct_members_lump(struct ct_member_build *w);
 /// Rigid part of the inertia of beams now, at their bases, in the axes that are used.
 void ct_members_add_beams(struct ct_member_build *w);
-/// Forces and torques of b->dynamics.load, at the members' origins.
+/// Forces and torques of b->loads->load, at the members' origins.
 void ct_members_load(struct ct_member_build *w);
 /// Angular velocities, what follows from them, and the turning part of the biases.
 void ct_members_turn(struct ct_build *b, struct ct_members *s);

@@ -147,8 +147,8 @@ void ct_members_load(struct ct_member_build *w)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
-    for (size_t i = 0; i < b->dynamics.nload; i++) {
-        const struct ct_load *l = &b->dynamics.load[i];
+    for (size_t i = 0; i < b->loads->nload; i++) {
+        const struct ct_load *l = &b->loads->load[i];
         ct_ex3 back = l->torque;
         apply_at(w, l->head, l->force, l->torque);
         if (l->tail == 0)

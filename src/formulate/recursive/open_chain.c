@@ -171,7 +171,7 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
     const size_t n = b->eqs->nu;
     struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
     ct_ex *H = CT_NEWN(work, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
-    ct_composite_derive(b, s, b->dynamics.effort, H, Q);
+    ct_composite_derive(b, s, b->loads->effort, H, Q);
     struct trial t = try_matrix(b, H, Q);
     ct_arena_destroy(work);
     if (!t.solution)
@@ -182,7 +182,7 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
 static struct trial try_articulated(struct ct_build *b, const struct ct_members *s)
 {
     ct_ex *pivot = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1),
-          *u = ct_articulated_solve(b, s, b->dynamics.effort, pivot);
+          *u = ct_articulated_solve(b, s, b->loads->effort, pivot);
     return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 

@@ -181,7 +181,7 @@ static bool effort_signal(struct ct_build *b, int joint, int k, struct ct_signal
         return ct_signal_unknown(b, s, coordinates_of(b, self, "effort", false));
     const int coordinate
         = b->topology->edge[b->topology->edge_of_joint[joint]].first_coordinate + k;
-    if (b->coordinate[coordinate].is_driven)
+    if (b->kinematics->coordinate[coordinate].is_driven)
         return leave_to_dynamics(s, CT_DYNAMIC_DRIVER, coordinate);
     const struct ct_value *effort = ct_instance_value(self, "effort");
     const bool given = effort->given && (size_t)k < effort->n && !effort->hole[k];

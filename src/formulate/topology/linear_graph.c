@@ -355,7 +355,7 @@ static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
     for (int k = 0; k < m.ncoord; k++)
         m.coord[k] = ct_ex_sym(b->x, CT_SYM_LOCAL, "trial", (uint32_t)k);
     ct_linear_graph_edge_motion(b, e, &m);
-    e->first_coordinate = (int)b->ncoordinate;
+    e->first_coordinate = (int)t->ncoordinate;
     e->ncoordinate = m.ncoord;
     const struct ct_value *driver = NULL;
     if (e->kind == CT_EDGE_JOINT)
@@ -367,7 +367,7 @@ static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
         c.in_translation = depends(b->x, m.d, m.coord[k]);
         c.in_rotation = e->has_rotation && turns_depend(b->x, &m, k, m.coord[k]);
         c.is_driven = driver && driver->given && (size_t)k < driver->n && !driver->hole[k];
-        CT_PUSH(b->arena, b->coordinate, b->ncoordinate, b->coordinate_cap, c);
+        CT_PUSH(b->arena, t->coordinate, t->ncoordinate, t->coordinate_cap, c);
         const bool in_quaternion = m.quaternion >= 0 && k >= m.quaternion;
         if (!c.is_driven
             && !(in_quaternion && k == m.quaternion)) { // four numbers, three freedoms

@@ -28,6 +28,17 @@ static enum ct_eval root(void *user, double t, const double *y, double *g)
     return CT_EVAL_OK;
 }
 
+static void sides(void *user, signed char *side)
+{
+    const struct ct_lane_user *of = user;
+    const struct ct_batch *s = of->s;
+    for (int i = 0; i < s->nroot; i++) {
+        const size_t k = (size_t)s->root_of[i];
+        side[i]
+            = (signed char)ct_switches_side(s->m, k, s->input[s->m->at_switch + k][of->lane]);
+    }
+}
+
 // Slopes at both ends of a step.
 struct slopes {
     const double *dy, *dend;
@@ -69,7 +80,7 @@ void ct_lane_make_events(struct ct_batch *s)
         s->before[l] = v->pending = INFINITY;
         v->user = (struct ct_lane_user){s, l};
         v->problem = (struct ct_problem){
-            .user = &v->user, .ny = s->ny, .nroot = s->nroot, .root = root};
+            .user = &v->user, .ny = s->ny, .nroot = s->nroot, .root = root, .sides = sides};
         v->dy = CT_NEWN(a, double, s->ny);
         v->dend = CT_NEWN(a, double, s->ny);
         ct_event_location_init(&v->location, &v->problem, a);
@@ -129,8 +140,8 @@ bool ct_lane_begin_events(struct ct_batch *s, int l, const struct ct_run_options
     v->location.accumulated = 0;
     if (!s->e->nswitch)
         return true;
-    ct_switches_start(s->m, 0, r->y, r->dy);
-    return ct_run_refuse_sticking(r, 0, r->y) == CT_EVAL_OK;
+    ct_switches_start(s->m, 0, r->y, r->dy, NULL);
+    return ct_run_settle_switches(r, 0, r->y, NULL) == CT_EVAL_OK && !s->m->has_rest;
 }
 
 bool ct_lane_take_bearings(struct ct_batch *s, int l, double t, const double *y,
@@ -182,6 +193,10 @@ static enum ct_lane_found look(struct ct_batch *s, int l)
     ct_lane_take(v->location.g0, s->g0, l, (size_t)s->nroot);
     if (ct_event_location_search(&v->location, &span, s->one_end, &theta) != CT_EVAL_OK)
         return CT_LANE_REFUSED;
+    if (theta == 0) { // a root has left its rest on zero
+        ct_lane_give_up(s, l);
+        return CT_LANE_REFUSED;
+    }
     if (theta > 1 || (1 - theta) * span.h <= ct_event_location_resolution(span.t, span.h))
         return settle(s, l, lane->h, theta <= 1);
     v->whole = span.h;
@@ -227,7 +242,7 @@ void ct_lane_plan_again(struct ct_batch *s, int l)
 
 // ---- the event ----------------------------------------------------------------------------------
 
-// As the run alone does it. False: that has to say what is wrong.
+// As the run alone does it. False: that has to say what is wrong, or to watch switches at rest.
 static bool handle(struct ct_batch *s, int l, bool is_time)
 {
     struct ct_lane *lane = &s->lane[l];
@@ -238,7 +253,7 @@ static bool handle(struct ct_batch *s, int l, bool is_time)
     ct_lane_load_run_whole(s, l, t, s->y);
     lend(s, v);
     if (ct_run_event(s->run, t, s->one_y, NULL, v->location.crossed, is_time) != CT_EVAL_OK
-        || ct_run_rhs(s->run, t, s->one_y, s->one_dy) != CT_EVAL_OK)
+        || ct_run_rhs(s->run, t, s->one_y, s->one_dy) != CT_EVAL_OK || m->has_rest)
         return false;
     await(s, l);
     ct_lane_put(s->y, l, s->one_y, (size_t)s->ny);

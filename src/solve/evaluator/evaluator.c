@@ -106,6 +106,7 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
     m->open = CT_NEWN(a, double, m->nrow + 1);
     m->g[0] = CT_NEWN(a, double, e->nswitch + 1);
     m->g[1] = CT_NEWN(a, double, e->nswitch + 1);
+    m->at_rest = CT_NEWN(a, double, e->nswitch + 1);
     m->turned = CT_NEWN(a, double, e->nmemory + 1);
     m->ahead = CT_NEWN(a, double, e->nq + e->nu + 1);
     m->moved = CT_NEWN(a, double, e->nu + 1);

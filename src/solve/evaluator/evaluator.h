@@ -73,11 +73,14 @@ struct ct_evaluator {
         rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
     // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
     // as they depend on others to that tolerance, read 0.
-    bool is_inexact, *left_out;     // (nrow)
-    size_t most_rank;               // of J; nrow where data are exact
-    double *open;                   // (nrow)
-    double *symbol_value;           // workspace of it, by symbol of e->x
-    double *g[2];                   // values of root functions, for modes (nmode)
+    bool is_inexact, *left_out; // (nrow)
+    size_t most_rank;           // of J; nrow where data are exact
+    double *open;               // (nrow)
+    double *symbol_value;       // workspace of it, by symbol of e->x
+    double *g[2];               // values of root functions, for switches (nswitch)
+    double *
+        at_rest; // > 0: g rests on zero, and is zero up to this times ct_switches_size (nswitch)
+    bool has_rest;                  // one did when the sides were set
     double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
     long evaluations;
     struct ct_program *added; // ct_evaluator_add_program

@@ -1,6 +1,7 @@
 // See switch_state.h.
 #include "solve/evaluator/switch_state.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,8 +25,15 @@ static void evaluate(struct ct_evaluator *m, double t, const double *y, const do
     memcpy(m->input + m->at_q, y, n * sizeof *y);
 }
 
-// Modes may stand inside the g of others; so many levels are settled.
+// Switches may stand inside the g of others; so many levels are settled.
 enum { MOST_LEVELS = 4 };
+
+// g is zero when it is round-off beside its change in a second.
+static const double zero = 1e-12;
+
+// A g at rest counts as zero up to this part of the largest state: what round-off makes of a g that
+// is zero by symmetry. Default; rest_at_zero.sh moves it both ways.
+static const double roundoff = 64 * DBL_EPSILON;
 
 // How far to look ahead for the later side, [s].
 static double ahead_of(double t)
@@ -33,36 +41,115 @@ static double ahead_of(double t)
     return 1e-7 * fmax(1, fabs(t));
 }
 
-void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy)
+static double largest(const double *v, size_t n)
 {
-    const double zero = 1e-12; // g is zero when it is round-off beside its change in a second
+    double most = 0;
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, fabs(v[i]));
+    return most;
+}
+
+// The sum of all |dg_i/dy_k| at t, y, by differences: with the size of the states and `roundoff` it
+// bounds what round-off of states makes of g_i. Cost: 1 + nq + nu evaluations of g.
+static double sensitivity(struct ct_evaluator *m, size_t i, double t, const double *y)
+{
+    const double spacing = sqrt(DBL_EPSILON);
+    double *z = m->input + m->at_q, sum = 0;
+    m->input[0] = t;
+    ct_program_run(&m->root, m->input);
+    const double g = m->root.out[i];
+    for (size_t k = 0; k < m->nq + m->nu; k++) {
+        const double dy = spacing * fmax(1, fabs(y[k]));
+        z[k] = y[k] + dy;
+        ct_program_run(&m->root, m->input);
+        sum += fabs(m->root.out[i] - g) / dy;
+        z[k] = y[k];
+    }
+    return sum;
+}
+
+double ct_switches_size(const struct ct_evaluator *m, const double *y)
+{
+    return largest(y, m->nq + m->nu);
+}
+
+// Rates of states err by round-off of forces, which are of the size of the states or of the rates.
+static bool is_rate_zero(const struct ct_evaluator *m, size_t i, const double *y,
+                         const double *dy, double rate)
+{
+    return fabs(rate) <= m->at_rest[i] * fmax(ct_switches_size(m, y), ct_switches_size(m, dy));
+}
+
+// Are g_i at t, y and its rate zero but for round-off? Notes so in at_rest.
+static bool find_rest(struct ct_evaluator *m, size_t i, double t, const double *y,
+                      const double *dy, double g, double rate)
+{
+    m->at_rest[i] = fmax(roundoff * sensitivity(m, i, t, y), DBL_MIN);
+    const bool rests
+        = fabs(g) <= m->at_rest[i] * ct_switches_size(m, y) && is_rate_zero(m, i, y, dy, rate);
+    if (!rests)
+        m->at_rest[i] = 0;
+    m->has_rest |= rests;
+    return rests;
+}
+
+void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy,
+                       const signed char *crossed)
+{
     const double ahead = ahead_of(t);
     double *mode = m->input + m->at_switch;
+    memset(m->at_rest, 0, m->e->nswitch * sizeof *m->at_rest);
+    m->has_rest = false;
     for (size_t level = 0; level < MOST_LEVELS && level < m->e->nswitch; level++) {
         evaluate(m, t, y, dy, 0, m->g[0]);
         evaluate(m, t, y, dy, ahead, m->g[1]);
         for (size_t i = 0; i < m->e->nswitch; i++) {
-            const double now = m->g[0][i], later = m->g[1][i];
-            const bool is_zero = fabs(now) <= zero * fmax(1, fabs(later - now) / ahead);
-            mode[i] = side_of(m->e->switches[i].op, is_zero ? later : now);
+            const enum ct_op op = m->e->switches[i].op;
+            const double now = m->g[0][i], later = m->g[1][i], rate = (later - now) / ahead;
+            const bool is_zero = fabs(now) <= zero * fmax(1, fabs(rate));
+            mode[i] = side_of(op, is_zero ? later : now);
+            m->at_rest[i] = 0;
+            if (crossed && crossed[i])
+                mode[i] = side_of(op, crossed[i]);
+            else if (is_zero && dy && !m->e->switches[i].is_time
+                     && find_rest(m, i, t, y, dy, now, rate))
+                mode[i] = side_of(op, 0);
         }
     }
 }
 
-int ct_switches_find_sticking(struct ct_evaluator *m, double t, const double *y,
-                              const double *dy)
+int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double *y,
+                                  const double *dy)
 {
     const double *mode = m->input + m->at_switch;
     const double ahead = ahead_of(t), near = 1e-3; // of the way that g goes meanwhile
     evaluate(m, t, y, dy, 0, m->g[0]);
     evaluate(m, t, y, dy, ahead, m->g[1]);
     for (size_t i = 0; i < m->e->nswitch; i++) {
-        const double now = m->g[0][i], later = m->g[1][i];
-        if (!m->e->switches[i].is_time && fabs(now) < near * fabs(later - now)
+        const double now = m->g[0][i], later = m->g[1][i], rate = (later - now) / ahead;
+        const bool rests = m->at_rest[i] > 0 && is_rate_zero(m, i, y, dy, rate);
+        if (!m->e->switches[i].is_time && !rests && fabs(now) < near * fabs(later - now)
             && side_of(m->e->switches[i].op, later) != mode[i])
             return (int)i;
     }
     return -1;
+}
+
+int ct_switches_side(const struct ct_evaluator *m, size_t i, double value)
+{
+    const enum ct_op op = m->e->switches[i].op;
+    const bool is_up = op == CT_OP_GT || op == CT_OP_GE;
+    return m->at_rest[i] > 0 ? 0 : is_up == (value != 0) ? 1 : -1;
+}
+
+void ct_switches_follow(struct ct_evaluator *m, size_t i)
+{
+    const struct ct_switch *all = m->e->switches;
+    for (size_t k = 0; k < m->e->nswitch; k++)
+        if (ct_ex_same(all[k].g, all[i].g)) {
+            m->input[m->at_switch + k] = side_of(all[k].op, m->g[1][i]);
+            m->at_rest[k] = 0;
+        }
 }
 
 // ---- time events --------------------------------------------------------------------------------
@@ -84,7 +171,7 @@ void ct_switches_of_time(struct ct_evaluator *m, double t)
     }
 }
 
-// Outcome of mode i at time t, the modes inside its g settled for that time.
+// Outcome of switch i at time t, the switches inside its g settled for that time.
 static bool outcome(struct ct_evaluator *m, size_t i, double t, double *g)
 {
     ct_switches_of_time(m, t);

@@ -4,17 +4,28 @@
 
 #include "solve/evaluator/evaluator.h"
 
-/// Sides at t, y; where g is zero the later side counts, found by following g along the derivative
-/// dy (nq + nu; NULL: time alone moves).
-void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy);
+/// Sides at t, y. Where g is zero the later side counts, found by following g along the derivative
+/// dy (nq + nu; NULL: time alone moves). A g of the state that is zero and stays so along dy is at
+/// rest: the side is that of g = 0, as with sign(0) = 0, until g leaves zero (m->at_rest).
+/// crossed (nswitch, -1, 0 or 1; NULL: none): the sides of those that have just changed.
+void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy,
+                       const signed char *crossed);
 
-/// t into the input, and the modes of time as they are then.
+/// The largest state in y (nq + nu): a g at rest is zero up to m->at_rest times that.
+double ct_switches_size(const struct ct_evaluator *m, const double *y);
+
+/// The sign of g for which switch i has this value, 0 or 1; 0 if g is at rest.
+int ct_switches_side(const struct ct_evaluator *m, size_t i, double value);
+
+/// t into the input, and the switches of time as they are then.
 void ct_switches_of_time(struct ct_evaluator *m, double t);
 
-/// A state mode whose root function is zero here and that the motion along dy leaves to the side
-/// where the mode is wrong: forces on both sides lead back. Its index, or -1.
-int ct_switches_find_sticking(struct ct_evaluator *m, double t, const double *y,
-                              const double *dy);
+/// A switch of the state whose g is zero here and that the motion along dy leaves to the side that
+/// the switch is not on. Its index, or -1.
+int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double *y,
+                                  const double *dy);
+/// Right after that: the switches with the same g as switch i to the side where the motion leads.
+void ct_switches_follow(struct ct_evaluator *m, size_t i);
 
 /// Are the knots of a table kinks for methods of this order? Those of linear tables are, and of
 /// cubic ones, whose third derivative jumps, for high orders.

@@ -73,34 +73,11 @@ bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
     return true;
 }
 
-// Coefficients of the measured speed of coordinate i: by unit speeds, as it is linear in them.
-static void speed_rows(struct ct_assembler *s, double *rows)
+static void add_row(struct ct_assembler *s, const int *column, const double *coef, size_t n,
+                    double weight, double r)
 {
-    struct ct_evaluator *m = s->m;
-    double *u = m->input + m->at_u;
-    double *kept = s->row;
-    memcpy(kept, u, m->nu * sizeof *u);
-    memset(u, 0, m->nu * sizeof *u);
-    ct_program_run(&m->result, m->input);
-    for (size_t i = 0; i < s->e->ncoordinate; i++)
-        s->speed0[i] = m->result.out[2 * i + 1];
-    for (size_t k = 0; k < m->nu; k++) {
-        u[k] = 1;
-        ct_program_run(&m->result, m->input);
-        for (size_t i = 0; i < s->e->ncoordinate; i++)
-            rows[i + s->e->ncoordinate * k] = m->result.out[2 * i + 1] - s->speed0[i];
-        u[k] = 0;
-    }
-    memcpy(u, kept, m->nu * sizeof *u);
-    ct_program_run(&m->result, m->input);
-}
-
-static void add_row(struct ct_assembler *s, const double *coef, size_t stride, double weight,
-                    double r)
-{
-    for (size_t k = 0; k < s->m->nu; k++)
-        s->A[s->n + s->most * k] = weight * coef[stride * k];
-    s->r[s->n++] = weight * r;
+    s->r[s->A.n] = weight * r;
+    ct_sparse_rows_add(&s->A, column, coef, n, weight);
 }
 
 // Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural
@@ -108,12 +85,22 @@ static void add_row(struct ct_assembler *s, const double *coef, size_t stride, d
 static void add_constraint(struct ct_assembler *s, size_t i, double r)
 {
     const struct ct_evaluator *m = s->m;
+    const size_t first = s->first_J[i], n = s->first_J[i + 1] - first;
+    const int *column = s->J_column + first;
+    const double *J = m->v + m->nrow + first;
     double largest = 0;
-    for (size_t k = 0; k < m->nu; k++)
-        largest = fmax(largest, fabs(m->J[i + m->nrow * k]) * m->speed_size[k]);
-    add_row(s, m->J + i, m->nrow, 1, r);
-    for (size_t k = 0; k < m->nu && largest <= ct_rank_tolerance * m->row_size[i]; k++)
-        s->A[s->n - 1 + s->most * k] = 0;
+    for (size_t k = 0; k < n; k++)
+        largest = fmax(largest, fabs(J[k]) * m->speed_size[column[k]]);
+    add_row(s, column, J, n, largest <= ct_rank_tolerance * m->row_size[i] ? 0 : 1, r);
+    s->r[s->A.n - 1] = r;
+}
+
+// The measured speed of coordinate i.
+static void add_speed(struct ct_assembler *s, size_t i, double weight, double r)
+{
+    const size_t first = s->first_speed[i];
+    add_row(s, s->speed_column + first, s->speeds->out + first, s->first_speed[i + 1] - first,
+            weight, r);
 }
 
 // Elastic coordinate i of all beams, which starts with what the model says.
@@ -127,63 +114,65 @@ static const struct ct_elastic *elastic_of(const struct ct_assembler *s, size_t 
 
 static void elastic_rows(struct ct_assembler *s, bool of_speeds)
 {
-    const size_t nu = s->m->nu;
+    const double one = 1;
     for (size_t i = 0; i < s->nelastic; i++) {
         const struct ct_elastic *e = elastic_of(s, i);
         const double now = of_speeds ? s->y[s->m->nq + (size_t)e->u] : s->y[e->q];
-        memset(s->unit, 0, nu * sizeof *s->unit);
-        s->unit[e->u] = 1;
-        add_row(s, s->unit, 1, 1,
+        add_row(s, &e->u, &one, 1, 1,
                 now - ct_ex_value(s->e->x, of_speeds ? e->start_rate : e->start, s->value));
     }
+}
+
+// Measured coordinates and their speeds, the coefficients of these, phi, v and J at s->y.
+static void evaluate_rows(struct ct_assembler *s, bool with_memory)
+{
+    struct ct_evaluator *m = s->m;
+    ct_evaluator_set(m, 0, s->y);
+    if (with_memory)
+        ct_memory_update(m);
+    ct_evaluator_constraint(m);
+    ct_program_run(&m->result, m->input);
+    ct_program_run(s->speeds, m->input);
+    ct_sparse_rows_clear(&s->A);
 }
 
 // Rows of the positions at s->y: A d + r = 0.
 static void position_rows(struct ct_assembler *s)
 {
-    struct ct_evaluator *m = s->m;
     const size_t nc = s->e->ncoordinate;
     double r;
-    ct_evaluator_set(m, 0, s->y);
-    ct_memory_update(m);
-    ct_evaluator_constraint(m);
-    speed_rows(s, s->speeds);
-    s->n = 0;
-    for (size_t i = 0; i < m->nrow; i++)
+    evaluate_rows(s, true);
+    for (size_t i = 0; i < s->m->nrow; i++)
         if (s->fixed_row[i])
-            add_constraint(s, i, m->phi[i]);
+            add_constraint(s, i, s->m->phi[i]);
     for (size_t i = 0; i < nc; i++)
         if (s->q[i].is_given && ct_assembler_deviation(s, i, &r))
-            add_row(s, s->speeds + i, nc, 1, r);
+            add_speed(s, i, 1, r);
     elastic_rows(s, false);
-    s->nhard = s->n;
+    s->nhard = s->A.n;
     ct_loop_filter_apply(s, s->fixed_row);
     for (size_t i = 0; i < nc; i++)
         if (!s->q[i].is_given && s->q[i].wanted && ct_assembler_deviation(s, i, &r))
-            add_row(s, s->speeds + i, nc, s->q[i].weight, r);
+            add_speed(s, i, s->q[i].weight, r);
 }
 
 // The same for the speeds.
 static void velocity_rows(struct ct_assembler *s)
 {
-    struct ct_evaluator *m = s->m;
     const size_t nc = s->e->ncoordinate;
-    ct_evaluator_set(m, 0, s->y);
-    ct_evaluator_constraint(m);
-    speed_rows(s, s->speeds);
-    s->n = 0;
-    for (size_t i = 0; i < m->nrow; i++)
-        add_constraint(s, i, m->v[i]);
+    const double *out = s->m->result.out;
+    evaluate_rows(s, false);
+    for (size_t i = 0; i < s->m->nrow; i++)
+        add_constraint(s, i, s->m->v[i]);
     for (size_t i = 0; i < nc; i++)
         if (s->u[i].is_given)
-            add_row(s, s->speeds + i, nc, 1, m->result.out[2 * i + 1] - s->u[i].value);
+            add_speed(s, i, 1, out[2 * i + 1] - s->u[i].value);
     elastic_rows(s, true);
-    s->nhard = s->n;
+    s->nhard = s->A.n;
     ct_loop_filter_apply(s, NULL);
     for (size_t i = 0; i < nc; i++)
         if (!s->u[i].is_given && s->u[i].wanted)
-            add_row(s, s->speeds + i, nc, s->u[i].weight,
-                    m->result.out[2 * i + 1] - s->u[i].value);
+            add_speed(s, i, s->u[i].weight, out[2 * i + 1] - s->u[i].value);
 }
 
 // Largest residual of what must be met; sum of squares of what is wanted.
@@ -198,7 +187,7 @@ static double violation(const struct ct_assembler *s)
 static double distance(const struct ct_assembler *s)
 {
     double sum = 0;
-    for (size_t i = s->nhard; i < s->n; i++)
+    for (size_t i = s->nhard; i < s->A.n; i++)
         sum += s->r[i] * s->r[i];
     return sum;
 }
@@ -215,31 +204,12 @@ static double limit_step(double *d, size_t n)
     return largest;
 }
 
-static const double solved = 1e-12; // rank of rows with all weights
-
-static void solve_rows(struct ct_assembler *s, size_t n, double tol)
-{
-    const size_t nu = s->m->nu;
-    s->work_done += (double)n * (double)(nu * nu);
-    if (n && nu)
-        ct_lstsq(s->b, s->A, (int)n, (int)nu, (int)s->most, tol, s->iwork, s->work);
-    else
-        memset(s->b, 0, (nu + 1) * sizeof *s->b);
-}
-
 // Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
 static void closing_step(struct ct_assembler *s, double damping)
 {
-    const size_t nu = s->m->nu;
-    size_t n = s->nhard;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    for (size_t k = 0; k < nu && damping > 0; k++, n++) {
-        for (size_t l = 0; l < nu; l++)
-            s->A[n + s->most * l] = k == l ? damping : 0;
-        s->b[n] = 0;
-    }
-    solve_rows(s, n, solved);
+    s->work_done += ct_damped_solve(s->closing, s->b, &s->A, s->nhard, s->m->nu, s->b, damping);
 }
 
 // Step into s->b that leaves the constraints alone and takes what is wanted nearest to its
@@ -247,52 +217,45 @@ static void closing_step(struct ct_assembler *s, double damping)
 // step, make up for that.
 static void wishing_step(struct ct_assembler *s)
 {
-    const size_t nu = s->m->nu;
-    double *row = s->saved_A;
-    for (size_t i = 0; i < s->nhard; i++)
-        for (size_t k = 0; k < nu; k++) {
-            row[i + s->nhard * k] = s->A[i + s->most * k];
-            s->A[i + s->most * k] *= hard;
-        }
-    for (size_t i = 0; i < s->n; i++)
+    // a thousandth of the smallest weight there is: a step is short by 1e-6 of itself at most
+    const double damping = 1e-3 * ct_assembly_open_weight / fmax(1, s->length);
+    const struct ct_sparse_rows *A = &s->A;
+    ct_sparse_rows_clear(&s->weighted);
+    for (size_t i = 0; i < A->n; i++) {
+        const size_t at = A->start[i];
+        ct_sparse_rows_add(&s->weighted, A->column + at, A->value + at, A->start[i + 1] - at,
+                           i < s->nhard ? hard : 1);
         s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
-    solve_rows(s, s->n, solved);
-    for (size_t i = 0; i < s->nhard; i++) {
-        s->shift[i] += s->r[i];
-        for (size_t k = 0; k < nu; k++)
-            s->shift[i] += row[i + s->nhard * k] * s->b[k];
     }
+    s->work_done
+        += ct_damped_solve(s->wishing, s->b, &s->weighted, A->n, s->m->nu, s->b, damping);
+    ct_sparse_rows_times(s->work, A, s->nhard, s->b);
+    for (size_t i = 0; i < s->nhard; i++)
+        s->shift[i] += s->r[i] + s->work[i];
 }
 
 // How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly
 // singular configuration a step off them seems to gain distance, at no more than round-off of what
-// is closed. To be called after wishing_step.
+// is closed.
 static double size_along_constraints(struct ct_assembler *s)
 {
     // loops that close to 1e-13 meet a singular configuration to about the root of that
     const double dependent = 1e-6;
-    const size_t nu = s->m->nu, n = s->nhard;
-    memcpy(s->step, s->b, nu * sizeof *s->step);
-    for (size_t i = 0; i < n; i++) {
-        s->b[i] = 0;
-        for (size_t k = 0; k < nu; k++) {
-            s->A[i + s->most * k] = s->saved_A[i + n * k];
-            s->b[i] += s->saved_A[i + n * k] * s->step[k];
-        }
-    }
-    solve_rows(s, n, dependent);
-    for (size_t k = 0; k < nu; k++)
-        s->b[k] -= s->step[k];
-    const double size = ct_vector_largest(s->b, nu);
-    memcpy(s->b, s->step, nu * sizeof *s->step);
-    return size;
+    const size_t nu = s->m->nu;
+    const double size = ct_sparse_rows_largest_column(&s->A, s->nhard, nu, s->work);
+    if (!(size > 0))
+        return ct_vector_largest(s->b, nu);
+    ct_sparse_rows_times(s->work, &s->A, s->nhard, s->b);
+    s->work_done
+        += ct_damped_solve(s->closing, s->work, &s->A, s->nhard, nu, s->work, dependent * size);
+    ct_vector_add(s->work, -1, s->b, nu);
+    return ct_vector_largest(s->work, nu);
 }
 
 // Close the loops from s->y; returns what is left.
 static double close_loops(struct ct_assembler *s)
 {
-    // a step divides by the damping at worst, so that it must stay above round-off errors
-    const double least_damping = 1e-8, closed = 1e-15;
+    const double closed = 1e-15;
     double before = INFINITY;
     for (int i = 0;; i++) {
         position_rows(s);
@@ -300,7 +263,7 @@ static double close_loops(struct ct_assembler *s)
         if (!isfinite(worst) || worst <= closed || i == MOST_ITERATIONS
             || (worst < 1e-11 && worst > before / 2))
             return worst;
-        closing_step(s, fmax(fmin(1, worst), least_damping));
+        closing_step(s, fmax(fmin(1, worst), ct_assembly_least_damping));
         limit_step(s->b, s->m->nu);
         ct_evaluator_retract(s->m, s->y, s->b);
         before = worst;
@@ -389,7 +352,7 @@ static double find_velocities(struct ct_assembler *s)
         if (i < 3)
             wishing_step(s);
         else
-            closing_step(s, 0);
+            closing_step(s, ct_assembly_least_damping);
         for (size_t k = 0; k < s->m->nu; k++)
             u[k] += s->b[k];
     }
@@ -459,7 +422,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
             memory[i] = s->q[t->edge[edge].first_coordinate + angle->index].value;
     }
     ct_evaluator_set(s->m, 0, s->y);
-    ct_switches_start(s->m, 0, s->y, NULL);
+    ct_switches_start(s->m, 0, s->y, NULL, NULL);
     ct_memory_start(s->m);
     ct_evaluator_measure_rows(s->m);
 }
@@ -676,6 +639,30 @@ static void take_targets(struct ct_assembler *s)
     ct_initial_state_of_beams(s->e, s->value, NULL, s->y + s->m->nq);
 }
 
+// first (nrow + 1, out), column (n, out) of entries that are listed row by row.
+static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_t n,
+                         size_t nrow, size_t **first, int **column)
+{
+    *first = CT_NEWN(a, size_t, nrow + 1);
+    *column = CT_NEWN(a, int, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        (*first)[entry[k].row + 1]++;
+        (*column)[k] = entry[k].column;
+    }
+    for (size_t i = 0; i < nrow; i++)
+        (*first)[i + 1] += (*first)[i];
+}
+
+static void compile_speeds(struct ct_arena *a, struct ct_assembler *s)
+{
+    const struct ct_equations *e = s->e;
+    s->speeds = CT_NEW(a, struct ct_program);
+    ct_ex *value = CT_NEWN(a, ct_ex, e->nmeasured_speed + 1);
+    for (size_t k = 0; k < e->nmeasured_speed; k++)
+        value[k] = e->measured_speed[k].value;
+    ct_evaluator_add_program(a, s->m, e->x, value, e->nmeasured_speed, s->speeds);
+}
+
 static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                            const struct ct_model *model,
                                            const struct ct_equations *e, bool is_iterated)
@@ -692,24 +679,23 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.saved_memory = CT_NEWN(a, double, e->nmemory + 1);
     s.best_y = CT_NEWN(a, double, s.m->nq + nu + 1);
     s.best_memory = CT_NEWN(a, double, e->nmemory + 1);
-    s.b = CT_NEWN(a, double, s.m->nrow + nc + 2 * nu + 1);
+    s.b = CT_NEWN(a, double, s.m->nrow + nc + s.nelastic + nu + 1);
     s.kept_targets = CT_NEWN(a, struct ct_target, nc + 1);
     ct_assembler_list_frames(&s, a, model);
     ct_assembler_find_targets(&s, model);
     if (!is_iterated && is_direct(&s))
         return s;
     s.most = s.m->nrow + nc + s.nelastic + nu + 1;
-    s.unit = CT_NEWN(a, double, nu + 1);
-    s.A = CT_NEWN(a, double, s.most *(nu + 1));
-    s.saved_A = CT_NEWN(a, double, s.most *(nu + 1));
+    s.A.arena = s.weighted.arena = a;
+    s.closing = ct_damped_create(a);
+    s.wishing = ct_damped_create(a);
     s.step = CT_NEWN(a, double, nu + 1);
     s.r = CT_NEWN(a, double, s.most);
     s.shift = CT_NEWN(a, double, s.most);
-    s.row = CT_NEWN(a, double, nu + 1);
-    s.speed0 = CT_NEWN(a, double, nc + 1);
-    s.speeds = CT_NEWN(a, double, (nc + 1) * (nu + 1));
-    s.iwork = CT_NEWN(a, int, s.most + nu);
-    s.work = CT_NEWN(a, double, ct_lstsq_work((int)s.most, (int)nu + 1));
+    s.work = CT_NEWN(a, double, s.most);
+    list_entries(a, e->J, e->nJ, e->nrow, &s.first_J, &s.J_column);
+    list_entries(a, e->measured_speed, e->nmeasured_speed, nc, &s.first_speed, &s.speed_column);
+    compile_speeds(a, &s);
     find_fixed_rows(&s, a);
     s.filter = ct_loop_filter_create(a, &s);
     return s;

@@ -25,8 +25,7 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
     struct ct_loop_filter *f = CT_NEW(a, struct ct_loop_filter);
     const size_t nu = s->m->nu, nrow = s->m->nrow, ny = s->m->nq + nu;
     const size_t most = nrow > nu ? nrow : nu;
-    f->Q = CT_NEWN(a, double, s->most *(nu + 1));
-    f->B = CT_NEWN(a, double, s->most *(nu + 1));
+    f->arena = a;
     f->A = CT_NEWN(a, double, most *(nu + 1));
     f->size = CT_NEWN(a, double, s->most);
     f->r = CT_NEWN(a, double, s->most);
@@ -89,24 +88,44 @@ static void find_sizes(const struct ct_assembler *s, const bool *is_loop)
         s->filter->size[n] = 1 / given_weight;
 }
 
+// Room for n entries, when rows are filtered first: most models' never are.
+static void reserve(struct ct_loop_filter *f, size_t n)
+{
+    if (f->Q)
+        return;
+    f->Q = CT_NEWN(f->arena, double, n);
+    f->B = CT_NEWN(f->arena, double, n);
+    f->whole = CT_NEWN(f->arena, double, n);
+}
+
 void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop)
 {
     struct ct_loop_filter *f = s->filter;
     const size_t n = s->nhard, nu = s->m->nu;
     if (!f->is_on || !n)
         return;
+    reserve(f, s->most * (nu + 1));
     find_sizes(s, is_loop);
+    memset(f->B, 0, n * nu * sizeof *f->B);
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = s->A.start[i]; k < s->A.start[i + 1]; k++)
+            f->B[i + n * (size_t)s->A.column[k]] += s->A.value[k] / f->size[i];
+    memcpy(f->whole, f->B, n * nu * sizeof *f->B);
     for (size_t k = 0; k < nu; k++)
         for (size_t i = 0; i < n; i++)
-            f->B[i + n * k] = s->A[i + s->most * k] * s->m->speed_size[k] / f->size[i];
+            f->B[i + n * k] *= s->m->speed_size[k];
     const size_t rank = find_basis(f->Q, f->B, n, nu);
-    for (size_t k = 0; k <= nu; k++) { // the last one is r
-        double *column = k < nu ? s->A + s->most * k : s->r;
-        for (size_t i = 0; i < n; i++)
-            f->r[i] = column[i] / f->size[i];
-        project(f->r, f->B, f->Q, rank, n);
-        for (size_t i = 0; i < n; i++)
-            column[i] = f->r[i] * f->size[i];
+    for (size_t i = 0; i < n; i++)
+        s->r[i] /= f->size[i];
+    project(s->r, f->B, f->Q, rank, n);
+    for (size_t k = 0; k < nu; k++)
+        project(f->whole + n * k, f->B, f->Q, rank, n);
+    ct_sparse_rows_clear(&s->A);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < nu; k++)
+            f->r[k] = f->whole[i + n * k];
+        ct_sparse_rows_add(&s->A, NULL, f->r, nu, f->size[i]);
+        s->r[i] *= f->size[i];
     }
 }
 
@@ -152,22 +171,25 @@ static void loop_rows(struct ct_assembler *s)
 {
     struct ct_evaluator *m = s->m;
     evaluate(s);
+    ct_sparse_rows_clear(&s->A);
     for (size_t i = 0; i < m->nrow; i++) {
-        for (size_t k = 0; k < m->nu; k++)
-            s->A[i + s->most * k] = m->J[i + m->nrow * k];
+        const size_t at = s->first_J[i];
+        ct_sparse_rows_add(&s->A, s->J_column + at, m->v + m->nrow + at, s->first_J[i + 1] - at,
+                           1);
         s->r[i] = m->phi[i];
     }
-    s->n = s->nhard = m->nrow;
+    s->nhard = m->nrow;
     ct_loop_filter_apply(s, NULL);
 }
 
-// s->b (nu) = the shortest vector with A b = -r
+// s->b (nu) = the shortest vector with A b = -r: filtered rows have no singular values but round-off and those above the
+// tolerance of the data.
 static void shortest_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    ct_lstsq(s->b, s->A, (int)s->nhard, (int)s->m->nu, (int)s->most, ct_rank_tolerance,
-             s->iwork, s->work);
+    ct_damped_solve(s->closing, s->b, &s->A, s->nhard, s->m->nu, s->b,
+                    ct_assembly_least_damping);
 }
 
 // From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto
@@ -181,9 +203,7 @@ static bool move(struct ct_assembler *s, double way)
     loop_rows(s);
     for (size_t k = 0; k < nu; k++)
         d[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4; // in no simple relation
-    memset(s->r, 0, s->nhard * sizeof *s->r);
-    for (size_t k = 0; k < nu; k++)
-        ct_vector_add(s->r, d[k], s->A + s->most * k, s->nhard);
+    ct_sparse_rows_times(s->r, &s->A, s->nhard, d);
     shortest_step(s);
     ct_vector_add(s->b, 1, d, nu);
     const double size = ct_vector_largest(s->b, nu);

@@ -10,11 +10,16 @@
 #include "solve/initial/assembly.h"
 
 #include "formulate/build.h"
+#include "numeric/damped.h"
 
 /// Left over of what must be met [m or rad].
 static const double ct_assembly_tolerance = 1e-9;
 /// Weight of a deviation from 0 where there is no guess, against 1 of a guess: 1e-6 of its square.
 static const double ct_assembly_open_weight = 1e-3;
+
+/// The root of a round-off error: singular values of that size, over the square of the damping, leave a step as large as what
+/// they multiply, which is round-off too.
+static const double ct_assembly_least_damping = 1e-8;
 
 struct ct_assembler {
     struct ct_ctx *ctx;
@@ -26,28 +31,32 @@ struct ct_assembler {
     size_t nframe;
     size_t
         nelastic; // elastic coordinates of the beams, which are rigid unless some start deformed
-    const double *value; // of the model's parameters
-    double *unit;        // a row of 0 and 1, by speed
-    bool may_stay_open;  // a start that does not close will do
-    bool *fixed_row;     // rows without an offset of their own
-    double *y, *A, *b, *row, *work, *speed0, *speeds;
-    double *r, *shift; // residuals; of what must be met, its multipliers over hard^2
-    double *saved_y, *saved_memory, *saved_A, *step;
+    const double *value;           // of the model's parameters
+    bool may_stay_open;            // a start that does not close will do
+    bool *fixed_row;               // rows without an offset of their own
+    size_t *first_J, *first_speed; // entries of each row of J, and of each measured speed
+    int *J_column, *speed_column;
+    struct ct_program *speeds; // coefficients of measured speeds
+    double *y, *b, *work;
+    struct ct_sparse_rows A, weighted; // rows now; what must be met comes first
+    double *r, *shift; // their residuals; of what must be met, its multipliers over hard^2
+    struct ct_damped *closing, *wishing; // for rows that must be met, for all
+    double *saved_y, *saved_memory, *step;
     struct ct_target *kept_targets;
-    double *best_y, *best_memory; // the nearest position so far
-    double work_done;             // multiplications in solved rows, about
-    int *iwork;
+    double *best_y, *best_memory;  // the nearest position so far
+    double work_done;              // multiplications in solved rows, about
     struct ct_loop_filter *filter; // assembly_data.c
-    size_t most;                   // rows of A
-    size_t nhard, n;               // rows now: what must be met comes first
+    size_t most;                   // room for rows
+    size_t nhard;                  // of these: what must be met
 };
 
 /// Rows of loops that depend on others but for the tolerance of the data, as those of coaxial
 /// hinges whose places are given to some digits: what they say beyond the others is left out, and
 /// the loops close in the least-squares sense.
 struct ct_loop_filter {
-    bool is_on;        // rows are filtered
-    double *B, *Q, *A; // workspace
+    bool is_on; // rows are filtered
+    struct ct_arena *arena;
+    double *B, *Q, *whole, *A; // workspace
     double *size, *r, *tau, *work, *kept_y;
     int *row;
 };

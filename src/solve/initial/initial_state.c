@@ -54,7 +54,7 @@ void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluato
     start_states(m->model, e, y + m->nq);
     ct_evaluator_normalise(m, y);
     ct_evaluator_set(m, 0, y);
-    ct_switches_start(m, 0, y, NULL);
+    ct_switches_start(m, 0, y, NULL, NULL);
     ct_memory_start(m);
     if (s->is_inexact)
         ct_evaluator_set_inexact(m, s->freedoms);

@@ -104,17 +104,19 @@ bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_a
     s->h = 0;
     s->is_assembled = is_assembled;
     enum ct_eval e = ct_run_rhs(r, t, r->y, r->dy);
-    ct_switches_start(r->m, t, r->y, e == CT_EVAL_OK ? r->dy : NULL);
+    ct_switches_start(r->m, t, r->y, e == CT_EVAL_OK ? r->dy : NULL, NULL);
     ct_run_note_turning(r, t, r->y);
-    return ct_run_refuse_sticking(r, t, r->y) != CT_EVAL_FATAL;
+    return ct_run_settle_switches(r, t, r->y, NULL) != CT_EVAL_FATAL;
 }
 
-void ct_advance_refresh(struct ct_advance *s, double t)
+bool ct_advance_refresh(struct ct_advance *s, double t)
 {
     struct ct_run *r = s->r;
     s->horizon = t;
-    if (r->e->nswitch && ct_run_rhs(r, t, r->y, r->dy) == CT_EVAL_OK)
-        ct_switches_start(r->m, t, r->y, r->dy);
+    if (!r->e->nswitch || ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
+        return true; // what cannot be evaluated is said by the step
+    ct_switches_start(r->m, t, r->y, r->dy, NULL);
+    return ct_run_settle_switches(r, t, r->y, NULL) != CT_EVAL_FATAL;
 }
 
 bool ct_advance_to(struct ct_advance *s, double t0, double t1, double *t, struct ct_ctx **said)

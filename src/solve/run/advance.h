@@ -23,8 +23,8 @@ struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
 /// Errors: CT_E_STUCK, CT_E_SINGULAR, CT_E_STEP_OPEN, into the run's context.
 bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_assembled);
 /// Values of parameters have changed at t: switches may be on other sides, and change at other
-/// times.
-void ct_advance_refresh(struct ct_advance *s, double t);
+/// times. Errors: CT_E_STUCK, into the run's context.
+bool ct_advance_refresh(struct ct_advance *s, double t);
 /// From t0, where the state is, to t1 > t0, exactly. *t (out): the time that was reached. False
 /// with a diagnostic in the context of the run or in `said`, whose texts are gone with the next
 /// call.

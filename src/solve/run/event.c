@@ -12,7 +12,22 @@ enum ct_eval ct_run_root(void *user, double t, const double *y, double *g)
     ct_program_run(&r->m->root, r->m->input);
     for (int i = 0; i < r->nroot; i++)
         g[i] = r->m->root.out[r->root_of[i]];
+    if (r->m->has_rest) { // what round-off makes of them
+        const double size = ct_switches_size(r->m, y);
+        for (int i = 0; i < r->nroot; i++)
+            if (fabs(g[i]) <= r->m->at_rest[r->root_of[i]] * size)
+                g[i] = 0;
+    }
     return CT_EVAL_OK;
+}
+
+void ct_run_sides(void *user, signed char *side)
+{
+    const struct ct_run *r = user;
+    const double *mode = r->m->input + r->m->at_switch;
+    for (int i = 0; i < r->nroot; i++)
+        side[i]
+            = (signed char)ct_switches_side(r->m, (size_t)r->root_of[i], mode[r->root_of[i]]);
 }
 
 double ct_run_next_event(void *user, double t)
@@ -93,8 +108,9 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
 static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+    memset(r->crossed, 0, r->e->nswitch * sizeof *r->crossed);
     if (e == CT_EVAL_OK)
-        ct_switches_start(r->m, t, y, r->dy);
+        ct_switches_start(r->m, t, y, r->dy, r->crossed);
     return e;
 }
 
@@ -125,30 +141,50 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const d
     return e == CT_EVAL_OK ? switch_at_new_speeds(r, t, y) : e;
 }
 
-// With the modes set: a force that on both sides of its switch leads back to it (dry friction at rest) has no
-// motion that f describes.
-enum ct_eval ct_run_refuse_sticking(struct ct_run *r, double t, const double *y)
+// A force that on both sides of its switch i leads back to it (dry friction at rest) has no motion
+// that f describes.
+static enum ct_eval report_held(struct ct_run *r, double t, int i)
 {
+    const struct ct_switch *held = &r->e->switches[i];
+    ct_error(
+        r->ctx, held->mark.file ? held->mark : (struct ct_mark){.file = r->model->file},
+        CT_E_STUCK,
+        "at t = %.9g the motion is held where '%s' changes sign: on both sides the forces lead "
+        "back; let the force change over a small range, as tanh(u/0.001) does for sign(u)",
+        t, ct_ex_text(r->arena, r->e->x, held->written, NULL));
+    return CT_EVAL_FATAL;
+}
+
+// The sides were chosen for the derivative before they changed. A switch that the derivative with
+// the new sides contradicts goes to the other side; one that is contradicted there too holds the
+// motion. One that has just crossed has come from its other side, where the motion leads here.
+enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
+                                    const signed char *crossed)
+{
+    // other switches at the same place may have changed between two visits: a third one decides
+    enum { VISITS = 3 };
     if (!r->nroot)
         return CT_EVAL_OK;
-    const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
-    return e == CT_EVAL_OK ? ct_run_resumed(r, t, y, r->dy) : e;
+    for (size_t i = 0; i < r->e->nswitch; i++)
+        r->visits[i] = crossed && crossed[i] ? VISITS - 1 : 0;
+    for (;;) {
+        const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
+        if (e != CT_EVAL_OK)
+            return e;
+        const int i = ct_switches_find_contradicted(r->m, t, y, r->dy);
+        if (i < 0)
+            return CT_EVAL_OK;
+        if (++r->visits[i] == VISITS)
+            return report_held(r, t, i);
+        ct_switches_follow(r->m, (size_t)i);
+    }
 }
 
 enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy)
 {
     struct ct_run *r = user;
-    const int i = ct_switches_find_sticking(r->m, t, y, dy);
-    if (i < 0)
-        return CT_EVAL_OK;
-    const struct ct_switch *mode = &r->e->switches[i];
-    ct_error(
-        r->ctx, mode->mark.file ? mode->mark : (struct ct_mark){.file = r->model->file},
-        CT_E_STUCK,
-        "at t = %.9g the motion is held where '%s' changes sign: on both sides the forces lead "
-        "back; let the force change over a small range, as tanh(u/0.001) does for sign(u)",
-        t, ct_ex_text(r->arena, r->e->x, mode->written, NULL));
-    return CT_EVAL_FATAL;
+    const int i = ct_switches_find_contradicted(r->m, t, y, dy);
+    return i < 0 ? CT_EVAL_OK : report_held(r, t, i);
 }
 
 // Where the next singular configuration is for speeds that have jumped.
@@ -166,13 +202,10 @@ static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
 static void set_sides(struct ct_run *r, double t, const double *y, const double *dy,
                       const signed char *crossed)
 {
-    double *mode = r->m->input + r->m->at_switch;
     r->pending = ct_run_next_event(r, t);
-    ct_switches_start(r->m, t, y, dy);
     for (int i = 0; i < r->nroot; i++)
-        if (crossed[i])
-            mode[r->root_of[i]]
-                = ct_op_apply(r->e->switches[r->root_of[i]].op, crossed[i], 0, 0);
+        r->crossed[r->root_of[i]] = crossed[i];
+    ct_switches_start(r->m, t, y, dy, r->crossed);
 }
 
 // In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no speed jumps.
@@ -190,7 +223,6 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
 {
     struct ct_run *r = user;
     struct ct_evaluator *m = r->m;
-    (void)is_time;
     r->last_event = t;
     if (dy)
         return switch_in_gap(r, t, y, dy, crossed);
@@ -215,7 +247,8 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
     ct_run_monitor_impulse(r, t, y);
     ct_run_note_turning(r, t, y);
-    e = ct_run_refuse_sticking(r, t, y);
+    // with an event of time the forces have changed at once, and a root may go back
+    e = ct_run_settle_switches(r, t, y, is_time ? NULL : r->crossed);
     if (e == CT_EVAL_OK && m->nrow && r->o->step == 0)
         e = look_ahead(r, t, y);
     return e;

@@ -124,7 +124,7 @@ static bool pass_event(struct ct_run *r, double t, double *y)
     r->pending = ct_run_next_event(r, t);
     if (!ct_run_tables_reach(r, t))
         return false;
-    ct_switches_start(m, t, y, NULL);
+    ct_switches_start(m, t, y, NULL, NULL);
     ct_evaluator_set(m, t, y);
     ct_program_run(&m->driver, m->input);
     for (size_t i = 0; i < r->e->ndriver; i++) {
@@ -160,7 +160,7 @@ static bool run_kinematic(struct ct_run *r, const struct ct_run_options *o,
     r->pending = ct_run_next_event(r, 0);
     if (!ct_run_tables_reach(r, 0))
         return false;
-    ct_switches_start(r->m, 0, r->y, NULL);
+    ct_switches_start(r->m, 0, r->y, NULL, NULL);
     if (!check_driven(r))
         return false;
     double t = 0;
@@ -175,7 +175,7 @@ static bool run_kinematic(struct ct_run *r, const struct ct_run_options *o,
         if (!advance_with_work(r, t, end, r->y))
             return false;
         t = end;
-        ct_switches_start(r->m, t, r->y, NULL);
+        ct_switches_start(r->m, t, r->y, NULL, NULL);
         if (!ct_run_at_sample(r, t, r->y) || !ct_run_at_step(r, t, r->y))
             return false;
     }

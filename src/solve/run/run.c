@@ -166,6 +166,8 @@ static void find_needs(struct ct_run *r)
         r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
     r->singular->has_poles = r->has_lam_results;
     r->root_of = CT_NEWN(r->arena, int, e->nswitch + 1);
+    r->visits = CT_NEWN(r->arena, int, e->nswitch + 1);
+    r->crossed = CT_NEWN(r->arena, signed char, e->nswitch + 1);
     for (size_t i = 0; i < e->nswitch; i++)
         if (!e->switches[i].is_time)
             r->root_of[r->nroot++] = (int)i;
@@ -256,7 +258,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
         no_start(r);
         return false;
     }
-    ct_switches_start(r->m, 0, r->y, r->dy);
+    ct_switches_start(r->m, 0, r->y, r->dy, NULL);
     return true;
 }
 
@@ -678,6 +680,7 @@ void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched)
         .singular = r->m->nrow ? &r->singularities : NULL,
         .nroot = r->nroot,
         .root = ct_run_root,
+        .sides = ct_run_sides,
         .next_time_event = ct_run_next_event,
         .event = ct_run_event,
         .resumed = ct_run_resumed};
@@ -724,10 +727,10 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         ct_input_sampling_sample(r->arena, r->m, o->duration, &r->input_sampling);
     if (!ct_run_tables_reach(r, 0))
         return false;
-    ct_switches_start(r->m, 0, r->y, r->dy);
+    ct_switches_start(r->m, 0, r->y, r->dy, NULL);
     ct_run_monitor_start(r, 0, r->y);
     ct_run_note_turning(r, 0, r->y);
-    if (ct_run_refuse_sticking(r, 0, r->y) == CT_EVAL_FATAL)
+    if (ct_run_settle_switches(r, 0, r->y, NULL) == CT_EVAL_FATAL)
         return false;
     if (!ct_run_start_steps(r))
         return false;

@@ -31,11 +31,12 @@ struct ct_run {
     double *assembled; // state at the start  (ny)
     double *y, *dy, *stage, *scratch, *value, *next;
     double *largest; // of each result, over the samples
-    double *sign;    // of each state mode's root function at the last event
     double *event;   // times
     size_t nevent;
-    int *root_of; // state modes, in order
+    int *root_of; // switches of the state, in order (nroot)
     int nroot;
+    signed char *crossed;      // by switch: as `crossed` of an event (nswitch)
+    int *visits;               // of ct_run_settle_switches (nswitch)
     bool needs_lam, has_power; // needs_lam: the power does
     bool has_turns;            // angles or rotations found from their last values
     bool has_lam_results;      // outputs or indicators depend on multipliers
@@ -124,15 +125,19 @@ double ct_run_next_event(void *user, double t);
 /// Do the tables tell what follows t? An error if not (E310).
 bool ct_run_tables_reach(struct ct_run *r, double t);
 enum ct_eval ct_run_root(void *user, double t, const double *y, double *g);
+void ct_run_sides(void *user, signed char *side);
 enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
                           const signed char *crossed, bool is_time);
-/// As ct_run_refuse_sticking, where the derivative at y, dy, is known.
+/// In the gap of a crossing, where f is not computed but known, dy: an error (E406) where a switch
+/// is contradicted.
 enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy);
 /// Notes that name the drivers that move at t, y, and where they are.
 void ct_run_note_drivers(struct ct_run *r, double t, const double *y);
-/// With the modes set: CT_EVAL_FATAL with CT_E_STUCK where a force on both sides of its switch leads back to it (dry
-/// friction at rest): there is no motion that f describes.
-enum ct_eval ct_run_refuse_sticking(struct ct_run *r, double t, const double *y);
+/// With the sides of switches set for an earlier derivative: makes those consistent whose g is zero.
+/// CT_EVAL_FATAL with CT_E_STUCK where the forces on both sides of a switch lead back to it.
+/// crossed (nswitch): those that have just crossed; NULL: none, or forces and speeds jump as well.
+enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
+                                    const signed char *crossed);
 /// Of a driver's value or rate, beside round-off [rad, m, 1/s].
 extern const double ct_run_jump_tolerance;
 /// Always false, with CT_E_DRIVER_JUMP.

@@ -1,0 +1,149 @@
+// See damped.h.
+#include "numeric/damped.h"
+
+#include "numeric/dense.h"
+#include "numeric/sparse.h"
+
+#include <math.h>
+
+// ---- rows -----------------------------------------------------------------------------------------
+
+void ct_sparse_rows_clear(struct ct_sparse_rows *A)
+{
+    A->n = 0;
+    if (A->start)
+        A->start[0] = 0;
+}
+
+void ct_sparse_rows_add(struct ct_sparse_rows *A, const int *column, const double *value,
+                        size_t n, double weight)
+{
+    size_t at = A->start ? A->start[A->n] : 0, nvalue = at, nstart = A->start ? A->n + 1 : 0;
+    if (nstart == 0)
+        CT_PUSH(A->arena, A->start, nstart, A->start_cap, 0);
+    for (size_t k = 0; k < n; k++) {
+        CT_PUSH(A->arena, A->column, at, A->column_cap, column ? column[k] : (int)k);
+        CT_PUSH(A->arena, A->value, nvalue, A->value_cap, weight * value[k]);
+    }
+    CT_PUSH(A->arena, A->start, nstart, A->start_cap, at);
+    A->n++;
+}
+
+void ct_sparse_rows_times(double *y, const struct ct_sparse_rows *A, size_t n, const double *x)
+{
+    for (size_t i = 0; i < n; i++) {
+        y[i] = 0;
+        for (size_t k = A->start[i]; k < A->start[i + 1]; k++)
+            y[i] += A->value[k] * x[A->column[k]];
+    }
+}
+
+double ct_sparse_rows_largest_column(const struct ct_sparse_rows *A, size_t n, size_t ncolumn,
+                                     double *work)
+{
+    memset(work, 0, ncolumn * sizeof *work);
+    for (size_t k = 0; n && k < A->start[n]; k++)
+        work[A->column[k]] += A->value[k] * A->value[k];
+    return sqrt(ct_vector_largest(work, ncolumn));
+}
+
+// ---- the system -----------------------------------------------------------------------------------
+
+struct ct_damped {
+    struct ct_arena *arena;            // what is for one pattern
+    size_t n, ncolumn, nentry, *start; // the pattern: rows, columns, entries of A
+    int *column;
+    struct ct_sparse *K; // NULL: the library is not available
+    double *value;       // of K: n times damping, ncolumn times -damping, A, A'
+    double *b, *x;       // (n + ncolumn)
+};
+
+struct ct_damped *ct_damped_create(struct ct_arena *a)
+{
+    struct ct_damped *s = CT_NEW(a, struct ct_damped);
+    s->arena = ct_arena_create_under(a);
+    return s;
+}
+
+static bool has_pattern(const struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
+                        size_t ncolumn)
+{
+    return s->start && s->n == n && s->ncolumn == ncolumn && s->nentry == A->start[n]
+        && memcmp(s->start, A->start, (n + 1) * sizeof *s->start) == 0
+        && memcmp(s->column, A->column, s->nentry * sizeof *s->column) == 0;
+}
+
+static void analyse(struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
+                    size_t ncolumn)
+{
+    struct ct_arena *a = s->arena;
+    s->start = NULL;
+    ct_arena_clear(a);
+    const size_t nentry = A->start[n], most = n + ncolumn + 2 * nentry;
+    int *row = CT_NEWN(a, int, most), *column = CT_NEWN(a, int, most);
+    s->n = n;
+    s->ncolumn = ncolumn;
+    s->nentry = nentry;
+    s->start = CT_NEWN(a, size_t, n + 1);
+    s->column = CT_NEWN(a, int, nentry + 1);
+    s->value = CT_NEWN(a, double, most);
+    s->b = CT_NEWN(a, double, n + ncolumn);
+    s->x = CT_NEWN(a, double, n + ncolumn);
+    memcpy(s->start, A->start, (n + 1) * sizeof *s->start);
+    memcpy(s->column, A->column, nentry * sizeof *s->column);
+    for (size_t i = 0; i < n + ncolumn; i++)
+        row[i] = column[i] = (int)i;
+    for (size_t i = 0, at = n + ncolumn; i < n; i++)
+        for (size_t k = A->start[i]; k < A->start[i + 1]; k++, at++) {
+            row[at] = column[at + nentry] = (int)i;
+            column[at] = row[at + nentry] = (int)n + A->column[k];
+        }
+    s->K = ct_sparse_create(a, (int)(n + ncolumn), row, column, most, CT_SPARSE_ANY);
+}
+
+// The same by dense QR, of rows of A and of damping.
+static double solve_dense(struct ct_damped *s, double *x, const struct ct_sparse_rows *A,
+                          const double *b, double damping)
+{
+    const size_t n = s->n + s->ncolumn, ncolumn = s->ncolumn;
+    struct ct_arena *own = ct_arena_create_under(s->arena);
+    double *D = CT_NEWN(own, double, n *ncolumn), *y = CT_NEWN(own, double, n);
+    double *work = CT_NEWN(own, double, ct_lstsq_work((int)n, (int)ncolumn));
+    memcpy(y, b, s->n * sizeof *y);
+    for (size_t i = 0; i < s->n; i++)
+        for (size_t k = A->start[i]; k < A->start[i + 1]; k++)
+            D[i + n * (size_t)A->column[k]] += A->value[k];
+    for (size_t k = 0; k < ncolumn; k++)
+        D[s->n + k + n * k] = damping;
+    ct_lstsq(y, D, (int)n, (int)ncolumn, (int)n, 0, CT_NEWN(own, int, ncolumn), work);
+    memcpy(x, y, ncolumn * sizeof *x);
+    ct_arena_destroy(own);
+    return (double)n * (double)(ncolumn * ncolumn);
+}
+
+double ct_damped_solve(struct ct_damped *s, double *x, const struct ct_sparse_rows *A, size_t n,
+                       size_t ncolumn, const double *b, double damping)
+{
+    if (n == 0 || ncolumn == 0) {
+        memset(x, 0, ncolumn * sizeof *x);
+        return 0;
+    }
+    if (!has_pattern(s, A, n, ncolumn))
+        analyse(s, A, n, ncolumn);
+    if (!s->K)
+        return solve_dense(s, x, A, b, damping);
+    memcpy(s->b, b, n * sizeof *b); // what follows stays zero
+    for (size_t i = 0; i < n + ncolumn; i++)
+        s->value[i] = i < n ? damping : -damping;
+    for (int side = 0; side < 2; side++)
+        memcpy(s->value + n + ncolumn + (side ? s->nentry : 0), A->value,
+               s->nentry * sizeof *s->value);
+    if (!ct_sparse_factor_repivot(s->K, s->value)) {
+        for (size_t k = 0; k < ncolumn; k++)
+            x[k] = NAN;
+        return 0;
+    }
+    ct_sparse_solve_extended(s->K, s->x, s->b);
+    memcpy(x, s->x + n, ncolumn * sizeof *x);
+    return ct_sparse_operations(s->K) + ct_sparse_fill(s->K);
+}
