@@ -16,7 +16,7 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
         if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE)
             && !b->topology->edge[i].never_branch
             && (!p->trans[i] || (b->topology->edge[i].has_rotation && !p->rot[i]))
-            && b->topology->edge[i].trial.quaternion != 3)
+            && b->topology->edge[i].trial->quaternion != 3)
             return false;
     }
     return true;

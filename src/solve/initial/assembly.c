@@ -66,7 +66,7 @@ bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r)
         return true;
     }
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    const int k = c->index - s->e->build->topology->edge[c->edge].trial.quaternion;
+    const int k = c->index - s->e->build->topology->edge[c->edge].trial->quaternion;
     if (k == 3)
         return false;
     *r = quaternion_error(s, i - (size_t)k, k);
