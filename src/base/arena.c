@@ -309,7 +309,7 @@ char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
 // touched: what is left behind is memory, what is never used is not.
 static size_t next_cap(size_t cap, size_t size)
 {
-    const size_t least = 8;
+    const size_t least = 8; // Limit: of memory
     return !cap ? least : cap < largest_chunk / 8 / size ? 2 * cap : 8 * cap;
 }
 

@@ -115,8 +115,8 @@ static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
     const ct_ex zero[CT_MAX_COORD] = {{0}};
     ct_ex3 d = e->at;
     for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
-        d.e[i]
-            = ct_ex_subst(b->x, e->trial->d.e[i], e->trial->coord, zero, (size_t)e->ncoordinate);
+        d.e[i] = ct_ex_subst(b->x, e->trial->d.e[i], e->trial->coord, zero,
+                             (size_t)e->ncoordinate);
     return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->topology->plane[2]), d);
 }
 
