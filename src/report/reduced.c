@@ -243,7 +243,7 @@ static int by_id(const void *unused, const void *a, const void *b)
 // Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
 static void replace_named(struct ct_arena *a, struct ct_equations *e,
                           struct ct_definitions *list, struct ct_share *share,
-                          const ct_ex *root, size_t nroot, ct_ex *map, bool may_tidy)
+                          const ct_ex *root, size_t nroot, ct_ex *map)
 {
     struct ct_exs *x = e->x;
     const size_t n = ct_ex_walk(x, root, nroot);
@@ -264,7 +264,7 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e,
         struct ct_reduced_definition *d = &list->at[list->n++];
         d->full = is_negative ? ct_ex_neg(x, old) : old;
         d->value = is_negative ? ct_ex_neg(x, map[old.id]) : map[old.id];
-        d->value = may_tidy ? tidy(e, d->value) : d->value;
+        d->value = tidy(e, d->value);
         d->symbol = ct_ex_sym(x, CT_SYM_LOCAL, name + is_negative, number);
         map[old.id] = is_negative ? ct_ex_neg(x, d->symbol) : d->symbol;
     }
@@ -286,12 +286,9 @@ struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equation
         root[i] = *where[i];
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
-    // what nobody reads through need not be in its nicest form: collecting takes some 0.1 ms each
-    // Limit: a tenth of a second
-    const bool may_tidy = names_first || (double)(n + share.n) * (double)e->x->nnode < 2e8;
-    replace_named(a, e, &list, &share, root, n, map, may_tidy);
+    replace_named(a, e, &list, &share, root, n, map);
     for (size_t i = 0; i < n; i++)
-        *where[i] = may_tidy ? tidy(e, map[root[i].id]) : map[root[i].id];
+        *where[i] = tidy(e, map[root[i].id]);
     *size = share.size;
     return list;
 }
