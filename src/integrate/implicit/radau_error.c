@@ -217,16 +217,17 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
     return m;
 }
 
-// It is looked at where steps have become longer or one was refused, and every so many steps, and
-// follows their length in between. Of a refused step, which may be far longer, vibrations that it
-// does not resolve have no such law.
+// It is looked at where steps have become longer, where the last look has refused one, and every so
+// many steps, and follows their length in between. Of a step that was refused for it, and may be far
+// longer, vibrations that it does not resolve have no such law.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
     const double h = s->now.h;
     if (!p->requested_speeds || !(p->accuracy > 0) || !(p->duration > 0))
         return 0;
-    if (h <= s->vibration_check.h && !s->was_tried && s->vibration_check.left-- > 0) {
+    const bool has_refused = s->vibration_check.error > 1;
+    if (h <= s->vibration_check.h && !has_refused && s->vibration_check.left-- > 0) {
         const double part = h / s->vibration_check.h;
         return s->vibration_check.error * part * part * part * part;
     }
