@@ -88,7 +88,7 @@ static void compare(const struct sample *s, double damping, double dense_damping
     double b[MOST], x[MOST], want[MOST];
     for (int j = 0; j < s->n; j++)
         want[j] = uniform();
-    for (int again = 0; again < 2; again++) { // with the analysis of the first
+    for (int again = 0; again < 2; again++) {            // with the analysis of the first
         ct_sparse_rows_times(b, &A, (size_t)s->m, want); // in the range of A
         ct_damped_factor(d, &A, (size_t)s->m, (size_t)s->n, damping);
         ct_damped_solve(d, x, b);
