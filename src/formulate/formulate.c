@@ -68,26 +68,6 @@ static void measure_all(struct ct_build *b, const struct ct_equations *needed_by
     }
 }
 
-// Coefficients of the measured speeds, which are linear in u.
-static void derive_measured_speeds(struct ct_build *b)
-{
-    struct ct_equations *e = b->eqs;
-    struct ct_arena *scratch = b->ctx->scratch;
-    struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, e->nu + 1);
-    ct_ex *speed = CT_NEWN(scratch, ct_ex, b->topology->ncoordinate + 1);
-    struct ct_slope *slope;
-    for (size_t k = 0; k < e->nu; k++)
-        seed[k] = (struct ct_seed){e->u[k].symbol, (uint32_t)k, CT_EX_ONE};
-    for (size_t i = 0; i < b->topology->ncoordinate; i++)
-        speed[i] = e->result[2 * i + 1].value;
-    e->nmeasured_speed = ct_ex_jacobian(b->x, scratch, scratch, speed, b->topology->ncoordinate,
-                                        seed, e->nu, &slope);
-    e->measured_speed = CT_NEWN(b->arena, struct ct_entry, e->nmeasured_speed + 1);
-    for (size_t i = 0; i < e->nmeasured_speed; i++)
-        e->measured_speed[i]
-            = (struct ct_entry){(int)slope[i].row, (int)slope[i].direction, slope[i].value};
-}
-
 static void derive_dynamics(struct ct_build *b, const struct ct_formulate_options *o)
 {
     b->eqs->is_analysed
@@ -183,10 +163,9 @@ static bool derive_results(struct ct_build *b, const struct ct_formulate_options
         ct_residual_derive(b, CT_SLOPES_AUTO);
     if (o->with_energy)
         ct_energies_derive(b);
-    if (o->measure_all) {
+    if (o->measure_all)
         measure_all(b, o->measured_for);
-        derive_measured_speeds(b);
-    } else if (o->with_outputs && (!ct_outputs_derive(b) || !ct_outputs_add(b, o->more)))
+    else if (o->with_outputs && (!ct_outputs_derive(b) || !ct_outputs_add(b, o->more)))
         return false;
     if (o->with_energy)
         ct_validity_monitor(b);

@@ -654,14 +654,28 @@ static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_
         (*first)[i + 1] += (*first)[i];
 }
 
-static void compile_speeds(struct ct_arena *a, struct ct_assembler *s)
+// Coefficients of the measured speeds, which are linear in u. Only here: those of n bodies in a chain are n^2.
+static void derive_speeds(struct ct_arena *a, struct ct_assembler *s)
 {
     const struct ct_equations *e = s->e;
+    struct ct_seed *seed = CT_NEWN(a, struct ct_seed, e->nu + 1);
+    ct_ex *speed = CT_NEWN(a, ct_ex, e->ncoordinate + 1);
+    struct ct_slope *slope;
+    for (size_t k = 0; k < e->nu; k++)
+        seed[k] = (struct ct_seed){e->u[k].symbol, (uint32_t)k, CT_EX_ONE};
+    for (size_t i = 0; i < e->ncoordinate; i++)
+        speed[i] = e->result[2 * i + 1].value;
+    const size_t n = ct_ex_jacobian(e->x, a, a, speed, e->ncoordinate, seed, e->nu, &slope);
+    struct ct_entry *entry = CT_NEWN(a, struct ct_entry, n + 1);
+    ct_ex *value = CT_NEWN(a, ct_ex, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        entry[k]
+            = (struct ct_entry){(int)slope[k].row, (int)slope[k].direction, slope[k].value};
+        value[k] = slope[k].value;
+    }
+    list_entries(a, entry, n, e->ncoordinate, &s->first_speed, &s->speed_column);
     s->speeds = CT_NEW(a, struct ct_program);
-    ct_ex *value = CT_NEWN(a, ct_ex, e->nmeasured_speed + 1);
-    for (size_t k = 0; k < e->nmeasured_speed; k++)
-        value[k] = e->measured_speed[k].value;
-    ct_evaluator_add_program(a, s->m, e->x, value, e->nmeasured_speed, s->speeds);
+    ct_evaluator_add_program(a, s->m, e->x, value, n, s->speeds);
 }
 
 static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
@@ -695,8 +709,7 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.shift = CT_NEWN(a, double, s.most);
     s.work = CT_NEWN(a, double, s.most);
     list_entries(a, e->J, e->nJ, e->nrow, &s.first_J, &s.J_column);
-    list_entries(a, e->measured_speed, e->nmeasured_speed, nc, &s.first_speed, &s.speed_column);
-    compile_speeds(a, &s);
+    derive_speeds(a, &s);
     find_fixed_rows(&s, a);
     s.filter = ct_loop_filter_create(a, &s);
     return s;
