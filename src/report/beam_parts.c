@@ -20,14 +20,18 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
 }
 
 // The angular velocity of the frame may stand in other parts.
-static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
+static ct_ex without_names(struct ct_arena *a, struct ct_exs *x, const struct ct_beam_parts *p,
+                           ct_ex value)
 {
+    const size_t n = p->definitions.n;
     if (!(ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL))
         return value;
-    for (size_t i = 0; i < p->definitions.n; i++)
-        value = ct_ex_subst(x, value, &p->definitions.at[i].symbol, &p->definitions.at[i].full,
-                            1);
-    return value;
+    ct_ex *symbol = CT_NEWN(a, ct_ex, n + 1), *full = CT_NEWN(a, ct_ex, n + 1);
+    for (size_t i = 0; i < n; i++) {
+        symbol[i] = p->definitions.at[i].symbol;
+        full[i] = p->definitions.at[i].full; // has no names
+    }
+    return ct_ex_subst(x, value, symbol, full, n);
 }
 
 static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
@@ -36,7 +40,7 @@ static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
     const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
                                    (uint32_t)p->definitions.n);
     const struct ct_reduced_definition d
-        = {.symbol = symbol, .value = value, .full = without_names(x, p, value)};
+        = {.symbol = symbol, .value = value, .full = without_names(a, x, p, value)};
     CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
     return symbol;
 }
