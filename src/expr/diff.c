@@ -54,14 +54,6 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
     return nlist;
 }
 
-// The walk's list moved out of the workspace, so that other walks may run meanwhile.
-static uint32_t *copy_list(struct ct_exs *x, size_t n)
-{
-    uint32_t *list = CT_NEWN(x->arena, uint32_t, n ? n : 1);
-    memcpy(list, x->stack, n * sizeof *list);
-    return list;
-}
-
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
 {
     const struct ct_exnode n = x->node[id];
@@ -164,7 +156,7 @@ static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d)
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
 {
     const size_t n = ct_ex_walk(x, &e, 1);
-    const uint32_t *list = copy_list(x, n);
+    const uint32_t *list = x->stack;
     ct_ex *d = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         if (x->node[list[k]].op == CT_OP_SYM) {
@@ -259,7 +251,7 @@ void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, 
                       size_t ns)
 {
     const size_t n = ct_ex_walk(x, a, na);
-    const uint32_t *list = copy_list(x, n);
+    const uint32_t *list = x->stack;
     ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
