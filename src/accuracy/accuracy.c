@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Default: of the error that is asked about, as docs/cli.md tells. Test: accuracy.
+// Chosen: the error that is asked about, as docs/cli.md tells.
 static const double standard_error = 1e-6;
 // Limit: six methods within about a minute; more where already the reference takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;
@@ -22,8 +22,8 @@ static const double share_of_method = 9, share_of_reference = 1;
 enum { REPEATS = 3, MOST_REPEATS = 101 }; // the latter of short ones
 static const double short_times = 0.05;   // Limit: of one setting together  [s]
 enum { MOST_PER_DECADE = 10 };            // Limit: tolerances have two digits; with a message
-// A reference should be better than the error that is asked about by this factor. Default: a warning
-// says so. Test: accuracy.
+// A reference should be better than the error that is asked about by this factor. Chosen: a warning
+// says so.
 static const double reference_margin = 0.1;
 // Limit: steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
 static const int most_steps_of_ladder = 7;

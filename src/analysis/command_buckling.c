@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-// Default: of factors and load levels that are listed, as docs/cli.md tells. Test: analyses.
-enum { STANDARD_COUNT = 10, LEVELS = 21 };
+// Default: factors that are listed, as docs/cli.md tells. Test: analyses.
+enum { STANDARD_COUNT = 10 };
+enum { LEVELS = 21 }; // Layout: loads of a curve
 
 struct ct_buckling {
     struct ct_ctx own;

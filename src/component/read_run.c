@@ -254,7 +254,7 @@ void ct_read_simulation(struct ct_reader *r)
         = {"duration", "samples", "interval",   "tolerance", "absolute",
            "method",   "step",    "rate_jumps", "small"};
     struct ct_simulation *s = &r->m->simulation;
-    // Default: accuracy against time, as docs/format.md tells. Test: usage.
+    // Definition: the defaults of docs/format.md
     *s = (struct ct_simulation){.samples = 1001, .rtol = 1e-8, .method = "auto"};
     s->small.frame = -1;
     s->mark = (struct ct_mark){r->m->file, 0, 0};

@@ -14,7 +14,7 @@ double ct_counted_cost(const struct ct_tape_counts *c);
 
 /// Part of a cost from which another formulation or order is taken instead of the usual one: counts
 /// do not tell programs apart that differ by less than a tenth.
-/// Default: the usual form for readers against a shorter program. Test: solvers.
+/// Chosen: the usual form for readers against a shorter program.
 #define CT_CLEARLY_CHEAPER 0.9
 
 #endif

@@ -37,3 +37,5 @@ echo '-- a free cart under a leaning pole: one rigid-body motion, whatever round
 "$COTREE" modes "$SYSTEMS/cart_pole/model.yaml" --quiet | sed -n 2p
 echo '-- a free body that spins: three motions of its centre and its spin, nothing beside them'
 "$COTREE" modes "$SYSTEMS/tumbling_body/model.yaml" --quiet | awk -F, 'NR > 1 && NR < 7 { print $1 "," substr($2, 1, 9) "," $4 }'
+echo '-- ten modes where no count is given'
+"$COTREE" modes "$SYSTEMS/chain40/model.yaml" --quiet | tail -n +2 | wc -l

@@ -458,6 +458,44 @@ static void rows_at_the_ends_may_differ(void **unused)
     assert_true(size_of_rows(true, true) < same + row);
 }
 
+// Programs of less than 256 instructions have the bits of the tape; longer ones are fused.
+static void long_programs_alone_are_fused(void **state)
+{
+    (void)state;
+    for (int n = 100; n <= 200; n += 100) { // two instructions each
+        struct fixture f;
+        start(&f);
+        ct_ex e = f.sym[1];
+        for (int k = 0; k < n; k++)
+            e = ct_ex_add(&f.x, ct_ex_mul(&f.x, e, f.sym[3 + 2 * (k % 3)]),
+                          f.sym[9 + 2 * (k % 2)]);
+        const struct ct_listing *l
+            = ct_listing_create(f.arena, &f.x, &e, 1, f.sym, f.slot, NSYM, CT_FUSE_NATIVE);
+        const struct ct_tape *tape = ct_tape_create(f.arena, l);
+        const struct ct_native *native = ct_native_create(f.arena, l, 1);
+        double *work = CT_NEWN(f.arena, double, ct_tape_work(tape) + 1), want[1], got[1];
+        bool is_same = true;
+#ifdef __x86_64__
+        const bool can_fuse = native && __builtin_cpu_supports("fma");
+        double *room = CT_NEWN(f.arena, double, can_fuse ? ct_native_work(native) + 1 : 1);
+        for (int i = 0; i < 20 && can_fuse; i++) {
+            double input[NSYM];
+            for (size_t k = 0; k < NSYM; k++)
+                input[k] = 0.9 + 0.013 * (double)k + 0.0017 * i;
+            ct_tape_prepare(tape, input, work);
+            ct_tape_eval(tape, input, want, work);
+            ct_native_prepare(native, input, room);
+            ct_native_eval(native, input, got, room);
+            is_same = is_same && memcmp(got, want, sizeof got) == 0;
+        }
+        assert_true(is_same == (n == 100) || !can_fuse);
+#else
+        (void)native, (void)want, (void)got, (void)is_same;
+#endif
+        finish(&f);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -468,6 +506,7 @@ int main(void)
         cmocka_unit_test(same_listing_same_code),
         cmocka_unit_test(loops_have_the_same_bits),
         cmocka_unit_test(rows_at_the_ends_may_differ),
+        cmocka_unit_test(long_programs_alone_are_fused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

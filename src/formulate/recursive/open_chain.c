@@ -11,7 +11,7 @@
 #include <math.h>
 
 // A call of a solver for dense matrices, in operations of straight-line code.
-// Default: by the time of a call. Test: open_chain.
+// Chosen: about the time of a call.
 static const double call_cost = 300;
 // Limit: operations of a program, which take memory; below, repeats are rolled up
 // (codegen/reroll.h), beyond, a solver for sparse matrices is called.

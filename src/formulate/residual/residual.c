@@ -108,7 +108,7 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 
 // Predicted use: so many evaluations in a run. Making an operation (nodes, listing, machine code)
 // costs as much as executing it so often; side by side in lanes it costs a quarter and something
-// for the loads. Default: time to make a program against its use. Test: jacobian.
+// for the loads. Chosen: time to make a program against its use.
 static const double expected_evaluations = 300, making = 1500;
 
 // What both ways start from: r with inner values behind it, v, and the motions they vary along.

@@ -81,7 +81,7 @@ double ct_equations_cost(struct ct_arena *scratch, const struct ct_equations *e)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
     // In multiplications: state to be copied, scaled and added up by a method of several stages.
-    // Default: fewer speeds against shorter equations. Test: tree_pairs.
+    // Chosen: fewer speeds against shorter equations.
     const double per_speed = 20;
     return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }

@@ -195,7 +195,7 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 // Large systems have very many choices, and take long to get a form: only that of the start has one.
 static bool is_allowed(const struct ct_batch *s)
 {
-    // Default: time to compile against time to run. Test: batch.
+    // Chosen: time to compile against time to run.
     enum { LARGE = 20000 }; // operations
     return s->origin
         && (!s->nsolver
