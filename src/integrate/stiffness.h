@@ -66,8 +66,7 @@ struct ct_trial {
     double pace;          // of all steps, where a trial does not end
     struct {
         double t, spent; // where it begins, the work before
-        double pace;     // of the one before; 0: there is none
-    } window;            // of steps
+    } window;            // of the last steps
 };
 
 /// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations,
@@ -124,8 +123,8 @@ double ct_trial_pace(const struct ct_trial *r);
 /// end: true if all of it since the last event has gained less than `pace`. A hard stretch, as where
 /// an iteration fails for a while, does not outweigh what was gained before, and no more is spent
 /// than the other method would have. An event may excite vibrations: what was gained before tells
-/// nothing then, and as long as they die out and each hundred steps gain more than those before,
-/// nothing is lost.
+/// nothing then, and as long as they die out, so that the last hundred steps gain more than those
+/// since the event on average, nothing is lost.
 bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace);
 
 #endif
