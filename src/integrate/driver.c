@@ -12,8 +12,8 @@
 #include <string.h>
 
 // Crossings may err by more than ct_crossing_roundoff where they begin nearer to the position than
-// crossings do, with the square of how much nearer, up to this part of what is wanted: from still
-// nearer by there would be less. (8.28)
+// crossings do, with the square of how much nearer, up to this part of what is wanted (8.28).
+// Default: with less, crossings fail for round-off. Test: singular_approach.
 static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};

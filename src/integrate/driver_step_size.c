@@ -8,18 +8,18 @@
 // of step control. Derived: SAFE of DOPRI5 (Hairer and Wanner).
 static const double safety = 0.9;
 
-// A crossing that failed is tried again from nearer by this factor. Default; test_crossing,
-// the_rest_has_an_error_of_its_own, fails with 0.95.
+// A crossing that failed is tried again from nearer by this factor.
+// Default: the number of trials against digits lost near by. Test: crossing.
 static const double nearer = 0.5;
-// After so many failures the configuration counts as nearly singular only. Default; test_crossing,
-// what_misses_a_little_is_tried_from_nearer_by, fails with 1.
+// After so many failures the configuration counts as nearly singular only.
+// Default: crossings given up against trials in vain. Test: crossing.
 static const int most_crossings = 6;
 // A crossing may begin at once where it should begin after at most this factor of the time to the
-// configuration; after a failure only where a step to that place has ended. Default; test_crossing,
-// what_misses_a_little_is_tried_from_nearer_by, fails with early = 13.
+// configuration; after a failure only where a step to that place has ended.
+// Default: short steps to that place against longer crossings. Test: crossing.
 static const double early = 1.3, on_time = 1.02;
-// Predicted times that differ by such a factor belong to two configurations. Default; test_crossing,
-// another_position_is_crossed_after_one_that_is_passed_by, fails with 20.
+// Predicted times that differ by such a factor belong to two configurations.
+// Default: predictions err, and configurations follow each other. Test: crossing.
 static const double other = 2;
 // A run that ends less than this part of the reach before the configuration ends by a crossing.
 static const double beside = 0.5;
@@ -205,7 +205,7 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
 // Shorter, which none is any more after so many times.
 static void shrink_remainder(struct ct_driver *r)
 {
-    enum { MOST = 12 };
+    enum { MOST = 12 }; // Default: as most_crossings. Test: crossing.
     r->failed_crossings++;
     r->remainder.h = r->failed_crossings < MOST ? nearer * r->remainder.h : 0;
 }

@@ -6,21 +6,21 @@
 #include <math.h>
 #include <string.h>
 
-// Places within a step where sign changes are looked for. Default; test_events,
-// two_waves_in_a_step_are_seen, fails with half of them.
+// Places within a step where sign changes are looked for.
+// Default: what is missed against evaluations; two_waves_in_a_step_are_seen. Test: events.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
 // A root that crosses between probes and comes back is suspected where the parabola through three
 // of them has its minimum below this part of its second difference, which is what it errs by.
-// Default; test_events, a_parabola_tells_of_dips, fails with 0.01 and with 1.
+// Default: what is missed against evaluations; a_parabola_tells_of_dips. Test: events.
 const double ct_event_location_margin = 0.1;
-// The minimum is looked for with three places, each time so much closer to each other. Default;
-// test_events, crossings_close_together_are_both_seen, fails with 0.9.
+// The minimum is looked for with three places, each time so much closer to each other.
+// Default: crossings_close_together_are_both_seen fails with 0.9. Test: events.
 static const double closer = 0.125;
 
 // Times are resolved to this part of max(|t|, h), and values of g to this part of their size in
-// the step: some thousand units of round-off, so that secants still see a change of g. Default;
-// test_events, events_are_as_accurate_as_steps, fails with 1e-11.
+// the step: some thousand units of round-off, so that secants still see a change of g.
+// Default: accuracy of events against their round-off. Test: events.
 static const double resolution = 1e-12;
 
 // Spacing of the forward differences for slopes of g, as part of a step. Derived: the square root
@@ -29,7 +29,7 @@ static const double spacing = 0x1p-26;
 
 // With events a run has at least this many steps, so that probes are never too far apart when
 // the motion between events is so simple (free fall) that steps could grow without limit.
-// Default; test_events, a_root_may_jump_at_its_event, fails with 5.
+// Default: what is missed against steps. Test: events.
 static const double event_steps = 50;
 
 double ct_event_location_resolution(double t, double h)
@@ -439,8 +439,8 @@ enum ct_eval ct_event_location_accept(struct ct_event_location *w, double t, dou
             w->crossed[i] = (signed char)-w->side[i];
             w->slope[i] = 0;
         }
-        // ten resolutions, as the location and its refinement are each good to a few. Default;
-        // test_events, infinitely_many_bounces_are_an_error, fails with a hundred
+        // ten resolutions, as the location and its refinement are each good to a few
+        // Default: infinitely_many_bounces_are_an_error fails with a hundred. Test: events.
         if (w->crossed[i])
             w->recently_fired[i] = fmax(
                 DBL_MIN, // zero itself is no crossing back

@@ -31,6 +31,7 @@ struct ct_event_location {
 /// has two or more of the 12 to which times are resolved.
 enum { CT_EVENT_CORRECTIONS = 3 };
 /// State events in a row, each close to the one before, that are an infinite number.
+/// Default: with more, times stop to go on before they are counted. Test: events.
 enum { CT_EVENT_ACCUMULATION = 100 };
 
 /// Times closer than this to an event cannot be told from it.

@@ -11,7 +11,8 @@
 // hairer1996, IV.2 and IV.8: h_new = h safety error_before^beta / error^alpha.
 //
 // Safety factors. Explicit: over the reference problems an error is reached with 5 % fewer
-// evaluations at 0.8 than at 0.9, as fewer steps are refused. Implicit: Derived, that of RADAU5.
+// evaluations at 0.8 than at 0.9, as fewer steps are refused; implicit: that of RADAU5.
+// Default: long steps against refused ones. Test: integrate.
 static const double safety = 0.8, implicit_safety = 0.9;
 // Derived: FAC1 of DOPRI5, the least factor from one step to the next.
 static const double most_shrink = 0.2;
@@ -55,8 +56,10 @@ struct ct_step_control ct_step_control_start(void)
 }
 
 // A run ends early where its steps do not grow any more, that is by this factor over a window of a
-// thousandth of the steps allowed, and the end would take so many times the steps allowed.
+// thousandth of the steps allowed, and the end would take `endless` times the steps allowed.
+// Default: runs ended early against time lost on runs that cannot end. Test: failed_runs.
 static const double endless = 3, growing = 1.1;
+// Default: how often that is asked. Test: failed_runs.
 enum { WINDOWS = 1000 };
 
 bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,

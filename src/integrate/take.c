@@ -160,7 +160,7 @@ static double error_of(const double *c)
 // grid where that may come near to `record`.
 static double largest(const struct ct_take_scan *s, const double *c, double sign, double record)
 {
-    const double golden = 0.61803398874989484820; // (sqrt(5) - 1)/2
+    const double golden = 0.61803398874989484820; // Definition: (sqrt(5) - 1)/2
     const double narrow = 0x1p-26; // Derived: an extreme is flat to round-off within its root
     double value[GRID + 1];
     int best = 0;

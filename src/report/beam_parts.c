@@ -19,19 +19,12 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
     CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
 }
 
-// The angular velocity of the frame may stand in other parts.
-static ct_ex without_names(struct ct_arena *a, struct ct_exs *x, const struct ct_beam_parts *p,
-                           ct_ex value)
+// The angular velocity of the frame stands in other parts.
+static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
 {
-    const size_t n = p->definitions.n;
-    if (!(ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL))
-        return value;
-    ct_ex *symbol = CT_NEWN(a, ct_ex, n + 1), *full = CT_NEWN(a, ct_ex, n + 1);
-    for (size_t i = 0; i < n; i++) {
-        symbol[i] = p->definitions.at[i].symbol;
-        full[i] = p->definitions.at[i].full; // has no names
-    }
-    return ct_ex_subst(x, value, symbol, full, n);
+    return p->nturning && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
+             ? ct_ex_subst(x, value, p->turning, p->turning_full, (size_t)p->nturning)
+             : value;
 }
 
 static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
@@ -40,7 +33,7 @@ static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
     const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
                                    (uint32_t)p->definitions.n);
     const struct ct_reduced_definition d
-        = {.symbol = symbol, .value = value, .full = without_names(a, x, p, value)};
+        = {.symbol = symbol, .value = value, .full = without_names(x, p, value)};
     CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
     return symbol;
 }
@@ -60,8 +53,14 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
 static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
                             ct_ex value, const char *name, bool always)
 {
-    return !always || ct_ex_is_const(x, value, NULL) ? define(a, x, p, value, name)
-                                                     : make(a, x, p, value, name);
+    const ct_ex symbol = !always || ct_ex_is_const(x, value, NULL)
+                           ? define(a, x, p, value, name)
+                           : make(a, x, p, value, name);
+    if (!ct_ex_same(symbol, value)) {
+        p->turning[p->nturning] = symbol;
+        p->turning_full[p->nturning++] = value;
+    }
+    return symbol;
 }
 
 // value, a node of the equations.
@@ -110,6 +109,7 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
                          felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
     struct ct_base turned = {{{{0}}}};
+    p->nturning = 0;
     for (int i = 0; i < 3; i++)
         turned.w.e[i] = define_turning(a, x, p, felt.w.e[i],
                                        ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
@@ -138,7 +138,8 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
 {
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
-    ct_ex *M = CT_NEWN(a, ct_ex, nu * nu + 1);
+    struct ct_arena *work = ct_arena_create_under(a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1);
     ct_flexible_columns(b, f, &out->columns, M);
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
@@ -156,6 +157,7 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
                 ct_arena_printf(a, "m_ff_%s.%s", of, to));
         }
     }
+    ct_arena_destroy(work);
     name_forces(a, b, f, p, out);
 }
 

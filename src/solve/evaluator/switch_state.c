@@ -34,8 +34,8 @@ enum { MOST_LEVELS = 4 };
 static const double zero = 1e-12;
 
 // A g at rest counts as zero up to this part of the largest state: what round-off makes of a g that
-// is zero by symmetry. Default; rest_at_zero.sh moves it both ways.
-// Derived: sums of some tens of terms.
+// is zero by symmetry.
+// Default: forces that round-off makes against small ones that are meant. Test: rest_at_zero.
 static const double roundoff = 64 * DBL_EPSILON;
 
 // How far to look ahead for the later side, [s].

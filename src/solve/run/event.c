@@ -162,7 +162,8 @@ static enum ct_eval report_held(struct ct_run *r, double t, int i)
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed)
 {
-    // other switches at the same place may have changed between two visits: a third one decides
+    // Derived: one visit goes to the other side, the second comes back, and between these two other
+    // switches at the same place may have changed
     enum { VISITS = 3 };
     if (!r->nroot)
         return CT_EVAL_OK;
