@@ -136,8 +136,8 @@ struct ct_problem {
     /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not
     /// only what it leads to in outputs. NULL, both: all are.
     const bool *requested_speeds, *requested_positions;
-    bool
-        keeps_energy; // so that the total energy is kept to the accuracy, however little of it vibrates
+    /// So that the total energy is kept to the accuracy, however little of it vibrates; or the last quadrature, a work.
+    bool keeps_energy, keeps_work;
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
     /// Round-off of f, per state (ny), where it is felt in the errors of steps as long as

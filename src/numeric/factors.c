@@ -45,7 +45,9 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 #if CT_HAS_KLU
 
 // Pivots are kept while element growth is at most this many times that at the search for pivots.
-// Growth costs as many digits: three of sixteen are given up. XXX
+// Growth costs as many digits: three of sixteen are given up.
+// Default: digits against searches, which allocate and take twenty times as long. Test:
+// factors.
 static const double growth_limit = 1e3;
 
 // ---- orders ------------------------------------------------------------------------------------

@@ -70,10 +70,15 @@ def aliases(n):
     ) + section("bodies", [bar(0)]) + section("joints", [hinge("j", "ground", "b0")])
 
 
-def table(n):
+def table(n, interpolate="cubic"):
     return HEAD + section("bodies", [bar(0), bar(1)]) + section("joints", [
-        hinge("j", "ground", "b0", ", motion: {table: table.csv, column: v, interpolate: cubic}"),
+        hinge("j", "ground", "b0",
+              ", motion: {table: table.csv, column: v, interpolate: %s}" % interpolate),
         hinge("k", "b0.tip", "b1")]) + "simulation: {duration: %r}\n" % (1e-5 * (n - 2))
+
+
+def linear_table(n):
+    return table(n, "linear")
 
 
 def write_table(folder, n):
@@ -89,10 +94,13 @@ ROWS = {
     "beam": ("check, one planar beam, elements", beam, ["check"], (300, 600, 1000)),
     "chain": ("check, planar chain", chain, ["check"], (2000, 5000, 10000)),
     "free": ("check, free bodies", free_bodies, ["check"], (1000, 2000, 4000)),
-    "equations": ("equations of a planar chain", chain, ["equations"], (100, 200, 400)),
+    "equations": ("equations --full, planar chain", chain, ["equations", "--full"],
+                  (200, 400, 800)),
     "aliases": ("check, YAML with aliases", aliases, ["check"], (10000, 20000, 40000)),
     "table": ("simulate, rows of a cubic table that drives", table, ["simulate", "-o", "out.csv"],
               (75000, 150000, 300000)),
+    "linear_table": ("simulate, rows of a linear table that drives", linear_table,
+                     ["simulate", "-o", "out.csv"], (75000, 150000, 300000)),
 }
 
 
@@ -116,7 +124,7 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 with open(os.path.join(folder, "model.yaml"), "w") as file:
                     file.write(model(n))
-                if model is table:
+                if model in (table, linear_table):
                     write_table(folder, n)
                 measured.append(min(run(cotree, command, folder) for _ in range(3)))
         (t0, _), (t1, _) = measured[-2:]

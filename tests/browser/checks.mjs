@@ -113,6 +113,16 @@ const litState = (page) =>
     };
   });
 
+// What a part of the page belongs to stands in the model, except what the model does not mention.
+export async function checkOrigins(page) {
+  const missing = await page.evaluate(() => {
+    const namesIn = (root) => [...root.querySelectorAll("[data-component]")].flatMap((e) => e.dataset.component.split(" "));
+    const written = new Set(namesIn(document.getElementById("model")));
+    return [...new Set(namesIn(document))].filter((name) => !written.has(name) && name !== "gravity");
+  });
+  assert.deepEqual(missing, []);
+}
+
 // A component lights up in these sections, from any of them.
 export async function checkLights(page, name, sections) {
   await page.evaluate((name) => window.cotree.light(name), name);

@@ -123,6 +123,36 @@ async function checkBeams(browser) {
   await close();
 }
 
+// Red, green and blue of a picture at places in it.
+async function colorsAt(browser, png, places) {
+  const page = await browser.newPage();
+  const colors = await page.evaluate(
+    async ([data, places]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return places.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
+    },
+    [png.toString("base64"), places],
+  );
+  await page.close();
+  return colors;
+}
+
+// A shape has the colour that the model says, by its hue, as light falls on it.
+async function checkColors(browser) {
+  const { page, close } = await open(browser, await report(join(import.meta.dirname, "models", "shapes.yaml"), "shapes.html"));
+  const picture = await pixels(page);
+  const { width, height } = await view(page).boundingBox();
+  const places = Array.from({ length: 12 }, (_, i) => [Math.round((i * width) / 24), Math.round(height / 2 + 20)]);
+  const seen = await colorsAt(browser, picture, places);
+  const red = seen.filter(([r, g, b]) => r > 120 && g < 60 && b < 60);
+  assert.ok(red.length > 0, `no red in ${seen.join("; ")}`);
+  await close();
+}
+
 // Without WebGL the drawing of the start stays.
 async function checkFallback(browser) {
   const context = await browser.newContext();
@@ -166,7 +196,7 @@ async function checkModes(browser) {
 }
 
 const browser = await launch();
-const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, fallback: checkFallback, modes: checkModes };
+const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, colors: checkColors, fallback: checkFallback, modes: checkModes };
 let failed = 0;
 for (const [name, step] of Object.entries(steps)) {
   const start = Date.now();

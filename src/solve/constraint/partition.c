@@ -97,21 +97,29 @@ bool ct_partition_factor_only(struct ct_partition *s)
 
 void ct_partition_reduce_mass(struct ct_partition *s, const double *M)
 {
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
-        for (int i = 0; i < n; i++) {
-            double sum = M[i + n * s->independent[j]];
-            for (int k = 0; k < r; k++)
-                sum += M[i + n * s->dependent[k]] * s->B[k + r * j];
-            s->MB[i + n * j] = sum;
-        }
-    for (int j = 0; j < f; j++)
-        for (int i = j; i < f; i++) {
-            double sum = s->MB[s->independent[i] + n * j];
-            for (int k = 0; k < r; k++)
-                sum += s->B[k + r * i] * s->MB[s->dependent[k] + n * j];
+    const size_t n = s->m->nu;
+    const int r = s->rank, f = (int)n - r;
+    for (int j = 0; j < f;
+         j++) { // MB = M [B; 1], n x f; of independent loops B has few entries
+        double *MB = s->MB + n * (size_t)j;
+        memcpy(MB, M + n * (size_t)s->independent[j], n * sizeof *MB);
+        for (int k = 0; k < r; k++)
+            if (s->B[k + r * j] != 0)
+                ct_vector_add(MB, s->B[k + r * j], M + n * (size_t)s->dependent[k], n);
+    }
+    for (int i = 0; i < f; i++) {
+        int nk = 0;
+        for (int k = 0; k < r; k++)
+            if (s->B[k + r * i] != 0)
+                s->iwork[nk++] = k;
+        for (int j = 0; j <= i; j++) {
+            const double *MB = s->MB + n * (size_t)j;
+            double sum = MB[s->independent[i]];
+            for (int l = 0; l < nk; l++)
+                sum += s->B[s->iwork[l] + r * i] * MB[s->dependent[s->iwork[l]]];
             s->S[i + f * j] = sum;
         }
+    }
 }
 
 // b (free) = B' v for v (nu).

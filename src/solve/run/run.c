@@ -588,8 +588,12 @@ static void find_requested(struct ct_run *r, struct ct_problem *p)
     if (!r->nroot && !r->e->nstate)
         ct_output_error_find_requested(r->arena, r->e, &p->requested_speeds,
                                        &p->requested_positions);
-    for (size_t i = 0; i < r->e->nresult; i++)
-        p->keeps_energy |= ct_output_error_is_check(r->e, i);
+    for (size_t i = 0; i < r->e->nresult; i++) {
+        const bool is_total = ct_output_error_is_check(r->e, i);
+        const unsigned kinds = ct_ex_kinds(r->e->x, r->e->result[i].value);
+        p->keeps_energy |= is_total;
+        p->keeps_work |= !is_total && kinds & 1u << CT_SYM_WORK && !ct_ex_is_zero(r->e->power);
+    }
 }
 
 // Steps in double precision are held to no less than this.

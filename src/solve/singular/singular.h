@@ -15,8 +15,15 @@
 #include "integrate/stepper.h"
 #include "solve/constraint/partition.h"
 
-enum { CT_MOST_SINGULAR = 100 }; // kept for the report
-enum { CT_MOST_POLES = 4 };      // of multipliers, on one crossing
+enum { CT_MOST_SINGULAR = 100 }; // Limit: kept for the report, which counts the rest
+enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
+
+/// Part of its largest value so far that the smallest pivot must have for accelerations to be
+/// computed without a crossing. Derived: they lose 1/part^2 = 16 of accuracy there, a digit.
+#define CT_SINGULAR_PIVOT 0.25
+/// Steps within which a singular configuration is near. Derived: a crossing takes about two steps to
+/// either side.
+#define CT_SINGULAR_STEPS 4
 
 /// What was passed.
 struct ct_singular_configuration {
