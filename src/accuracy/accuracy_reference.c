@@ -12,8 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-// Runs that agree to this need no third one to judge. Default: 0.01 of the error that is asked about.
-// Test: accuracy.
+// Runs that agree to this need no third one to judge. Chosen: 0.01 of the error that is asked about.
 static const double good_agreement = 1e-8;
 // Times of samples in a file are matched to this part of the run. Derived: files of nine digits.
 static const double same_time = 1e-9;
@@ -102,7 +101,7 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
 // Two runs in arithmetic that is at least 50 times as slow, and with no fewer steps.
 static bool has_time(const struct candidate *c)
 {
-    // Derived: an operation takes 40 to 100 times as long as in double precision
+    // Chosen: the least that an operation takes longer than in double precision
     const double least_factor = 100;
     return c->seconds * least_factor < quad_limit;
 }
@@ -119,7 +118,7 @@ static void run_quad(struct ct_accuracy *a)
 {
     // Derived: far below the distance of runs in double precision, and four digits apart
     const double tolerance[2] = {1e-26, 1e-22};
-    // Limit: of what is believed
+    // Chosen: of what is believed
     const double as_runs_agree = 100; // times the distance of runs in double precision
     // Derived: 4 units of round-off, with which results are stored
     const double double_rounding = 1e-15;

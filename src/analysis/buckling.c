@@ -30,8 +30,7 @@ static const double refined = 1e-13; // of a factor
 // Of the first factor: the second load level, for dense and for sparse stiffness. The slope of
 // K is a difference, and round-off of K is large beside it where elements are short: cond(K)
 // eps of the first factor, 1e-4 for 1000 elements.
-// Default: a short step has less curvature and more round-off. Test:
-// beam_tables_buckling.
+// Chosen: a short step has less curvature and more round-off.
 static const double small_load = 1e-2, half_load = 0.5;
 // [rad] An axis that the square of the slope shortens is half as long as it was; what comes
 // beyond is none of a beam's.
@@ -41,7 +40,7 @@ static const double steepest = 1;
 static const double straight = 1e-8; // [rad] round-off of an axis that does not bend
 // Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a
 // step before. Where it is larger at the end, Newton's method has lost the path.
-// Derived: a step before the fold the root is at least a tenth as near
+// Chosen: by trial
 static const double folded = 1e-2;
 // Derived: a step of 1/16, as the first
 static const double behind

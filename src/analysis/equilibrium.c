@@ -11,8 +11,7 @@
 #include <string.h>
 
 // [rad] in one step, against jumping to another equilibrium.
-// Default: shorter steps take more of them, longer ones may lead to another equilibrium. Test:
-// equilibria.
+// Chosen: shorter steps take more of them, longer ones may lead to another equilibrium.
 static const double longest_turn = 0.2;
 // [m] in one step at first; doubled after steps that went well.
 // Limit: of the first steps
@@ -104,7 +103,7 @@ static bool take_step(struct ct_equilibrium_search *s)
 static bool go(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
-    // Derived: past the middle between here and the zero of the slope
+    // Chosen: by trial
     const double before = s->method->slope(s), part = allowed(s), turned_back = 0.5;
     const size_t nu = (size_t)l->nu;
     scale_step(s, part);

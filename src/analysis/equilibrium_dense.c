@@ -13,8 +13,7 @@
 
 // Of the stiffest direction: no stiffness. Derived: n eps, n up to some ten thousand.
 static const double flat = 1e-11;
-// Of the forces that meet: none along a direction without stiffness. Derived: directions of equal
-// stiffness are told apart to 1e-9 of others.
+// Of the forces that meet: none along a direction without stiffness. Chosen: far above round-off.
 static const double balanced = 1e-9;
 
 static void reserve(struct ct_equilibrium_search *s)
@@ -49,8 +48,8 @@ static void symmetric_part(const struct ct_equilibrium_search *s, double *out, c
 static void find_stiffness(struct ct_equilibrium_search *s)
 {
     const int n = s->l->nfree;
-    // Of the masses: added, so that massless directions have some. Derived: half the digits of a
-    // stiffness stay where mass is added, and motion with mass changes by a millionth.
+    // Of the masses: added, so that massless directions have some. Chosen: it changes
+    // motion with mass by a millionth.
     const double little = 1e-6;
     double *W = s->A, mean = 0;
     symmetric_part(s, W, s->l->Mr);

@@ -241,8 +241,9 @@ static void find_null_vectors(struct releases *r)
     const size_t nrow = s->m->nrow;
     r->nz = nrow - (size_t)s->rank;
     r->z = CT_NEWN(r->a, double, nrow * r->nz + 1);
+    struct ct_null_space *null_space = ct_null_space_create(r->a, s);
     for (size_t k = 0; k < r->nz; k++)
-        ct_partition_null_vector(s, s->row[(size_t)s->rank + k], r->z + nrow * k);
+        ct_null_space_vector(null_space, s->row[(size_t)s->rank + k], r->z + nrow * k);
 }
 
 // Reactions are linear in the multipliers: their difference with z and with none.
@@ -301,8 +302,7 @@ static const double nothing = 1e-9;
 // The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much
-        = 0.5; // Derived: of the largest, apart from it by far more than round-off
+    const double much = 0.5; // Chosen: apart from the largest by far more than round-off
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));

@@ -320,7 +320,7 @@ bool ct_sparse_modes_stiffness(struct ct_linear *l, size_t count, double *w2)
 size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loaded,
                                double factor, size_t count, double *c, double *shape)
 {
-    // Derived: what a buckling load beyond a thousand million times the first would be
+    // Chosen: loads a thousand million times the first are none
     const double none = 1e-9; // of the largest 1/c
     struct ct_arena *a = ct_arena_create_under(l->arena);
     struct large g = large_create(l->ctx, a, l);

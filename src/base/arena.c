@@ -305,11 +305,19 @@ char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
     return p;
 }
 
+// Arrays double; those of half a megabyte grow eightfold, into a block of their own, whose pages come as they are
+// touched: what is left behind is memory, what is never used is not.
+static size_t next_cap(size_t cap, size_t size)
+{
+    const size_t least = 8; // Limit: of memory
+    return !cap ? least : cap < largest_chunk / 8 / size ? 2 * cap : 8 * cap;
+}
+
 void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size)
 {
     if (n < *cap)
         return array;
-    size_t more = *cap ? 2 * *cap : 8;
+    const size_t more = next_cap(*cap, size);
     void *p = ct_arena_calloc(a, more, size);
     if (n)
         memcpy(p, array, n * size);

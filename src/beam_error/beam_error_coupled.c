@@ -385,7 +385,7 @@ static double unsettled(const struct ct_beam_error_coupled *p, int n, const stru
 static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal *s, int model,
                  double t, double h)
 {
-    // Derived: far below the errors asked for, and a tenth of their limit
+    // Chosen: see the comments beside
     const double settled = 1e-5,
                  allowed = 1e-3; // far below the errors asked for; a tenth of their limit
     const struct ct_beam_error_coupled *p = r->p;

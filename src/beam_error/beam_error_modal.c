@@ -20,7 +20,7 @@ static void kernel(double h, double W, double c, double *C, double *S)
 static double kernel_sum(double h, double W, double c, double C, double S)
 {
     double C_half, S_half;
-    // Derived: the next term of the series, of order (W h^2)^2, is below 1e-8 / 24 / 30
+    // Derived: what the series leaves out is of order (W h^2)^2, 1e-8
     if (fabs(W) * h * h > 1e-4)
         return (1 - C - 0.5 * c * S) / W;
     kernel(0.5 * h, W, c, &C_half, &S_half);
@@ -51,10 +51,10 @@ static double square(double x)
 static void step_nonlinear(double x[2], double h, double W, double c, double F, double b,
                            double g)
 {
-    // Derived: a sixteenth of a period errs by 1e-3 of the nonlinear part
+    // Chosen: pieces of a period
     enum { PIECES = 16, MOST_PIECES = 64 }; // of a period; at most
     const int n = 1 + (int)fmin(MOST_PIECES - 1, h * sqrt(fabs(W)) * PIECES / (2 * CT_PI));
-    // Derived: of the nonlinear part, whose error is of order two then: 1e-6
+    // Derived: of the nonlinear part, whose square is left out
     const double small = 1e-3, half = 0.5 * h / n,
                  amplitude2 = square(x[0]) + square(x[1]) / fmax(W, DBL_MIN);
     if (n > 1 && W > 0 && (b + 2 * g / W) * amplitude2 < small) {
@@ -221,7 +221,7 @@ void ct_beam_error_modal_reset_base(struct ct_beam_error_modal *s, const double 
 // monotonically.
 static double static_amplitude(double W, double g, double F)
 {
-    // Limit: of Newton's method, which needs five steps from there
+    // Limit: of the steps of Newton's method
     enum { MOST = 60 };
     double x = F / W;
     for (int i = 0; i < MOST && g > 0 && W > 0; i++)
@@ -255,7 +255,7 @@ void ct_beam_error_modal_compare(struct ct_beam_error_modal *s, const double end
 
 double ct_beam_error_modal_error(const struct ct_beam_error_modal *s, enum ct_beam_model model)
 {
-    // Derived: half of the tenth to which an estimate is told
+    // Chosen: half of the tenth to which an estimate is told
     const double tolerated
         = 0.05; // nothing is known of the error of that part, which is no more than itself
     const bool is_followed

@@ -205,7 +205,7 @@ static bool simulate_modes(struct ct_build *b, const struct ct_validity *v, int 
 
 static bool is_alike(double a, double b)
 {
-    // Derived: estimates are told to about a third
+    // Chosen: estimates are good to about a third
     const double factor = 1.5;
     return (isnan(a) && isnan(b)) || (a <= factor * b && b <= factor * a)
         || (a > CT_ESTIMATED_ERROR_LIMIT && b > CT_ESTIMATED_ERROR_LIMIT);

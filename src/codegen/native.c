@@ -18,7 +18,7 @@
 
 // Instructions from which products and sums are contracted to fused operations: shorter programs
 // keep the bits of the tape.
-// Default: bits of the tape for what is looked at against a tenth of the time. Test: native.
+// Default: the bits of the tape against shorter programs. Test: native.
 static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);

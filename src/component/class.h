@@ -116,15 +116,15 @@ struct ct_motion {
     struct ct_turn turn[CT_MAX_COORD];
     int quaternion; // index of the first of 4 coordinates that give a 3-dof rotation, or -1.
                     // Such a rotation is the whole rotation: nturn = 0.
-    int nmeasure;   // length and angle: one per coordinate; a quaternion: one for its four
-    struct ct_measure measure[CT_MAX_COORD];
-
     // Rows when the joint is a chord. Translational: directions in axes of `from`.
     int ntrans;
     ct_ex3 trans[3];
     // Rotational: pairs (s | t), s in axes of `from`, t in axes of `to`, with s . R t constant.
     int nrot;
     ct_ex3 rot_from[3], rot_to[3];
+
+    int nmeasure; // length and angle: one per coordinate; a quaternion: one for its four
+    struct ct_measure measure[CT_MAX_COORD]; // last: ct_motion_keep leaves out what is not used
 };
 
 /// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored
@@ -183,6 +183,8 @@ struct ct_component_class {
 /// The axis given under `key`, or the coordinate axis number `standard`.
 ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
                         int standard);
+/// m in the arena, without room for measures behind the first nmeasure: not to be copied as a struct.
+const struct ct_motion *ct_motion_keep(struct ct_arena *a, const struct ct_motion *m);
 /// One more rotation, about `axis` in the frame turned so far.
 void ct_motion_add_rotation(struct ct_motion *m, ct_ex3 axis, ct_ex angle);
 /// Three translational rows: the origins coincide.

@@ -2,6 +2,8 @@
 #include "component/class.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,
                         int standard)
@@ -10,6 +12,13 @@ ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const 
     double e[3] = {0};
     e[standard] = 1;
     return v->given ? (ct_ex3){{v->e[0], v->e[1], v->e[2]}} : ct_ex3_const(x, e);
+}
+
+const struct ct_motion *ct_motion_keep(struct ct_arena *a, const struct ct_motion *m)
+{
+    const size_t size
+        = offsetof(struct ct_motion, measure) + (size_t)m->nmeasure * sizeof *m->measure;
+    return memcpy(ct_arena_alloc(a, size), m, size);
 }
 
 void ct_motion_add_rotation(struct ct_motion *m, ct_ex3 axis, ct_ex angle)

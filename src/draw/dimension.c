@@ -52,7 +52,7 @@ static const char *unit_of_coordinate(const struct ct_build *b, int joint, const
     for (const char *p = property + letters; *p && place < 100; p++)
         place = 10 * place + (size_t)(*p - '0');
     place -= place > 0;
-    const struct ct_motion *m = &b->topology->edge[b->topology->edge_of_joint[joint]].trial;
+    const struct ct_motion *m = b->topology->edge[b->topology->edge_of_joint[joint]].trial;
     if (m->quaternion >= 0 && place >= (size_t)m->quaternion)
         return k == 0 ? "" : of_angle[k];
     if (place >= (size_t)m->nmeasure)

@@ -67,7 +67,7 @@ static void create_joint(struct ct_build *b, size_t i, struct ct_scene_joint *j)
         j->symbol = CT_SYMBOL_ROD;
         return;
     }
-    const struct ct_motion *m = &b->topology->edge[b->topology->edge_of_joint[i]].trial;
+    const struct ct_motion *m = b->topology->edge[b->topology->edge_of_joint[i]].trial;
     const int nlength = count_lengths(m);
     j->symbol = symbol_of(m, nlength);
     find_axes(b->model, m, j);

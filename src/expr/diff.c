@@ -12,7 +12,7 @@ static void reserve_walk(struct ct_exs *x)
 {
     if (x->walk_cap >= x->nnode)
         return;
-    const size_t cap = 2 * x->nnode;
+    const size_t cap = x->node_cap;
     uint32_t *stamp = CT_NEWN(x->arena, uint32_t, cap);
     if (x->walk_cap)
         memcpy(stamp, x->stamp, x->walk_cap * sizeof *stamp);

@@ -13,7 +13,7 @@ const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-// Limit: memory of an empty store and of a copy, which is made to grow; both double when full.
+// Limit: memory of an empty store and of a copy, which is made to grow.
 enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
 // Limit: time to walk the list of nodes with one newest operand; further ones are in the hash
 // table, which starts with so many places.
@@ -83,10 +83,17 @@ static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
     memcpy(x->link, link, x->nnode * sizeof *link);
 }
 
+// Large stores grow eightfold: the nodes left behind take memory, room that is never used takes none (arena.c).
+static size_t next_cap(size_t cap)
+{
+    const size_t large = (size_t)1 << 15; // Limit: of memory, half a megabyte
+    return !cap ? LEAST_NODES : cap < large ? 2 * cap : 8 * cap;
+}
+
 static ct_ex append(struct ct_exs *x, const struct ct_exnode *n)
 {
     if (x->nnode == x->node_cap)
-        reserve_nodes(x, x->nnode ? 2 * x->nnode : LEAST_NODES, x->arena);
+        reserve_nodes(x, next_cap(x->node_cap), x->arena);
     x->node[x->nnode] = *n;
     x->kinds[x->nnode] = (uint16_t)kinds_of(x, n);
     return (ct_ex){(uint32_t)x->nnode++};

@@ -4,7 +4,8 @@
 //
 // A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as
 // it has directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one
-// node of the store. Source: Griewank and Walther (2008), 7.1, key griewank2008.
+// node of the store. Lists that no later node reads give up their room, as those of partial sums do.
+// Source: Griewank and Walther (2008), 7.1, key griewank2008.
 #include "expr/seed.h"
 
 #include <string.h>
@@ -27,6 +28,8 @@ struct walk {
     uint32_t *place;   // by id: its place in the order of the walk, plus one
     struct list *list; // by place: what nodes above it see
     struct list *own;  // by place: what follows from its arguments
+    uint32_t *nuse;    // by place: nodes that will read its list, and one for each of f
+    size_t full;       // tangents from which on unread lists are removed
 };
 
 static void push(struct walk *w, uint32_t direction, ct_ex value)
@@ -113,11 +116,60 @@ static void list_node(struct walk *w, size_t k, uint32_t id, const struct ct_see
         w->own[k] = w->list[k];
 }
 
+static void move(struct walk *w, struct list *l, size_t *to)
+{
+    memmove(w->tangent + *to, w->tangent + l->first, l->n * sizeof *w->tangent);
+    l->first = *to;
+    *to += l->n;
+}
+
+// Lists stand in the order of the walk, so that those which are read still move forward.
+static void remove_unread(struct walk *w, size_t nplace)
+{
+    size_t to = 0;
+    for (size_t k = 0; k < nplace; k++) {
+        struct list *own = &w->own[k], *seen = &w->list[k];
+        const bool is_one = own->first == seen->first && own->n == seen->n;
+        if (!w->nuse[k])
+            own->n = seen->n = 0;
+        move(w, own, &to);
+        if (is_one)
+            *seen = *own;
+        else
+            move(w, seen, &to);
+    }
+    w->ntangent = to;
+    w->full = w->full > 2 * to ? w->full : 2 * to;
+}
+
+static void count_uses(struct walk *w, const uint32_t *id, size_t n, const ct_ex *f, size_t nf)
+{
+    for (size_t k = 0; k < n; k++)
+        w->place[id[k]] = (uint32_t)k + 1;
+    for (size_t k = 0; k < n; k++) {
+        const struct ct_exnode *e = &w->x->node[id[k]];
+        const uint32_t arg[3] = {e->a, e->b, e->c};
+        for (int i = 0; i < ct_op_info[e->op].narg; i++)
+            w->nuse[w->place[arg[i]] - 1]++;
+    }
+    for (size_t r = 0; r < nf; r++)
+        w->nuse[w->place[f[r].id] - 1]++;
+}
+
+static void read_arguments(struct walk *w, uint32_t id)
+{
+    const struct ct_exnode *e = &w->x->node[id];
+    const uint32_t arg[3] = {e->a, e->b, e->c};
+    for (int i = 0; i < ct_op_info[e->op].narg; i++)
+        w->nuse[w->place[arg[i]] - 1]--;
+}
+
 size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out)
 {
-    struct walk w = {.x = x, .scratch = scratch};
+    const size_t least_full = 1 << 16; // Limit: of memory
+    struct walk w = {.x = x, .scratch = scratch, .full = least_full};
     const size_t n = ct_ex_walk(x, f, nf);
     uint32_t *id = CT_NEWN(scratch, uint32_t, n + 1), most = 0;
     memcpy(id, x->stack, n * sizeof *id); // building derivatives may walk again
@@ -126,10 +178,14 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
     w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);
     w.list = CT_NEWN(scratch, struct list, n + 1);
     w.own = CT_NEWN(scratch, struct list, n + 1);
+    w.nuse = CT_NEWN(scratch, uint32_t, n + 1);
+    count_uses(&w, id, n, f, nf);
     const struct ct_seed *seed = ct_seeds_sorted(scratch, seeds, nseed);
     for (size_t k = 0; k < n; k++) {
+        if (w.ntangent >= w.full)
+            remove_unread(&w, k);
         list_node(&w, k, id[k], seed, nseed);
-        w.place[id[k]] = (uint32_t)k + 1;
+        read_arguments(&w, id[k]);
     }
     size_t nout = 0, cap = 0;
     *out = NULL;

@@ -26,7 +26,7 @@
 #include "graph/graph.h"
 
 /// Pieces between two nodes above which places on the way are computed on their own.
-/// Default: fewer make equations that read as one sum, more make programs longer. Test: long_chain.
+/// Chosen: fewer make equations that read as one sum, more make programs longer.
 enum { CT_LONG_PATH = 40 };
 
 enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };
@@ -55,10 +55,11 @@ struct ct_edge_info {
     int index;                      // of the body, joint or force in the model; arms: frame
     const struct ct_instance *self; // joints, forces
     ct_ex3 at;                      // arms: place in axes of the tail [m]
-    ct_ex33 S;              // arms: rotation of the head out of the tail's axes; bodies in a
-                            // plane: that of the body before its angle
-    struct ct_motion trial; // bodies, joints, closures: with LOCAL symbols as coordinates
-    bool has_rotation;      // false where a particle is reached
+    ct_ex33 S; // arms: rotation of the head out of the tail's axes; bodies in a
+               // plane: that of the body before its angle
+    // bodies, joints, closures: with LOCAL symbols as coordinates; all others have none
+    const struct ct_motion *trial;
+    bool has_rotation; // false where a particle is reached
     bool must_be_branch, never_branch;
     int weight_t, weight_r;            // freedoms in the translational and rotational graph
     int first_coordinate, ncoordinate; // among the plain coordinates
@@ -91,7 +92,8 @@ struct ct_topology {
 
 /// What an edge does in coordinates of the chosen trees, by edge.
 struct ct_edge_kinematics {
-    struct ct_motion motion; // bodies, joints, closures; arms: d, and turns of sections
+    ct_ex3 d;                         // its translation in axes of the tail [m]
+    const struct ct_motion *motion;   // bodies, joints, closures, sections; others turn nothing
     const struct ct_station *station; // arms of beams: once the beam's coordinates are chosen
     ct_ex3 *translation, *rotation;   // of the station, by elastic coordinate
     ct_ex3 *foreshortened; // translations that forces act along, where they differ; else NULL
@@ -338,7 +340,7 @@ static inline const struct ct_edge_kinematics *ct_edge_kinematics(const struct c
 static inline const struct ct_motion *ct_edge_motion(const struct ct_build *b,
                                                      const struct ct_edge_info *e)
 {
-    return &ct_edge_kinematics(b, e)->motion;
+    return ct_edge_kinematics(b, e)->motion;
 }
 static inline bool ct_cluster_is_outboard(const struct ct_build *b, int inner, int outer)
 {

@@ -46,12 +46,12 @@ struct ct_formulate_options {
 };
 
 /// Up to this many speeds every formulation is tried: they are cheap to generate, and the mass matrix is what people
-/// look at. Default: the time to generate them against shorter programs. Test: open_chain.
+/// look at. Chosen: the time to generate them against shorter programs.
 enum { CT_SMALL_SYSTEM = 24 };
 /// Limit: speeds; full matrices of larger systems would take hours, and a message says so.
 enum { CT_MOST_FULL = 3000 };
 /// Speeds of the systems that are analysed with dense matrices; larger ones with sparse matrices.
-/// Default: all modes against the time of the cube. Test: analyses.
+/// Chosen: dense matrices take some seconds there.
 enum { CT_MOST_DENSE = 300 };
 
 /// A pair of trees that the search has weighed.

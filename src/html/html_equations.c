@@ -10,7 +10,7 @@
 #include <string.h>
 
 // Limit: of the section; of what a script of the page unpacks, of which browsers read some 20 MB
-// a second.
+// a second. Beyond, plain text, then a note.
 enum { MOST_BYTES = 600000, MOST_TYPESET = 6000000 };
 
 static const char *origins_of(struct ct_html *h, const struct ct_equation_term *t)

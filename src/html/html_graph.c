@@ -23,7 +23,7 @@ enum {
     RADIUS = 7,  // [px] of a vertex
     ARROW = 7,   // [px] from the middle of an arrow to its tip, and a gap
     SPREAD = 44, // [px] between the middles of edges that join the same vertices
-    WIDE = 1100  // [px] a page
+    WIDE = 1500  // [px] beyond, names are too small on a page (1048 px): the picture scrolls
 };
 
 struct picture {

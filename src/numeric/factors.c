@@ -44,10 +44,11 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 
 #if CT_HAS_KLU
 
-// Pivots are kept while element growth is at most this many times that at the search for pivots.
-// Growth costs as many digits: three of sixteen are given up.
-// Default: digits against searches, which allocate and take twenty times as long. Test:
-// factors.
+// Pivots are those of the diagonal, in the order of little fill, while element growth is at most the limit: matrices of
+// structures are next to positive definite, where any order of the diagonal is stable, and one pivot beside it can fill all
+// the rest. Where growth is larger they are sought by threshold partial pivoting, and these kept while growth is at most so
+// many times that of the search. Growth costs as many digits: three of sixteen are given up.
+// Default: digits against searches, which allocate. Test: factors.
 static const double growth_limit = 1e3;
 
 // ---- orders ------------------------------------------------------------------------------------
@@ -112,7 +113,7 @@ struct ct_factors {
     klu_numeric *numeric;
     bool is_complex;
     long npivoting;
-    double growth; // one over it, when pivots were sought
+    double growth; // one over it, with the pivots when they were new
     // for entries of the inverse
     long extracted; // value of npivoting when they were last extracted
     struct ct_arena *arena;
@@ -169,19 +170,28 @@ static bool refactor(struct ct_factors *f, double *value)
     return ok && c->status == KLU_OK && inverse_growth(f, value) * growth_limit >= f->growth;
 }
 
-bool ct_factors_compute(struct ct_factors *f, double *value)
+// The same with new pivots: those of the diagonal as long as they are at least the part tol of the largest entry in their
+// column.
+static bool factor(struct ct_factors *f, double *value, double tol)
 {
     const struct ct_pattern *p = f->p;
-    if (f->numeric && refactor(f, value))
-        return true;
     release_numeric(f);
-    f->npivoting++;
+    f->common.tol = tol;
     f->numeric = f->is_complex ? klu_z_factor(p->start, p->row, value, f->symbolic, &f->common)
                                : klu_factor(p->start, p->row, value, f->symbolic, &f->common);
     if (!f->numeric || f->common.status != KLU_OK)
         return false;
     f->growth = inverse_growth(f, value);
     return true;
+}
+
+bool ct_factors_compute(struct ct_factors *f, double *value)
+{
+    if (f->numeric && refactor(f, value))
+        return true;
+    f->npivoting++;
+    return (factor(f, value, 0) && f->growth * growth_limit >= 1)
+        || factor(f, value, CT_PIVOT_THRESHOLD);
 }
 
 void ct_factors_solve(struct ct_factors *f, double *x)
@@ -255,6 +265,11 @@ void ct_factors_inverse(struct ct_factors *f, double *z)
         z[k] = Z[f->place[k]] / f->scale[f->scale_of[k]];
 }
 
+double ct_factors_fill(const struct ct_factors *f)
+{
+    return f->numeric->lnz + f->numeric->unz;
+}
+
 long ct_factors_npivoting(const struct ct_factors *f)
 {
     return f->npivoting;
@@ -297,6 +312,12 @@ void ct_factors_solve(struct ct_factors *f, double *x)
 void ct_factors_inverse(struct ct_factors *f, double *z)
 {
     (void)f, (void)z;
+}
+
+double ct_factors_fill(const struct ct_factors *f)
+{
+    (void)f;
+    return 0;
 }
 
 long ct_factors_npivoting(const struct ct_factors *f)

@@ -47,15 +47,17 @@ struct ct_factors;
 struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern *p,
                                      bool is_complex);
 /// Factor the matrix of these values, nz numbers or (re, im) pairs. The first time, and when the
-/// growth with the old pivots is too large, pivots are searched, which allocates. False if
-/// singular.
+/// growth with the old pivots is too large, pivots are chosen, which allocates: those of the diagonal, or searched ones
+/// where growth is too large with these. False if singular.
 bool ct_factors_compute(struct ct_factors *f, double *value);
 /// x (n numbers or pairs, in: right-hand side, out: solution).
 void ct_factors_solve(struct ct_factors *f, double *x);
 /// z (nz, out): entry (j, i) of the inverse for each entry (i, j) of the pattern; real factors
 /// only. Allocates if pivots were searched since the last call.
 void ct_factors_inverse(struct ct_factors *f, double *z);
-/// How often pivots were searched.
+/// Entries of the last factors.
+double ct_factors_fill(const struct ct_factors *f);
+/// How often pivots were chosen.
 long ct_factors_npivoting(const struct ct_factors *f);
 
 #endif

@@ -129,17 +129,34 @@ static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
     own[7] = as_column[7] = s->elastic;
 }
 
+// Which symbols stand in v? false: none.
+static bool find_symbols(struct ct_exs *x, ct_ex v, const ct_ex symbol[NSYMBOL],
+                         bool found[NSYMBOL])
+{
+    bool any = false;
+    const size_t n = ct_ex_walk(x, &v, 1);
+    for (size_t k = 0; k < n; k++)
+        for (int i = 0; i < NSYMBOL; i++)
+            if (x->stack[k] == symbol[i].id && !ct_ex_is_zero(symbol[i]))
+                any = found[i] = true;
+    return any;
+}
+
 // v = own + rest: own is linear in the symbols of a block. transposed: own as a column.
 static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool transposed,
                   ct_ex *own, ct_ex *rest)
 {
     struct ct_exs *x = f->e->x;
     ct_ex symbol[NSYMBOL], as_column[NSYMBOL], from[NSYMBOL], to[NSYMBOL] = {{0}};
+    bool found[NSYMBOL] = {false};
     size_t n = 0;
     *own = CT_EX_ZERO;
+    *rest = v;
     symbols_of(s, symbol, as_column);
+    if (!find_symbols(x, v, symbol, found))
+        return;
     for (int i = 0; i < NSYMBOL; i++) {
-        if (ct_ex_is_zero(symbol[i]))
+        if (!found[i])
             continue;
         from[n++] = symbol[i];
         *own = ct_ex_add_product(x, *own, ct_ex_diff(x, v, symbol[i]),

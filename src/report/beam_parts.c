@@ -19,15 +19,12 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
     CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
 }
 
-// The angular velocity of the frame may stand in other parts.
+// The angular velocity of the frame stands in other parts.
 static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
 {
-    if (!(ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL))
-        return value;
-    for (size_t i = 0; i < p->definitions.n; i++)
-        value = ct_ex_subst(x, value, &p->definitions.at[i].symbol, &p->definitions.at[i].full,
-                            1);
-    return value;
+    return p->nturning && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
+             ? ct_ex_subst(x, value, p->turning, p->turning_full, (size_t)p->nturning)
+             : value;
 }
 
 static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
@@ -56,8 +53,14 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
 static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
                             ct_ex value, const char *name, bool always)
 {
-    return !always || ct_ex_is_const(x, value, NULL) ? define(a, x, p, value, name)
-                                                     : make(a, x, p, value, name);
+    const ct_ex symbol = !always || ct_ex_is_const(x, value, NULL)
+                           ? define(a, x, p, value, name)
+                           : make(a, x, p, value, name);
+    if (!ct_ex_same(symbol, value)) {
+        p->turning[p->nturning] = symbol;
+        p->turning_full[p->nturning++] = value;
+    }
+    return symbol;
 }
 
 // value, a node of the equations.
@@ -106,6 +109,7 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
                          felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
     struct ct_base turned = {{{{0}}}};
+    p->nturning = 0;
     for (int i = 0; i < 3; i++)
         turned.w.e[i] = define_turning(a, x, p, felt.w.e[i],
                                        ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
@@ -134,7 +138,8 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
 {
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
-    ct_ex *M = CT_NEWN(a, ct_ex, nu * nu + 1);
+    struct ct_arena *work = ct_arena_create_under(a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1);
     ct_flexible_columns(b, f, &out->columns, M);
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
@@ -152,6 +157,7 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
                 ct_arena_printf(a, "m_ff_%s.%s", of, to));
         }
     }
+    ct_arena_destroy(work);
     name_forces(a, b, f, p, out);
 }
 

@@ -23,6 +23,8 @@ struct ct_beam_parts {
     struct ct_definitions definitions;
     ct_ex *node, *symbol; // of the engine's expressions, those with a name
     size_t n, node_cap, symbol_cap, definition_cap;
+    ct_ex turning[3], turning_full[3]; // om of the beam in hand, and what it is
+    int nturning;
     struct ct_inertia *
         *inertia; // by beam: its integrals by name, NULL where it has none; NULL: not wanted
 };

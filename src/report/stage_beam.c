@@ -505,7 +505,7 @@ static const char *place_text(struct ct_derivation *d, const struct ct_edge_info
 {
     struct ct_exs *x = d->e->x;
     const struct ct_collect_options o = {.scratch = d->a};
-    ct_ex3 at = ct_edge_motion(d->e->build, e)->d;
+    ct_ex3 at = ct_edge_kinematics(d->e->build, e)->d;
     double size = 0;
     for (int k = 0; k < 3; k++)
         size += ct_reduced_size(x, at.e[k], LARGEST_ARM + 1);

@@ -408,7 +408,9 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
     const char **name = CT_NEWN(d->a, const char *, n + 1);
-    ct_ex *M = CT_NEWN(d->a, ct_ex, nu * nu + 1), *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1),
+    struct ct_arena *work
+        = ct_arena_create_under(d->a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1), *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1),
           *swept = CT_NEWN(d->a, ct_ex, 3 * n + 1), *mff = CT_NEWN(d->a, ct_ex, n * n + 1),
           *K = CT_NEWN(d->a, ct_ex, n * n + 1), *q = CT_NEWN(d->a, ct_ex, n + 1),
           *zero = CT_NEWN(d->a, ct_ex, n + 1), *force = CT_NEWN(d->a, ct_ex, n + 1);
@@ -430,6 +432,7 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
                 p, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
+    ct_arena_destroy(work);
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
                                    "m_rf'*A", "(A.6), (A.7)", name, xyz, n, 3, moved, false});
     put_matrix(d, &(struct matrix){"m_thetaf'", "\\boldsymbol{m}_{\\theta f}^{T}", "m_thetaf'",

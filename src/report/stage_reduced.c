@@ -376,14 +376,15 @@ static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
 
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
-    struct ct_beam_parts parts;
+    struct ct_beam_parts parts = {0};
     if (d->is_recursive) {
         ct_reduced_recur(d->a, d->e, r);
         return;
     }
     if (prepare(d, r))
         return;
-    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
+    if (d->e->nu <= CT_MOST_MATRIX_SPEEDS)
+        ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
     if (!parts.definitions.n || !name_parts(d, &parts, r)) {
         ct_reduced_prepare(d->a, d->e, true, r);
         share(d, r);
@@ -407,7 +408,8 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
                           struct ct_beam_blocks *s)
 {
     struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
-    if (d->is_recursive || !ct_beam_parts_exist(d->e) || prepare(d, r))
+    if (d->is_recursive || d->e->nu > CT_MOST_MATRIX_SPEEDS || !ct_beam_parts_exist(d->e)
+        || prepare(d, r))
         return false;
     ct_reduced_label(d->e, CT_BIAS);
     ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);

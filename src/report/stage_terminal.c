@@ -172,9 +172,9 @@ static ct_ex effort_of(struct ct_derivation *d, const struct ct_instance *self, 
 
 static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, int k, ct_ex q)
 {
-    const bool turns = e->trial.quaternion >= 0 && k >= e->trial.quaternion;
-    const char *name = e->trial.nfree == 1 ? ct_arena_printf(d->a, "%s.q", e->name)
-                                           : ct_arena_printf(d->a, "%s.q%d", e->name, k + 1);
+    const bool turns = e->trial->quaternion >= 0 && k >= e->trial->quaternion;
+    const char *name = e->trial->nfree == 1 ? ct_arena_printf(d->a, "%s.q", e->name)
+                                            : ct_arena_printf(d->a, "%s.q%d", e->name, k + 1);
     const char *speed = turns ? ct_arena_printf(d->a, "%s.u%d", e->name, k + 1)
                               : ct_arena_printf(d->a, "%s'", name);
     const ct_ex motion = element(ct_instance_value(e->self, "motion"), k);
@@ -195,7 +195,7 @@ static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, in
 static void name_coordinates(struct ct_derivation *d, const struct ct_edge_info *e,
                              struct ct_motion *m)
 {
-    *m = (struct ct_motion){.ncoord = e->trial.ncoord, .nfree = e->trial.nfree};
+    *m = (struct ct_motion){.ncoord = e->trial->ncoord, .nfree = e->trial->nfree};
     for (int k = 0; k < e->ncoordinate; k++) {
         const char *name = d->e->coordinate[e->first_coordinate + k].name;
         m->coord[k] = ct_ex_sym(d->e->x, CT_SYM_LOCAL, name, (uint32_t)k);

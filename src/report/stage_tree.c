@@ -52,7 +52,7 @@ static const struct ct_coordinate *coordinate_of(const struct ct_equations *e, i
 static const struct ct_measure *measure_of(const struct ct_equations *e,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &e->build->kinematics->edge[c->edge].motion;
+    const struct ct_motion *m = e->build->kinematics->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index > m->quaternion ? m->quaternion : c->index;
     return k < m->nmeasure ? &m->measure[k] : NULL;
 }

@@ -82,7 +82,7 @@ static double moved(const struct ct_initial_state *s, size_t i)
         return fabs(s->q[i] - t->value) * t->weight
              / (ct_start_is_length(s, i) ? 0.5 : CT_PI / 2);
     const struct ct_coordinate *c = &s->e->coordinate[i];
-    if (c->index != s->e->build->topology->edge[c->edge].trial.quaternion)
+    if (c->index != s->e->build->topology->edge[c->edge].trial->quaternion)
         return 0;
     double cosine = 0;
     for (size_t k = 0; k < 4; k++)

@@ -25,7 +25,7 @@
 // Derived: from those measurements.
 static const double tightening = 1. / 30;
 // With less to gain than this, the second run is looser by as much: then it has the larger error.
-// Derived: errors that differ by less are told apart badly by one difference.
+// Chosen: errors that differ by less are hard to tell apart by a difference.
 static const double least_gain = 5;
 // A run that is compared with may be held to this part of what double precision leaves to the steps
 // of one that is wanted: of motions with many turns errors of truncation go on falling to there. An
@@ -147,9 +147,9 @@ static bool has_digits(const struct ct_output_error_estimate *o)
 // as far as can be seen: the sum of energies that cancel, the momentum of a motion that has none.
 static void find_relative(struct ct_output_error_estimate *o, size_t n)
 {
-    // Derived: sums of up to a hundred outputs
+    // Chosen: sums of up to a hundred outputs
     const double spread = 100; // sums of outputs add up their errors
-    // Derived: three digits less than others that have none
+    // Chosen: three digits
     const double small = 1e-3; // against others that have lost all digits
     double largest = 0, worst = 0, largest_lost = 0;
     for (size_t i = 0; i < n; i++) {

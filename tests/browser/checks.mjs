@@ -86,6 +86,12 @@ export async function checkLayout(page) {
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, "wider than the window");
 }
 
+// Names of the graph can be read on a phone.
+export async function checkGraphText(page) {
+  const height = await page.evaluate(() => document.querySelector("#graph svg text").getBoundingClientRect().height);
+  assert.ok(height >= 8, `names of ${height} px`);
+}
+
 // On paper: dark on white whatever the screen is, charts no wider than the rest.
 export async function checkPrint(page) {
   await page.emulateMedia({ media: "print", colorScheme: "dark" });

@@ -6,6 +6,7 @@ import { cotree, folder, launch, open, report } from "./browser.mjs";
 
 const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
 const view = (page) => page.locator(".motion-view");
+const small = { viewport: { width: 800, height: 500 } }; // pictures are drawn without a graphics card
 
 // Two frames later what was asked for is drawn.
 async function pixels(page) {
@@ -18,6 +19,17 @@ async function changes(page, action) {
   const before = await pixels(page);
   await action();
   return !before.equals(await pixels(page));
+}
+
+// Each of these, one after the other, changes the picture. act(name) does what is named.
+async function checkEach(page, names, act) {
+  let before = await pixels(page);
+  for (const name of names) {
+    await act(name);
+    const after = await pixels(page);
+    assert.ok(!before.equals(after), `nothing by ${name}`);
+    before = after;
+  }
 }
 
 async function checkSeek(page, end) {
@@ -34,8 +46,7 @@ async function checkSeek(page, end) {
 async function checkKeys(page) {
   const canvas = view(page).locator("canvas");
   await canvas.focus();
-  for (const key of ["ArrowLeft", "ArrowUp", "+", "y", "z", "i", "Shift+ArrowLeft", "0"])
-    assert.ok(await changes(page, () => page.keyboard.press(key)), `nothing by ${key}`);
+  await checkEach(page, ["ArrowLeft", "ArrowUp", "+", "y", "z", "i", "Shift+ArrowLeft", "0"], (key) => page.keyboard.press(key));
   await page.keyboard.press(" ");
   await page.waitForFunction((t) => window.cotree.time !== t, await page.evaluate(() => window.cotree.time));
   await page.keyboard.press(" ");
@@ -86,12 +97,11 @@ async function checkStandsStill(page) {
 }
 
 async function checkPanel(browser) {
-  const { page, close } = await open(browser, await report(system("slider_crank"), "motion.html"));
+  const { page, close } = await open(browser, await report(system("slider_crank"), "motion.html"), small);
   await checkSeek(page, 2);
   await checkStandsStill(page);
   await checkPicking(page);
-  for (const name of ["paths", "reactions", "names", "grid"])
-    assert.ok(await changes(page, () => page.locator(".controls label", { hasText: name }).locator("input").click()), name);
+  await checkEach(page, ["paths", "reactions", "names", "grid"], (name) => page.locator(".controls label", { hasText: name }).locator("input").click());
   await checkKeys(page);
   await checkMouse(page);
   await page.getByRole("button", { name: "fit" }).click();
@@ -115,7 +125,7 @@ async function checkNarrow(browser) {
 
 async function checkBeams(browser) {
   const file = await report(system("slider_crank_flexible"), "beams.html");
-  const { page, close } = await open(browser, file, { dark: true });
+  const { page, close } = await open(browser, file, { ...small, dark: true });
   await checkSeek(page, 1);
   const slider = page.locator(".factor", { hasText: "deflection" }).locator("input");
   assert.ok(await changes(page, () => slider.fill("2")), "beams do not bend more");
@@ -143,7 +153,7 @@ async function colorsAt(browser, png, places) {
 
 // A shape has the colour that the model says, by its hue, as light falls on it.
 async function checkColors(browser) {
-  const { page, close } = await open(browser, await report(join(import.meta.dirname, "models", "shapes.yaml"), "shapes.html"));
+  const { page, close } = await open(browser, await report(join(import.meta.dirname, "models", "shapes.yaml"), "shapes.html"), small);
   const picture = await pixels(page);
   const { width, height } = await view(page).boundingBox();
   const places = Array.from({ length: 12 }, (_, i) => [Math.round((i * width) / 24), Math.round(height / 2 + 20)]);
@@ -178,7 +188,7 @@ async function checkModes(browser) {
   await Promise.all([make("modes.html"), make("again.html")]);
   const file = join(folder, "modes.html");
   assert.ok(readFileSync(file).equals(readFileSync(join(folder, "again.html"))), "other bytes");
-  const { page, close } = await open(browser, file);
+  const { page, close } = await open(browser, file, small);
   assert.equal(await page.locator("input[name=mode]").count(), 4);
   await page.evaluate(() => window.cotree.seek(0));
   assert.ok(await changes(page, () => page.evaluate(() => window.cotree.seek(0.5))), "the mode stands still");

@@ -4,7 +4,7 @@ import { readFileSync, rmSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { cotree, folder, launch, open, report, simulate } from "./browser.mjs";
-import { checkClock, checkEquations, checkFile, checkGraph, checkLayout, checkLights, checkManifest, checkNoScripts, checkOrigins, checkPrint, checkSections } from "./checks.mjs";
+import { checkClock, checkEquations, checkFile, checkGraph, checkGraphText, checkLayout, checkLights, checkManifest, checkNoScripts, checkOrigins, checkPrint, checkSections } from "./checks.mjs";
 
 const models = join(dirname(fileURLToPath(import.meta.url)), "models");
 const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
@@ -80,6 +80,7 @@ async function checkModel({ size, light, more, equations, answers }, browser) {
   if (more) await checkLights(page, ...more);
   await page.setViewportSize({ width: 390, height: 600 });
   await checkLayout(page);
+  await checkGraphText(page);
   await checkPrint(page);
   await close();
 }

@@ -352,6 +352,37 @@ static void unsound_pivots_are_sought_anew(void **unused)
     ct_arena_destroy(a);
 }
 
+// L L' with small pivots, a band and a border, as of a beam on a hinge that is eliminated from its free end: what lies beside the
+// diagonal is larger, and as a pivot it would fill the rest.
+static void positive_definite_matrices_do_not_fill(void **unused)
+{
+    (void)unused;
+    enum { N = 100 };
+    struct ct_arena *a = ct_arena_create();
+    double L[N][N] = {{0}}, value[6 * N] = {0};
+    int row[6 * N], column[6 * N], place[6 * N], first[N], n = 0;
+    for (int i = 0; i < N; i++) {
+        first[i] = i;
+        for (int j = 0; j <= i; j++)
+            L[i][j] = i == j ? 1e-2 : j == i - 1 || i == N - 1 ? 1 + 0.5 * random_number() : 0;
+    }
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            if (abs(i - j) <= 1 || i == N - 1 || j == N - 1) {
+                row[n] = i;
+                column[n++] = j;
+            }
+    struct ct_pattern *p = ct_pattern_create(a, N, row, column, n, place);
+    for (int k = 0; k < n; k++)
+        for (int j = 0; j < N; j++)
+            value[place[k]] += L[row[k]][j] * L[column[k]][j];
+    assert_true(ct_pattern_order(a, p, value, first));
+    struct ct_factors *f = ct_factors_create(a, p, false);
+    assert_true(ct_factors_compute(f, value));
+    assert_true(ct_factors_fill(f) <= 6 * N); // L and U have up to three a column
+    ct_arena_destroy(a);
+}
+
 // A band matrix with a border: each entry against a solution for a column of the identity.
 static void entries_of_the_inverse_are_those_of_solutions(void **unused)
 {
@@ -470,6 +501,7 @@ int main(void)
         cmocka_unit_test(sparse_matrices_have_the_solutions_of_full_ones),
         cmocka_unit_test(inner_values_change_nothing),
         cmocka_unit_test(unsound_pivots_are_sought_anew),
+        cmocka_unit_test(positive_definite_matrices_do_not_fill),
         cmocka_unit_test(entries_of_the_inverse_are_those_of_solutions),
         cmocka_unit_test(steps_of_beams_cost_in_proportion_to_their_elements),
         cmocka_unit_test(what_takes_little_is_not_searched_for_inner_values),

@@ -23,7 +23,7 @@
 #include "formulate/beam/shape_function.h"
 
 /// A linear beam is good enough below this indicator. Default: a hint at other formulations that users
-/// may ignore. Test: beams.
+/// may ignore. Test: beam_choice.
 #define CT_VALIDITY_LIMIT 0.01
 /// Slope of a section against the frame of its beam up to which displacements of second order in it
 /// will do (section 5.3). Derived: what is left out, slope^4 / 8, is a thousandth.

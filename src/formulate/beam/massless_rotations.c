@@ -64,9 +64,9 @@ static unsigned joint_moments(const struct node_moments *w, size_t j, const stru
         return ALL;
     if (e->weight_r == (b->topology->is_planar ? 1 : NAXIS))
         return b->topology->is_planar ? ALL & ~about_normal(w) : 0;
-    if (e->weight_r != 1 || e->trial.nturn != 1)
+    if (e->weight_r != 1 || e->trial->nturn != 1)
         return ALL;
-    const int axis = axis_along(b, at, e->trial.turn[0].axis);
+    const int axis = axis_along(b, at, e->trial->turn[0].axis);
     return axis < 0 ? ALL : ALL & ~(1u << axis);
 }
 
@@ -123,8 +123,8 @@ static unsigned turns_freely(const struct node_moments *w, size_t j, const struc
     if (e->weight_r == (b->topology->is_planar ? 1 : NAXIS))
         return b->topology->is_planar ? about_normal(w) : ALL;
     unsigned about = 0; // two of a universal joint, as the frames coincide
-    for (int i = 0; i < e->trial.nturn && e->weight_r == e->trial.nturn; i++) {
-        const int axis = axis_along(b, at, e->trial.turn[i].axis);
+    for (int i = 0; i < e->trial->nturn && e->weight_r == e->trial->nturn; i++) {
+        const int axis = axis_along(b, at, e->trial->turn[i].axis);
         about |= axis < 0 ? 0 : 1u << axis;
     }
     return about;

@@ -353,6 +353,27 @@ static bool has_unknown(const struct ct_term *p, int np)
     return false;
 }
 
+// s x r in axes of the beam, of an axis s that is fixed in the cluster of the beam and of links r that all lie in it: for
+// readers, who would have to see that R'(R s x R r) = s x r.
+static bool local_lever(struct ct_build *b, const struct ct_flexible *f,
+                        const struct ct_rotation_axis *spin, ct_ex3 *lever)
+{
+    const struct ct_node_placement *at = &b->kinematics->placement[f->base];
+    ct_ex3 reach = zero3;
+    if (b->topology->is_planar || spin->cluster != at->frame || ct_ex3_is_zero(spin->local))
+        return false;
+    for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent) {
+        const struct ct_anchor *link = &b->kinematics->anchor[a];
+        if (!ct_cluster_is_outboard(b, spin->cluster, link->cluster))
+            continue;
+        if (link->cluster != at->frame)
+            return false;
+        reach = ct_ex3_add(b->x, reach, link->local);
+    }
+    *lever = ct_ex33_apply_t(b->x, &at->S, ct_ex3_cross(b->x, spin->local, reach));
+    return true;
+}
+
 static void base_columns(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_columns *c, ct_ex *M)
 {
@@ -366,10 +387,10 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent)
             if (ct_cluster_is_outboard(b, spin->cluster, b->kinematics->anchor[a].cluster))
                 reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
-        const ct_ex3 p
-            = ct_ex3_is_zero(reach)
-                ? zero3
-                : ct_base_into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+        ct_ex3 p = zero3;
+        const bool is_local = f->inertia->named && local_lever(b, f, spin, &p);
+        if (!is_local && !ct_ex3_is_zero(reach))
+            p = ct_base_into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);

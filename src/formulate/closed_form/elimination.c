@@ -14,7 +14,7 @@
 
 // With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound
 // whatever their multipliers; what is left of the equations is measured in the run.
-// Default: fewer operations against digits. Test: solvers.
+// Chosen: fewer operations against digits.
 static const double loose = 0.001;
 
 struct elimination {

@@ -407,8 +407,8 @@ static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k
     const struct ct_value *stiffness = ct_instance_value(e->self, "stiffness");
     if (!c->in_translation && !c->in_rotation)
         return; // the joint reaches a particle: this freedom does not exist
-    if (!ct_ex_is_zero(element(stiffness, k)) && e->trial.quaternion >= 0
-        && k >= e->trial.quaternion) {
+    if (!ct_ex_is_zero(element(stiffness, k)) && e->trial->quaternion >= 0
+        && k >= e->trial->quaternion) {
         ct_error(b->ctx, stiffness->mark, CT_E_STIFFNESS,
                  "joint '%s': a free rotation has no coordinate for a stiffness; use a bushing",
                  e->self->name);

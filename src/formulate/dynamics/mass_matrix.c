@@ -264,7 +264,8 @@ void ct_mass_matrix_derive(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
     struct ct_composite_sums s = ct_composite_sums_create(b);
-    ct_ex *M = CT_NEWN(b->arena, ct_ex, e->nu * e->nu + 1);
+    struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
+    ct_ex *M = CT_NEWN(work, ct_ex, e->nu * e->nu + 1);
     const int *depth = start_depths(&s);
     const struct ct_couplings *couplings = ct_couplings_find(&s);
     struct column c = {.torque = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor),
@@ -299,4 +300,5 @@ void ct_mass_matrix_derive(struct ct_build *b)
             if (!ct_ex_is_zero(entry.value))
                 CT_PUSH(b->arena, e->M, e->nM, e->M_cap, entry);
         }
+    ct_arena_destroy(work);
 }

@@ -126,7 +126,7 @@ static ct_ex3 cut_force(struct ct_build *b, int node)
 static ct_ex3 branch_vector(struct ct_build *b, int edge)
 {
     const struct ct_edge_info *e = &b->topology->edge[edge];
-    const ct_ex3 d = ct_edge_motion(b, e)->d;
+    const ct_ex3 d = ct_edge_kinematics(b, e)->d;
     return ct_node_turn(b, b->topology->wiring[edge].tail, d);
 }
 

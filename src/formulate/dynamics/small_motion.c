@@ -37,7 +37,7 @@ static bool collect_joint(struct ct_build *b, struct small *s, int j, struct ct_
         const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         if (c->driver >= 0 || (!c->in_translation && !c->in_rotation))
             continue;
-        if (e->trial.quaternion >= 0 && k >= e->trial.quaternion)
+        if (e->trial->quaternion >= 0 && k >= e->trial->quaternion)
             return ct_error(b->ctx, at, CT_E_TREE,
                             "small: the free rotation of joint '%s' has no small coordinates",
                             e->name);

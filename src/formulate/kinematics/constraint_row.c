@@ -232,7 +232,7 @@ static int slide_directions(struct ct_build *b, const struct ct_edge_info *e, ct
     for (int k = 0; k < e->ncoordinate && n < 3; k++) {
         ct_ex3 p;
         for (int i = 0; i < 3; i++)
-            p.e[i] = ct_edge_partial(b, e, e->trial.d.e[i], k);
+            p.e[i] = ct_edge_partial(b, e, e->trial->d.e[i], k);
         if (!ct_ex3_is_zero(p))
             dir[n++] = p;
     }
@@ -382,9 +382,9 @@ bool ct_rows_derive(struct ct_build *b)
             = e->kind == CT_EDGE_CLOSURE || (e->kind == CT_EDGE_JOINT && e->self->cls->motion);
         if (!moves)
             continue;
-        if (!b->T.is_branch[i] && !(e->trial.quaternion == 3))
+        if (!b->T.is_branch[i] && !(e->trial->quaternion == 3))
             translation_rows(b, (int)i);
-        if (!b->R.is_branch[i] && e->has_rotation && e->trial.quaternion < 0)
+        if (!b->R.is_branch[i] && e->has_rotation && e->trial->quaternion < 0)
             rotation_rows(b, (int)i);
         for (int k = 0; k < e->ncoordinate; k++) {
             const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];

@@ -8,7 +8,7 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 static const struct ct_measure *measure_of(const struct ct_build *b,
                                            const struct ct_coordinate *c)
 {
-    const struct ct_motion *m = &b->kinematics->edge[c->edge].motion;
+    const struct ct_motion *m = b->kinematics->edge[c->edge].motion;
     const int k = m->quaternion >= 0 && c->index >= m->quaternion ? m->quaternion : c->index;
     return &m->measure[k];
 }
@@ -168,7 +168,7 @@ static void measure_quaternion(struct ct_build *b, const struct ct_coordinate *c
     const ct_ex33 A = ct_node_rotation(b, p.tail), B = ct_node_rotation(b, p.head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(b->x, &T, &B);
     const int first = b->topology->edge[c->edge].first_coordinate
-                    + b->kinematics->edge[c->edge].motion.quaternion;
+                    + b->kinematics->edge[c->edge].motion->quaternion;
     ct_ex q[4];
     ct_quaternion_follow(b, c->name, &R, q);
     for (int i = 0; i < 4; i++) {
@@ -225,7 +225,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
         break;
     case CT_MEASURE_QUATERNION: {
         ct_ex3 axis = zero3;
-        const int i = c->index - b->kinematics->edge[c->edge].motion.quaternion;
+        const int i = c->index - b->kinematics->edge[c->edge].motion->quaternion;
         if (i >= 3) // four numbers, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;

@@ -96,7 +96,7 @@ static void choose_driven(struct ct_build *b, const struct ct_edge_info *e,
 static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
                          struct ct_coordinate *c)
 {
-    const bool one = e->trial.nfree == 1;
+    const bool one = e->trial->nfree == 1;
     const char *suffix = one ? "" : ct_arena_printf(b->arena, "%d", c->index + 1);
     c->q = new_coordinate(b, c->name, -1);
     c->u = new_speed(b, e, suffix, c->q, c->in_rotation);
@@ -123,15 +123,17 @@ static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
         ct_station_partials(b, f, &forces, k->foreshortened,
                             CT_NEWN(b->arena, ct_ex3, f->nelastic + 1));
     }
-    k->motion.d = s->position;
+    k->d = s->position;
+    struct ct_motion m = {.quaternion = -1};
     struct ct_section_turn turn[4];
     const int n = ct_section_turns(s->angle, turn);
     for (int i = 0; i < n; i++) {
         double axis[3] = {0};
         axis[turn[i].axis] = 1;
-        ct_motion_add_rotation(&k->motion, ct_ex3_const(b->x, axis),
+        ct_motion_add_rotation(&m, ct_ex3_const(b->x, axis),
                                ct_ex_scale(b->x, turn[i].share, s->angle[turn[i].axis]));
     }
+    k->motion = ct_motion_keep(b->arena, &m);
 }
 
 // A state of the model, as a speed that moves nothing.
@@ -152,6 +154,7 @@ static void add_state(struct ct_build *b, const char *name)
 
 void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
 {
+    static const struct ct_motion none = {.quaternion = -1};
     const size_t ncoordinate = b->topology->ncoordinate;
     kinematics->edge = CT_NEWN(b->arena, struct ct_edge_kinematics, b->topology->nedge + 1);
     kinematics->coordinate = CT_NEWN(b->arena, struct ct_coordinate, ncoordinate + 1);
@@ -167,18 +170,21 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
                 continue;
             if (c->is_driven) {
                 choose_driven(b, e, c);
-            } else if (e->trial.quaternion == k) {
+            } else if (e->trial->quaternion == k) {
                 choose_quaternion(b, e, c);
                 break;
             } else {
                 choose_plain(b, e, c);
             }
         }
-        struct ct_motion m = {.ncoord = e->trial.ncoord, .nfree = e->trial.nfree};
+        struct ct_edge_kinematics *kept = &kinematics->edge[i];
+        struct ct_motion m = {.ncoord = e->trial->ncoord, .nfree = e->trial->nfree};
         for (int k = 0; k < e->ncoordinate; k++)
             m.coord[k] = b->kinematics->coordinate[e->first_coordinate + k].value;
         ct_linear_graph_edge_motion(b, e, &m);
-        kinematics->edge[i].motion = m;
+        const bool is_fixed = e->kind == CT_EDGE_ARM || e->kind == CT_EDGE_FORCE;
+        *kept = (struct ct_edge_kinematics){
+            .d = m.d, .motion = is_fixed ? &none : ct_motion_keep(b->arena, &m)};
     }
     for (size_t i = 0; i < b->nflexible; i++)
         ct_flexible_unknowns(b, &b->flexible[i]);
@@ -249,8 +255,8 @@ static bool same3(ct_ex3 a, ct_ex3 b)
 
 ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex trial, int k)
 {
-    const ct_ex c = ct_ex_diff(b->x, trial, e->trial.coord[k]);
-    return ct_ex_subst(b->x, c, e->trial.coord, ct_edge_motion(b, e)->coord,
+    const ct_ex c = ct_ex_diff(b->x, trial, e->trial->coord[k]);
+    return ct_ex_subst(b->x, c, e->trial->coord, ct_edge_motion(b, e)->coord,
                        (size_t)e->ncoordinate);
 }
 
@@ -306,7 +312,7 @@ static void add_rotation_axis(struct ct_build *b, struct ct_kinematics *kinemati
         for (int k = 0; k < e->ncoordinate; k++) {
             const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
             add_term(b, &s, c->u, c->driver, sign,
-                     ct_edge_partial(b, e, e->trial.turn[i].angle, k));
+                     ct_edge_partial(b, e, e->trial->turn[i].angle, k));
         }
     }
     s.local = local;

@@ -101,7 +101,7 @@ static void place_translating(struct ct_build *b, struct ct_kinematics *kinemati
         const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
         ct_ex3 p_tail;
         for (int j = 0; j < 3; j++)
-            p_tail.e[j] = ct_edge_partial(b, e, e->trial.d.e[j], k);
+            p_tail.e[j] = ct_edge_partial(b, e, e->trial->d.e[j], k);
         add_translation_axis(b, a, c->u, c->driver, sign, ct_ex33_apply(b->x, &tail->S, p_tail),
                              zero3);
     }
@@ -122,7 +122,7 @@ static const struct ct_node_placement *tail_of(const struct ct_build *b, int nod
 static ct_ex3 branch_vector(struct ct_build *b, int node)
 {
     const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
-    const ct_ex3 d = ct_edge_motion(b, e)->d,
+    const ct_ex3 d = ct_edge_kinematics(b, e)->d,
                  vector = ct_ex33_apply(b->x, &tail_of(b, node)->S, d);
     return b->T.sign[node] < 0 ? ct_ex3_neg(b->x, vector) : vector;
 }
@@ -548,7 +548,7 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
     for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
         int *const k = T->depth[i] > T->depth[j] ? &i : &j;
         const struct ct_edge_info *e = &b->topology->edge[T->parent_edge[*k]];
-        const ct_ex3 d = ct_edge_motion(b, e)->d;
+        const ct_ex3 d = ct_edge_kinematics(b, e)->d;
         if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
             lever[(*n)++] = d;
         *k = T->parent[*k];

@@ -177,7 +177,7 @@ static void add_arms(struct ct_build *b, struct cut *c)
             continue;
         ct_reaction_of_edge(b, (int)i, &force, &torque);
         add_wrench(b, c, ct_node_unturn(b, c->f->base, force),
-                   ct_node_unturn(b, c->f->base, torque), b->kinematics->edge[i].motion.d);
+                   ct_node_unturn(b, c->f->base, torque), b->kinematics->edge[i].d);
     }
 }
 

@@ -69,17 +69,17 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     e->nfollow = has_followers(w, i) ? ct_condensation_count(f) : 0;
     e->nall = e->n + (e->is_augmented || e->nfollow ? f->beam->nelement : 0) + 2 * e->nfollow;
     const size_t n = (size_t)e->nall;
-    e->number = CT_NEWN(b->arena, int, b->eqs->nu + 1);
+    e->number = CT_NEWN(w->work, int, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
         e->number[k] = -1;
     for (int k = 0; k < e->n; k++)
         e->number[f->elastic[k].u] = k;
-    e->M = CT_NEWN(b->arena, ct_ex, n * n + 1);
-    e->row = CT_NEWN(b->arena, ct_ex, n + 1);
-    e->a = CT_NEWN(b->arena, ct_ex, n + 1);
-    e->G = CT_NEWN(b->arena, struct ct_spatial_vector, n + 1);
-    e->order = CT_NEWN(b->arena, int, n + 1);
-    e->is_done = CT_NEWN(b->arena, bool, n + 1);
+    e->M = CT_NEWN(w->work, ct_ex, n * n + 1);
+    e->row = CT_NEWN(w->work, ct_ex, n + 1);
+    e->a = CT_NEWN(w->work, ct_ex, n + 1);
+    e->G = CT_NEWN(w->work, struct ct_spatial_vector, n + 1);
+    e->order = CT_NEWN(w->work, int, n + 1);
+    e->is_done = CT_NEWN(w->work, bool, n + 1);
 }
 
 // The place of number k of those that follow; that of its multiplier.
@@ -448,7 +448,7 @@ void ct_articulated_beam_sum(struct ct_articulated *w, int i)
     struct ct_articulated_beam *e = &w->elastic[number];
     struct ct_articulated_body *k = &w->body[i];
     if (!k->C)
-        k->C = CT_NEWN(w->b->arena, struct ct_spatial_vector, e->nall + 1);
+        k->C = CT_NEWN(w->work, struct ct_spatial_vector, e->nall + 1);
     if (i == at->base)
         add_beam(w, i, e, &at->A);
     add_screws(w, i, e);
@@ -505,7 +505,7 @@ void ct_articulated_beam_hand(struct ct_articulated *w, int i)
     const ct_ex3 bias = ct_member_shift_bias(w->b, w->s, i);
     struct ct_articulated_body *p = &w->body[m->parent];
     if (!p->C)
-        p->C = CT_NEWN(w->b->arena, struct ct_spatial_vector, e->nall + 1);
+        p->C = CT_NEWN(w->work, struct ct_spatial_vector, e->nall + 1);
     for (int j = 0; j < e->nall; j++) {
         const ct_ex *C = w->body[i].C[j].e;
         ct_ex3 n = {{C[0], C[1], C[2]}}, f = {{C[3], C[4], C[5]}};

@@ -55,6 +55,7 @@ struct ct_articulated_beam {
 
 struct ct_articulated {
     struct ct_build *b;
+    struct ct_arena *work; // for what the solution does not need
     const struct ct_members *s;
     const ct_ex *effort;
     ct_ex *pivot;

@@ -237,15 +237,16 @@ static void accelerate(struct ct_articulated *w, int i, ct_ex *out)
 ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
                             ct_ex *pivot)
 {
-    struct ct_articulated w = {.b = b, .s = s, .effort = effort, .pivot = pivot};
+    struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
+    struct ct_articulated w = {.b = b, .work = work, .s = s, .effort = effort, .pivot = pivot};
     ct_ex *out = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
-    w.body = CT_NEWN(b->arena, struct ct_articulated_body, s->n);
-    w.elastic = CT_NEWN(b->arena, struct ct_articulated_beam, s->nbeam + 1);
+    w.body = CT_NEWN(work, struct ct_articulated_body, s->n);
+    w.elastic = CT_NEWN(work, struct ct_articulated_beam, s->nbeam + 1);
     for (size_t i = 0; i < s->nbeam; i++)
         ct_articulated_beam_start(&w, i);
     if (s->nbeam) {
-        w.M = CT_NEWN(b->ctx->scratch, ct_ex, b->eqs->nu * b->eqs->nu + 1);
-        w.row = CT_NEWN(b->ctx->scratch, ct_ex, b->eqs->nu + 1);
+        w.M = CT_NEWN(work, ct_ex, b->eqs->nu * b->eqs->nu + 1);
+        w.row = CT_NEWN(work, ct_ex, b->eqs->nu + 1);
     }
     for (size_t i = s->n; i-- > 1;) {
         const struct ct_member *m = &s->member[i];
@@ -264,5 +265,6 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
         out[k] = effort[k];
         pivot[k] = CT_EX_ONE;
     }
+    ct_arena_destroy(work);
     return out;
 }

@@ -303,7 +303,7 @@ static bool place_node(struct ct_member_build *w, int node)
     const int parent = b->T.parent[node], sign = b->T.sign[node];
     const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
     const struct ct_node_placement *tail = &b->kinematics->placement[sign > 0 ? parent : node];
-    const ct_ex3 d = ct_edge_motion(b, e)->d;
+    const ct_ex3 d = ct_edge_kinematics(b, e)->d;
     struct ct_passage p
         = {.e = e, .vector_last = sign < 0, .S = &b->kinematics->placement[parent].S};
     int member = w->of_node[parent];

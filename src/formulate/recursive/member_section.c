@@ -110,7 +110,7 @@ static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
     const struct ct_flexible *f = ct_flexible_of_edge(b, e);
     const struct ct_station *s = ct_edge_kinematics(b, e)->station;
     const ct_ex33 *A = &w->s->beam[beam_of(b, f)].A;
-    ct_ex3 place = ct_ex33_apply(b->x, A, ct_edge_motion(b, e)->d);
+    ct_ex3 place = ct_ex33_apply(b->x, A, ct_edge_kinematics(b, e)->d);
     place = sign > 0 ? place : ct_ex3_neg(b->x, place);
     const int i = ct_member_add(w, from, b->kinematics->placement[f->base].frame,
                                 ct_ex3_add(b->x, r, place));

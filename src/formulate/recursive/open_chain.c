@@ -84,15 +84,14 @@ static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex
     return u;
 }
 
-// Operations of the unrolled solution by the pattern of the lower triangle: pivot k touches its d
-// nonzeros.
-static double symbolic_cost(const bool *pattern, size_t n)
+// Operations of the unrolled solution by the nonzeros of the lower triangle H: pivot k touches d of them.
+static double symbolic_cost(const ct_ex *H, size_t n)
 {
     double cost = 0;
     for (size_t k = 0; k < n; k++) {
         double d = 0;
         for (size_t i = 0; i < k; i++)
-            d += pattern[k + n * i];
+            d += !ct_ex_is_zero(H[k + n * i]);
         cost += d * d + 6 * d + 5;
     }
     return cost;
@@ -133,17 +132,14 @@ static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
 static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
 {
     const size_t n = b->eqs->nu;
-    ct_ex *all = CT_NEWN(b->ctx->scratch, ct_ex, n * n + n + 1);
-    bool *pattern = CT_NEWN(b->ctx->scratch, bool, n *n + 1);
-    size_t k = 0;
-    for (size_t i = 0; i < n * n; i++) {
-        pattern[i] = !ct_ex_is_zero(H[i]);
-        if (pattern[i])
-            all[k++] = H[i];
-    }
+    ct_ex *all = NULL; // M and Q
+    size_t k = 0, cap = 0;
+    for (size_t i = 0; i < n * n; i++)
+        if (!ct_ex_is_zero(H[i]))
+            CT_PUSH(b->ctx->scratch, all, k, cap, H[i]);
     for (size_t i = 0; i < n; i++)
-        all[k++] = Q[i];
-    const double unrolled = symbolic_cost(pattern, n), dense = dense_cost((double)n);
+        CT_PUSH(b->ctx->scratch, all, k, cap, Q[i]);
+    const double unrolled = symbolic_cost(H, n), dense = dense_cost((double)n);
     // nodes are at least as many as operations: only where they are very many need these be counted
     const double most = (double)b->x->nnode + unrolled;
     const bool is_short = unrolled < dense && most < longest_program;
@@ -161,19 +157,24 @@ static struct trial try_cutsets(struct ct_build *b)
 {
     const struct ct_equations *e = b->eqs;
     const size_t n = e->nu;
-    ct_ex *H = CT_NEWN(b->arena, ct_ex, n * n + 1);
+    struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
     ct_dynamics_derive(b);
+    ct_ex *H = CT_NEWN(work, ct_ex, n * n + 1);
     for (size_t i = 0; i < e->nM; i++)
         H[(size_t)e->M[i].row + n * (size_t)e->M[i].column] = e->M[i].value;
-    return try_matrix(b, H, e->Q);
+    const struct trial t = try_matrix(b, H, e->Q);
+    ct_arena_destroy(work);
+    return t;
 }
 
 static struct trial try_composite(struct ct_build *b, const struct ct_members *s)
 {
     const size_t n = b->eqs->nu;
-    ct_ex *H = CT_NEWN(b->arena, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
+    struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
+    ct_ex *H = CT_NEWN(work, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
     ct_composite_derive(b, s, b->loads->effort, H, Q);
     struct trial t = try_matrix(b, H, Q);
+    ct_arena_destroy(work);
     if (!t.solution)
         t.cost = INFINITY; // a call of a solver takes M and Q of the equations
     return t;

@@ -40,7 +40,7 @@ static void add_entry(struct places *p, int row, int column)
 // terms in three parts.
 static double work_of(double nz, double factorization, double fill)
 {
-    // Derived: a step of four to eight corrections with one factorisation, entries of some terms
+    // Chosen: corrections of a step with one factorisation, terms of an entry
     const double solutions = 8, assembly = 8;
     return assembly * nz + factorization + solutions * 2 * fill;
 }

@@ -25,8 +25,13 @@ static struct ct_edge_info *add_edge(struct ct_build *b, struct ct_topology *t,
                                      enum ct_edge_kind kind, const char *name,
                                      struct ct_mark mark, int tail, int head)
 {
-    const struct ct_edge_info e
-        = {.kind = kind, .name = name, .mark = mark, .S = ct_ex33_identity(), .beam = -1};
+    static const struct ct_motion none;
+    const struct ct_edge_info e = {.kind = kind,
+                                   .name = name,
+                                   .mark = mark,
+                                   .S = ct_ex33_identity(),
+                                   .trial = &none,
+                                   .beam = -1};
     const struct ct_edge w = {tail, head};
     size_t nwiring = t->nedge;
     CT_PUSH(b->arena, t->wiring, nwiring, t->wiring_cap, w);
@@ -370,25 +375,16 @@ static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
             e->weight_r += c.in_rotation;
         }
     }
-    e->trial = m;
+    e->trial = ct_motion_keep(b->arena, &m);
 }
 
 // ---- the stage ----------------------------------------------------------------------------------
-
-// Rooms for what most models have, so that nothing is copied as the list grows: edges are large.
-static void reserve_edges(struct ct_build *b, struct ct_topology *t)
-{
-    const struct ct_model *m = b->model;
-    t->edge_cap = m->nframe + m->nbody + m->njoint + m->nforce; // a body has an arm and an edge
-    t->edge = CT_NEWN(b->arena, struct ct_edge_info, t->edge_cap);
-}
 
 void ct_linear_graph_derive(struct ct_build *b, bool planar_allowed)
 {
     struct ct_topology *t = CT_NEW(b->arena, struct ct_topology);
     b->topology = t;
     ct_flexible_create(b);
-    reserve_edges(b, t);
     add_frames(b, t);
     add_bodies(b, t);
     add_joints(b, t);

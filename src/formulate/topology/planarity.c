@@ -35,7 +35,7 @@ static bool is_across(const double a[3], const double n[3])
 // The motion of joint e keeps to the plane with normal n (in axes of `from`).
 static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, const double n[3])
 {
-    const struct ct_motion *m = &e->trial;
+    const struct ct_motion *m = e->trial;
     double v[3];
     if (m->quaternion >= 0 && e->has_rotation)
         return false;
@@ -115,8 +115,8 @@ static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
     const ct_ex zero[CT_MAX_COORD] = {{0}};
     ct_ex3 d = e->at;
     for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
-        d.e[i]
-            = ct_ex_subst(b->x, e->trial.d.e[i], e->trial.coord, zero, (size_t)e->ncoordinate);
+        d.e[i] = ct_ex_subst(b->x, e->trial->d.e[i], e->trial->coord, zero,
+                             (size_t)e->ncoordinate);
     return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->topology->plane[2]), d);
 }
 
@@ -216,8 +216,8 @@ static bool find_normal(struct ct_build *b, struct ct_topology *t)
     for (size_t i = 0; i < t->nedge; i++) {
         const struct ct_edge_info *e = &t->edge[i];
         const ct_ex33 *A = U[t->wiring[i].tail];
-        if (e->kind == CT_EDGE_JOINT && e->has_rotation && e->trial.nturn)
-            return A && takes_normal(b, t, U, ct_ex33_apply(b->x, A, e->trial.turn[0].axis));
+        if (e->kind == CT_EDGE_JOINT && e->has_rotation && e->trial->nturn)
+            return A && takes_normal(b, t, U, ct_ex33_apply(b->x, A, e->trial->turn[0].axis));
     }
     for (int axis = 2; axis > 0 && b->nflexible; axis--) {
         const ct_ex33 *A = U[b->flexible[0].base];

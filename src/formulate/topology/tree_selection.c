@@ -16,7 +16,7 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
         if ((kind == CT_EDGE_JOINT || kind == CT_EDGE_CLOSURE)
             && !b->topology->edge[i].never_branch
             && (!p->trans[i] || (b->topology->edge[i].has_rotation && !p->rot[i]))
-            && b->topology->edge[i].trial.quaternion != 3)
+            && b->topology->edge[i].trial->quaternion != 3)
             return false;
     }
     return true;
@@ -189,7 +189,7 @@ static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
                                                const struct ct_formulate_options *o,
                                                const struct ct_tree_pair *p)
 {
-    // Entries for each unknown. Default: sparse rows are worth more unknowns. Test: long_chain.
+    // Entries for each unknown. Chosen: sparse rows are worth more unknowns.
     const double most = 400;
     double n = 0;
     for (size_t i = 1; i < b->model->nbody; i++)

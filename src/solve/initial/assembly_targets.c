@@ -85,8 +85,8 @@ bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
     const struct ct_edge_info *e = &s->e->build->topology->edge[c->edge];
-    return e->kind == CT_EDGE_JOINT && !c->in_translation && c->index < e->trial.nmeasure
-        && e->trial.measure[c->index].kind == CT_MEASURE_ANGLE;
+    return e->kind == CT_EDGE_JOINT && !c->in_translation && c->index < e->trial->nmeasure
+        && e->trial->measure[c->index].kind == CT_MEASURE_ANGLE;
 }
 
 // Not of a quaternion.
@@ -96,8 +96,8 @@ static bool is_length(const struct ct_equations *eqs, size_t i)
     const struct ct_edge_info *e = &eqs->build->topology->edge[c->edge];
     if (e->kind == CT_EDGE_BODY)
         return c->index < (eqs->build->topology->is_planar ? 2 : 3);
-    if (c->index < e->trial.nmeasure)
-        return e->trial.measure[c->index].kind == CT_MEASURE_LENGTH;
+    if (c->index < e->trial->nmeasure)
+        return e->trial->measure[c->index].kind == CT_MEASURE_LENGTH;
     return !c->in_rotation;
 }
 
@@ -118,7 +118,7 @@ static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model
     const struct ct_coordinate *c = &s->e->coordinate[i];
     const struct ct_edge_info *e = &s->e->build->topology->edge[c->edge];
     const struct ct_initial *initial = &e->self->initial;
-    const int k = e->trial.quaternion;
+    const int k = e->trial->quaternion;
     struct ct_target *q = &s->q[i], *u = &s->u[i];
     q->in_quaternion = k >= 0 && c->index >= k;
     q->value = q->in_quaternion && c->index == k;
@@ -147,7 +147,7 @@ static void body_target(struct ct_assembler *s, size_t i, const struct ct_model 
     const struct ct_coordinate *c = &s->e->coordinate[i];
     const struct ct_build *b = s->e->build;
     const struct ct_edge_info *e = &b->topology->edge[c->edge];
-    const int k = e->trial.quaternion;
+    const int k = e->trial->quaternion;
     struct ct_target *q = &s->q[i], *u = &s->u[i];
     if (c->q < 0)
         return; // held by joints
@@ -187,7 +187,7 @@ void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *mo
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
         if (s->q[i].in_quaternion
-            && c->index == s->e->build->topology->edge[c->edge].trial.quaternion)
+            && c->index == s->e->build->topology->edge[c->edge].trial->quaternion)
             normalise_target(&s->q[i]);
     }
     s->length = natural_length(s, model);

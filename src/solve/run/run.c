@@ -529,15 +529,18 @@ void ct_run_find_undetermined(struct ct_run *r, double t, const double *y, bool 
         return;
     ct_run_find_multipliers(r);
     ct_evaluator_constraint(r->m);
-    ct_partition_uniqueness(r->s);
-    double *z = CT_NEWN(r->arena, double, r->m->nrow);
+    struct ct_arena *own = ct_arena_create_under(r->arena);
+    struct ct_null_space *null_space = ct_null_space_create(own, r->s);
+    ct_partition_uniqueness(r->s, null_space);
+    double *z = CT_NEWN(own, double, r->m->nrow);
     for (size_t i = 0; i < r->m->nrow; i++) {
         if (r->s->is_unique[i])
             continue;
         row[i] = true;
-        ct_partition_null_vector(r->s, (int)i, z);
+        ct_null_space_vector(null_space, (int)i, z);
         compare_results(r, z, r->value, result);
     }
+    ct_arena_destroy(own);
 }
 
 double ct_run_sample_time(const struct ct_run_options *o, size_t i)

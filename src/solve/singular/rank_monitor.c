@@ -82,8 +82,7 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 // largest value so far and goes on falling. Below the second part pivots are chosen at every
 // evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
 // their rows avoid it below the second part.
-// Default: shorter steps near small pivots against the accuracy of accelerations. Test:
-// singular_approach.
+// Chosen: shorter steps near small pivots against the accuracy of accelerations.
 static const double foreseen_pivot = 0.8, near_pivot = 0.5;
 // No step ends where the pivot is less than this part. Derived: round-off is divided by its square,
 // and eps / 1e-14 leaves one digit to tell which motion goes on.
@@ -165,8 +164,7 @@ static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahea
 // largest pivot nor of the first sight of a position.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
-    // Derived: of changes on one step, which are less than from 1 to foreseen_pivot in four; and
-    // steps, twice CT_SINGULAR_STEPS
+    // Chosen: changes on a step; steps
     const double hardly = 1.05, steps_away = 2 * CT_SINGULAR_STEPS;
     const struct ct_partition *s = w->s;
     if (!s->has_solver || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
@@ -188,8 +186,8 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
 static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
                        const double *a)
 {
-    // Of the largest speed so far. Derived: far more than steps err by, even at loose tolerances,
-    // and less than speeds of two motions that meet differ by
+    // Of the largest speed so far. Chosen: far more than steps err by, and less than the speeds of
+    // two motions that meet differ by
     const double part = 0.2;
     const size_t nu = w->m->nu;
     const double least = part * fmax(w->swiftest, ct_vector_largest(u, nu));
@@ -348,6 +346,13 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
         find_next(w, &at, l.now);
     return true;
+}
+
+void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w)
+{
+    w->there->rank = 0;
+    w->pivot = 0;
+    w->solver_unchanged = false;
 }
 
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,

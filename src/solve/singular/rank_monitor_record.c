@@ -254,8 +254,7 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
 
 // Steps came across a position, or close by, where on their way the pivot falls below this part of
 // what it is at both ends.
-// Default: configurations that are passed near by against those that are crossed. Test:
-// near_singular.
+// Chosen: configurations that are passed near by against those that are crossed.
 static const double nearly_zero = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,

@@ -153,7 +153,7 @@ static void find_model(const struct ct_singular_dense_output *s,
 static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
     const struct ct_rank_monitor *w = s->w;
-    // Derived: positions are resolved to 1e-4 of a way, poles to the root of round-off
+    // Chosen: far below the distance of stages
     const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
@@ -179,8 +179,7 @@ static double error_of(const struct model *m, const double *at)
 // gap ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
-    // Derived: poles in the multipliers make the error of a polynomial a thousand times as
-    // large
+    // Chosen: as above
     const double clearly = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;

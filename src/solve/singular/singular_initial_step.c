@@ -21,15 +21,14 @@
 
 // Largest change of a coordinate from where the motion is slowest to either end of the step [rad,
 // m], at first; halved where the step errs.
-// Default: longer steps have more digits, and err more. Test: singular_start.
+// Chosen: longer steps have more digits, and err more.
 static const double longest_way = 0.4;
 // Limit: halvings of the step; a motion that lingers leaves faster than accelerations of now tell
 enum { LOOKS = 12 };
 
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
 // way; up to there from it a start tells nothing of how the smallest pivot falls.
-// Default: starts that are refused for lack of digits against steps that err. Test:
-// singular_start.
+// Chosen: starts that are refused for lack of digits against steps that err.
 static const double beside = 0.2, near = 0.5;
 
 // The step may err by so much of the largest state, or by so much of what is asked if that is more.
@@ -104,8 +103,7 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
 
 // How far y may be from the start to be on the motion that is meant, of the largest state: speeds
 // beside a position are known no better, other motions are as far as speeds are large.
-// Derived: the root of round-off of states, 1e-8, with what collocation adds; other motions
-// differ by 0.01 and more.
+// Chosen: between both.
 static const double meant = 1e-4;
 
 // How far y (ny) is from it, the work aside.
@@ -242,7 +240,7 @@ static void find_step(struct ct_singular_start *r, const struct initial_step *l,
 
 // Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them
 // leaves is far below.
-// Derived: the square of what assembly leaves of speeds, 3e-4 of them.
+// Chosen: between both.
 static const double belongs = 1e-7;
 
 static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)

@@ -21,7 +21,7 @@ static const double unmet = 1e-6;
 // Rows take part in what is lost where they have this part of the most that one has. Which of them
 // a choice of pivots leaves out is a matter of round-off where they are alike; what is always lost
 // turns by as much as the way there.
-// Derived: between rows that take part alike, 1, and those that turn by the way there, 0.1.
+// Chosen: between both.
 static const double part_taken = 0.3;
 
 struct probe {
@@ -169,7 +169,7 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
 // what round-off leaves. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
-    // Derived: far enough for three digits of J's change, near enough to be alike
+    // Chosen: far enough for J to change, near enough to be alike
     const double way = 0.1;
     const size_t ny = p->m->nq + p->m->nu + 1;
     move(p, scratch, way);
