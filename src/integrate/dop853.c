@@ -16,6 +16,7 @@
 // each over the symmetry of its tree, are met to 1.1e-18. Found by lattice reduction.
 #include "integrate/stepper.h"
 
+// Definition: of the method.
 enum { STAGES = 13, ALL_STAGES = 16, CORRECTIONS = 4 };
 
 static const double C[ALL_STAGES] = {

@@ -14,7 +14,7 @@
 // Norsett and Thomsen (1986), key enright1986.
 #include "integrate/stepper.h"
 
-enum { STAGES = 7 };
+enum { STAGES = 7 }; // Definition: of the method.
 
 static const double C[STAGES] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1};
 
@@ -159,7 +159,7 @@ static const struct ct_tableau tableau
 #define MISS(t, b) (-6 * (t) * (1 - (t)) * (b))
 #define F1(b) (16 * MISS(0.5, b))
 #define F0(b) ((125 * MISS(0.2, b) - 8 * F1(b)) / 24)
-enum { DENSE_STAGES = STAGES + 2 };
+enum { DENSE_STAGES = STAGES + 2 }; // Definition: of the method.
 
 static const double dense_C[] = {1. / 2, 1. / 5};
 

@@ -116,8 +116,11 @@ static double changed_by(const struct ct_driver *r)
 // where it is not found.
 static double find_rate(struct ct_driver *r, double h, double limit)
 {
+    // Default: evaluations before the first step against its length. Test: integrate.
     enum { LOOKS = 5 };
-    const double least = 0.02, most = 0.5, further = 100, wanted = 0.05;
+    // Default: changes that show a rate, beyond round-off and before the motion turns. Test: integrate.
+    const double least = 0.02, most = 0.5, wanted = 0.05;
+    const double further = 100;
     const struct ct_problem *p = r->p;
     double change = changed_by(r);
     for (int look = 0; look < LOOKS && change < least && h < limit; look++) {

@@ -78,7 +78,9 @@ bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_ste
 // steps to come are not asked; where it does, as many as ever are taken to err as well.
 static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
 {
+    // Default: evaluations against interpolants that err unseen. Test: integrate.
     enum { MOST_UNASKED = 31 };
+    // Default: evaluations against the error of samples. Test: integrate.
     const double much = 0.01;
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double h = ct_driver_has_sample(r, s) ? r->o->sample[r->sample] - r->t : s->h / 2;

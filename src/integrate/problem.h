@@ -260,7 +260,7 @@ struct ct_integrate_stats {
     double next_step;      // that step control would take next
 };
 
-enum { CT_MOST_STAGES = 13 }; // of a tableau
+enum { CT_MOST_STAGES = 13 }; // Definition: of a tableau, those of dop853
 
 /// The numbers of an explicit method whose last stage is the end of the step: for those who step by
 /// themselves. Stage s is at t + C_s h, y + h sum_j A_sj k_j; its error is h sum E_j k_j or, with a
@@ -282,6 +282,7 @@ struct ct_dense_tableau {
     int stages, corrections, stride; // stages: those of the step and these
     const double *C, *A, *D;
 };
+/// Definition: those of dop853.
 enum { CT_MOST_DENSE_STAGES = 16, CT_DENSE_CORRECTIONS = 4 };
 
 /// One integration method: a constant table in a file of its own.

@@ -7,7 +7,7 @@
 // Source: Kutta (1901); Hairer, Norsett and Wanner (1993), II.1 and II.4, key hairer1993.
 #include "integrate/stepper.h"
 
-enum { STAGES = 4 };
+enum { STAGES = 4 }; // Definition: of the method.
 
 static const double C[STAGES] = {0, 1. / 2, 1. / 2, 1};
 static const double B[STAGES] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};

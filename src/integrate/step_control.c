@@ -17,6 +17,7 @@ static const double safety = 0.8, implicit_safety = 0.9;
 // Derived: FAC1 of DOPRI5, the least factor from one step to the next.
 static const double most_shrink = 0.2;
 // The largest one, unless the method names its own.
+// Default: steps that grow in time against refused ones. Test: integrate.
 static const double most_growth = 5;
 // Derived: FACOLD of DOPRI5, the least error that the controller remembers; smaller ones would make
 // it shrink the next step.
@@ -140,21 +141,23 @@ void ct_step_control_refuse(struct ct_step_control *c, const struct ct_method *m
 // ct_step_control_first_at_rate is the same aim.
 double ct_step_control_euler_step(double d0, double d1, double limit)
 {
-    return fmin(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, limit);
+    const double small = 1e-5, least = 1e-6; // Derived: II.4, see above
+    return fmin(d0 < small || d1 < small ? least : 0.01 * d0 / d1, limit);
 }
 
 double ct_step_control_first(const struct ct_method *m, double h, double d1, double d2,
                              double limit)
 {
     const double d = fmax(d1, d2);
+    const double small = 1e-15, least = 1e-6, part = 1e-3; // Derived: II.4, see above
     const double by_error
-        = d <= 1e-15 ? fmax(1e-6, 1e-3 * h) : pow(0.01 / d, 1.0 / (m->error_order + 1));
+        = d <= small ? fmax(least, part * h) : pow(0.01 / d, 1.0 / (m->error_order + 1));
     return fmin(fmin(100 * h, by_error), limit);
 }
 
 double ct_step_control_first_at_rate(const struct ct_method *m, double rate, double rtol)
 {
-    const double part = 0.01;
+    const double part = 0.01; // Derived: as in ct_step_control_first
     double term = part * rtol;
     for (int i = 2; i <= m->error_order + 1; i++)
         term *= i;

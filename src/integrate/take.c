@@ -5,16 +5,22 @@
 #include <math.h>
 #include <string.h>
 
-enum { DEGREE = 8, NODES = DEGREE + 1, COARSE = 5 };
+// Definition: Chebyshev interpolation of this degree.
+enum { DEGREE = 8, NODES = DEGREE + 1 };
+// Nodes asked for first, those of degree 4.
+// Default: evaluations against what is missed between nodes. Test: take.
+enum { COARSE = 5 };
 // Halvings of a step. Derived: as many as lead from 1 to the unit round-off.
 enum { LEVELS = DBL_MANT_DIG };
 // A kink takes one interval for each halving; a function that is noise would take any number.
+// Default: evaluations against the accuracy at several kinks in a step. Test: take.
 enum { MOST_INTERVALS = 400 };
 // Grid on which zeros and extremes of an interpolant are sought first: several points between any
 // two zeros of its derivative that are farther apart than those of T8 at the ends.
 enum { GRID = 32 };
 
 // The error of interpolants, as part of what is wanted of outputs.
+// Default: evaluations against accuracy. Test: take.
 static const double share = 0.1;
 
 // Of the largest value, in an interpolant: sums of nine terms, of functions that have some
