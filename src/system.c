@@ -414,6 +414,7 @@ struct printing {
     struct ct_ctx *ctx, *own;
     struct ct_system *s;
     const char *stages, *format;
+    bool is_full;
     FILE *out;
 };
 
@@ -469,19 +470,30 @@ static bool print_equations(void *task)
     if (!ok)
         return false;
     struct ct_system *s = ct_system_borrow(p->own, p->s);
-    ct_formulate_dynamics(&s->equations);
-    return ct_equations_print(p->out, p->own->scratch, &s->equations, &s->model, stages, format)
+    return ct_equations_print(p->out, p->own->scratch, &s->equations, &s->model, stages, format,
+                              p->is_full)
         || ct_error(p->ctx, (struct ct_mark){0}, CT_E_FILE, "cannot write the equations");
+}
+
+static bool print_in_own(struct printing p)
+{
+    struct ct_ctx own = {0};
+    p.own = &own;
+    const bool ok = p.ctx && p.s && p.out && ct_own_enter(p.ctx, &own, print_equations, &p);
+    ct_own_finish(&own);
+    return ok;
 }
 
 bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
                                const char *format, FILE *out)
 {
-    struct ct_ctx own = {0};
-    struct printing p = {ctx, &own, sys, stages, format, out};
-    const bool ok = ctx && sys && out && ct_own_enter(ctx, &own, print_equations, &p);
-    ct_own_finish(&own);
-    return ok;
+    return print_in_own((struct printing){ctx, NULL, sys, stages, format, true, out});
+}
+
+bool ct_system_summarize_equations(struct ct_ctx *ctx, struct ct_system *sys,
+                                   const char *stages, const char *format, FILE *out)
+{
+    return print_in_own((struct printing){ctx, NULL, sys, stages, format, false, out});
 }
 
 // ---- the same as texts -------------------------------------------------------------------------------------

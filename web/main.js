@@ -1,6 +1,7 @@
 // Starts the page: its data, one clock, one light, and the panels that share them. The page of modes has a start of its own.
 import { createClock } from "./clock.js";
 import { readData } from "./data.js";
+import { showEquations } from "./equations.js";
 import { createGraph } from "./graph.js";
 import { createLights } from "./lights.js";
 import { startModes } from "./motion/modes.js";
@@ -26,6 +27,7 @@ function startReport() {
     createPlots(document.getElementById("plots"), { ...run, times, samples }, clock, lights);
     const loops = readData("data-loops");
     if (loops) createPlots(document.getElementById("loops"), { times: (await unpack(loops.times))[0], samples: await unpack(loops.samples) }, clock, lights);
+    await showEquations(document, lights);
     const terms = readData("data-terms");
     if (terms) showValues(document, terms, await unpack(terms.times), await unpack(terms.samples), clock);
   }

@@ -18,6 +18,11 @@ async function inflate(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+// Text that was deflated, as base64.
+export async function unpackText(base64) {
+  return new TextDecoder().decode(await inflate(bytesOf(base64)));
+}
+
 // Columns as Float64Array of `count` numbers each.
 export async function unpack(packed) {
   const { count, columns, low, step } = packed;

@@ -202,10 +202,16 @@ CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, con
  * stages  in   "terminal,graph,tree,cutset,circuit,reduced", some of them, or "all"; NULL: tree,reduced
  * format  in   "text", "latex", "html", "c" or "json"; NULL: text. C has the reduced equations only.
  *
+ * Systems of more than 100 speeds are in recursive form but in C (docs/equations.md).
+ *
  * Errors: E002 for the stream, E003.
  */
 CT_API bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys,
                                       const char *stages, const char *format, FILE *out);
+
+/** The same for reading: of such systems lists in text, LaTeX and HTML show their first and last lines. */
+CT_API bool ct_system_summarize_equations(struct ct_ctx *ctx, struct ct_system *sys,
+                                          const char *stages, const char *format, FILE *out);
 
 /** The same as texts, which ct_free frees; NULL where they fail. */
 CT_API char *ct_system_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format);
@@ -325,8 +331,14 @@ CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
 /**
  * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
  * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ *
+ * out      in  for people; NULL: no text
+ * summary  in  path of a file as that of ct_sim_write_summary, with the loops for programs; NULL: no file
+ *
+ * Errors: E002.
  */
-CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out);
+CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out,
+                               const char *summary);
 /**
  * The model as source code in a folder, which is made if need be, or as an FMU. Before the run.
  *

@@ -14,20 +14,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Default: of the error that is asked about, as docs/cli.md tells. Test: accuracy.
 static const double standard_error = 1e-6;
-// Six methods within about a minute; more where already the reference takes long.  [s]
+// Limit: six methods within about a minute; more where already the reference takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;
+// Limit: of the time to measure times, with the table only less noisy.
 enum { REPEATS = 3, MOST_REPEATS = 101 }; // the latter of short ones
-static const double short_times = 0.05;   // of one setting together  [s]
-enum { MOST_PER_DECADE = 10 };            // tolerances have two digits
-// A reference should be better than the error that is asked about by this factor.
+static const double short_times = 0.05;   // Limit: of one setting together  [s]
+enum { MOST_PER_DECADE = 10 };            // Limit: tolerances have two digits; with a message
+// A reference should be better than the error that is asked about by this factor. Default: a warning
+// says so. Test: accuracy.
 static const double reference_margin = 0.1;
-// Steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
+// Limit: steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
 static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
 // Or, from a step that is asked for, so many powers of ten.
-enum { DECADES_OF_STEPS = 2 };
-// Errors that differ by this part of themselves are the same.
+enum { DECADES_OF_STEPS = 2 }; // Limit: rows of a table
+// Errors that differ by this part of themselves are the same. Derived: the table shows two digits.
 static const double same_error = 0.01;
 
 // ---- ladders ---------------------------------------------------------------------------------------------
@@ -74,6 +77,7 @@ static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s,
     ct_accuracy_end_run(a);
     if (ending == CT_RUN_REFUSED)
         return ending;
+    // Definition: [ns]
     p.seconds = round(median(seconds, n) * 1e9) / 1e9; // what the clock resolves
     CT_PUSH(a->own.model, a->point, a->npoint, a->point_cap, p);
     return ending;
@@ -92,6 +96,7 @@ static void choose_powers(const char *name, int *first, int *last)
 // elements or formulation.
 static bool shows_mesh(const struct ct_accuracy *a, size_t start)
 {
+    // Limit: settings that have shown that more bring nothing
     enum { SETTINGS = 3 };
     if (!a->variant || a->npoint < start + SETTINGS)
         return false;
@@ -112,6 +117,7 @@ static double tolerance_at(double power)
 
 static bool climb_tolerances(struct ct_accuracy *a, const char *name, double end)
 {
+    // Layout: the loosest tolerance of a table is 1e-2
     const int loosest_of_fine = 2, n = a->o->per_decade > 0 ? a->o->per_decade : 1;
     int first, last;
     choose_powers(name, &first, &last);

@@ -12,12 +12,12 @@
 #include <math.h>
 #include <string.h>
 
-// Runs that agree to this need no third one to judge.
+// Runs that agree to this need no third one to judge. Chosen: 0.01 of the error that is asked about.
 static const double good_agreement = 1e-8;
-// Times of samples in a file are matched to this part of the run.
+// Times of samples in a file are matched to this part of the run. Derived: files of nine digits.
 static const double same_time = 1e-9;
-static const double reference_limit = 20, quad_limit = 10; // [s]
-enum { NREFERENCE = 4 };
+static const double reference_limit = 20, quad_limit = 10; // Limit: [s]
+enum { NREFERENCE = 4 };                                   // Definition: of the lists below
 
 // ---- runs that agree --------------------------------------------------------------------
 
@@ -101,6 +101,7 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
 // Two runs in arithmetic that is at least 50 times as slow, and with no fewer steps.
 static bool has_time(const struct candidate *c)
 {
+    // Chosen: the least that an operation takes longer than in double precision
     const double least_factor = 100;
     return c->seconds * least_factor < quad_limit;
 }
@@ -115,8 +116,11 @@ static bool is_in_time(void *user)
 // double precision do, and with those as well as they among each other.
 static void run_quad(struct ct_accuracy *a)
 {
+    // Derived: far below the distance of runs in double precision, and four digits apart
     const double tolerance[2] = {1e-26, 1e-22};
+    // Chosen: of what is believed
     const double as_runs_agree = 100; // times the distance of runs in double precision
+    // Derived: 4 units of round-off, with which results are stored
     const double double_rounding = 1e-15;
     double *row[2], *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
     struct ct_sim_options o = a->o->run;
@@ -150,12 +154,13 @@ static void run_quad(struct ct_accuracy *a)
 
 bool ct_accuracy_find_reference(struct ct_accuracy *a)
 {
-    // None is a setting of the table. Loops lose digits below 1e-13; the last
+    // Definition: none is a setting of the table. Loops lose digits below 1e-13; the last
     // one is for mechanisms that no second method gets through.
     struct candidate open[NREFERENCE] = {{.method = "dop853", .rtol = 2e-14},
                                          {.method = "dopri5", .rtol = 7e-14},
                                          {.method = "radau5", .rtol = 5e-13},
                                          {.method = "dop853", .rtol = 3e-13}};
+    // Definition: the same with loops
     struct candidate loops[NREFERENCE] = {{.method = "dop853", .rtol = 3e-13},
                                           {.method = "dopri5", .rtol = 3e-13},
                                           {.method = "radau5", .rtol = 5e-13},
@@ -166,6 +171,7 @@ bool ct_accuracy_find_reference(struct ct_accuracy *a)
         if (i > 1 && a->uncertainty <= (i < NREFERENCE - 1 ? good_agreement : DBL_MAX))
             continue;
         if (i == NREFERENCE - 1 && !c[0].row) // stiff
+            // Definition: the last of the list
             c[i] = (struct candidate){.method = "radau5", .rtol = 1e-11};
         if (!run_candidate(a, &c[i]))
             return false;
@@ -190,6 +196,7 @@ bool ct_accuracy_find_reference(struct ct_accuracy *a)
 
 static bool read_sheet(struct ct_accuracy *a, const char *path, struct ct_sheet *sheet)
 {
+    // Limit: with a message
     const size_t max_bytes = (size_t)1 << 30;
     char *text;
     size_t n;

@@ -21,29 +21,41 @@
 #include <math.h>
 #include <string.h>
 
+// Derived: n eps, n up to some ten thousand
 static const double none = 1e-11; // of the largest eigenvalue: a direction without stiffness
+// Derived: the slope of K is a difference, which has half the digits
 static const double symmetric = 1e-8; // relative
-static const double refined = 1e-13;  // of a factor
+// Derived: 450 units of round-off
+static const double refined = 1e-13; // of a factor
 // Of the first factor: the second load level, for dense and for sparse stiffness. The slope of
 // K is a difference, and round-off of K is large beside it where elements are short: cond(K)
 // eps of the first factor, 1e-4 for 1000 elements.
+// Chosen: a short step has less curvature and more round-off.
 static const double small_load = 1e-2, half_load = 0.5;
 // [rad] An axis that the square of the slope shortens is half as long as it was; what comes
 // beyond is none of a beam's.
+// Definition: of the shortened axis
 static const double steepest = 1;
+// Derived: the root of the unit round-off
 static const double straight = 1e-8; // [rad] round-off of an axis that does not bend
 // Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a
 // step before. Where it is larger at the end, Newton's method has lost the path.
+// Chosen: by trial
 static const double folded = 1e-2;
+// Derived: a step of 1/16, as the first
 static const double behind
     = 1 + 1. / 16; // of the last estimate: its round-off, and a little more
 // Of a factor: from here on a step that is not shorter than half the last one is round-off.
+// Derived: the root of what Newton's method leaves
 static const double nearly = 1e-6;
 // Of a factor: by which those of path and linear problem may differ, so that one leads to the
 // other.
+// Limit: of what is refined instead of searched along the path
 static const double in_proportion = 0.1;
 // Steps along the path: the first against the first estimate, the shortest against the place.
+// Limit: of the steps along the path
 static const double first_step = 1. / 16, shortest_step = 1. / 64;
+// Limit: of the time of the search; what is not found then is told.
 enum {
     MOST_LEVELS = 40,
     MOST_HALVINGS = 30,

@@ -1,5 +1,6 @@
 // Buckling of a system under a load that grows, and its frequencies meanwhile.
 #include "analysis/configuration.h"
+#include "base/pi.h"
 
 #include "analysis/buckling.h"
 #include "analysis/eigenvalues.h"
@@ -9,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+// Default: of factors and load levels that are listed, as docs/cli.md tells. Test: analyses.
 enum { STANDARD_COUNT = 10, LEVELS = 21 };
 
 struct ct_buckling {
@@ -157,7 +159,7 @@ bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *pa
 // Signed: what grows without oscillating counts as negative.
 static double signed_frequency(const struct ct_motion_mode *m)
 {
-    const double pi = 3.14159265358979323846, size = hypot(m->re, m->im) / (2 * pi);
+    const double size = hypot(m->re, m->im) / (2 * CT_PI);
     return m->im == 0 && m->re > 0 ? -size : size;
 }
 

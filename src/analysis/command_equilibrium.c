@@ -25,6 +25,7 @@ struct ct_equilibrium {
 // By the lowest modes on sparse matrices.
 static bool judge_large(struct ct_equilibrium *q, bool *applies)
 {
+    // Limit: of the search for what is free
     enum { COUNT_OF_MODES = 6 };
     struct ct_arena *a = q->own.model;
     struct ct_motion_mode *mode;
@@ -43,6 +44,7 @@ static bool judge_large(struct ct_equilibrium *q, bool *applies)
             continue;
         int most = 0;
         for (int k = 0; k < q->at.l->nu; k++)
+            // Derived: the first of equal ones, whatever the round-off
             if (fabs(mode[i].shape[k]) > fabs(mode[i].shape[most]) * (1 + 1e-9))
                 most = k;
         q->stiffness = w2;
@@ -63,6 +65,7 @@ static bool judge(struct ct_equilibrium *q)
     ct_linear_expand(l, dq, y);
     int most = 0;
     for (int k = 0; k < l->nu; k++)
+        // Derived: the first of equal ones, whatever the round-off
         if (fabs(dq[k]) > fabs(dq[most]) * (1 + 1e-9))
             most = k;
     q->softest = l->nu ? ct_linear_coordinate(q->at.e, a, most) : "";

@@ -160,6 +160,7 @@ static double *full_multipliers(struct ct_linearization *s, const struct motion 
 {
     const struct ct_linear *l = s->at.l;
     const size_t nu = (size_t)l->nu, nrow = (size_t)l->nrow, most = nu > nrow ? nu : nrow;
+    // Derived: rows of unit size, and round-off of J of some 1e-12
     const double tolerance = 1e-9; // of dependent rows, as for the multipliers of the state
     double *lam = matrix(s, nrow, k), *r = matrix(s, nu, k);
     if (!nrow || !nu)

@@ -1,5 +1,6 @@
 // Natural motions about a configuration: the table, the shapes, their picture.
 #include "analysis/modes.h"
+#include "base/pi.h"
 
 #include "analysis/eigenvalues.h"
 #include "formulate/beam/flexible_body.h"
@@ -13,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+// Default: modes that are listed, as docs/cli.md tells. Test: analyses. Layout: of those drawn
 enum { STANDARD_COUNT = 10, MOST_PANELS = 12 };
 
 // ---- finding them ---------------------------------------------------------------------------
@@ -102,12 +104,11 @@ struct ct_mode_info ct_modes_info(const struct ct_modes *s, size_t i)
 {
     if (!s)
         return (struct ct_mode_info){0};
-    const double pi = 3.14159265358979323846;
     if (i >= s->n)
         return (struct ct_mode_info){0};
     const struct ct_motion_mode *m = &s->mode[i];
     const double omega = hypot(m->re, m->im);
-    return (struct ct_mode_info){.frequency_hz = omega / (2 * pi),
+    return (struct ct_mode_info){.frequency_hz = omega / (2 * CT_PI),
                                  .omega = omega,
                                  .damping = m->re != 0 ? -m->re / omega : 0,
                                  .re = m->re,
@@ -301,6 +302,7 @@ static void add_bones(struct skeleton *k, const struct ct_build *b)
 
 static int points_of_beam(const struct ct_flexible *f)
 {
+    // Layout: points along a beam
     enum { FEWEST = 40, MOST = 400 };
     const int n = f->beam->nelement;
     return 1 + (n >= MOST ? MOST : n * (n >= FEWEST ? 1 : (FEWEST + n - 1) / n));
@@ -396,6 +398,7 @@ static double extent(const double *p, size_t n)
 static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
 {
     struct ct_arena *a = s->own.model;
+    // Layout: of a mode against the picture. Derived: differences at 1e-4 have six digits
     const double visible = 0.15, small = 1e-4, largest_turn = 0.5;
     struct skeleton k;
     skeleton_create(&k, s);
@@ -409,6 +412,7 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
         double *p = CT_NEWN(a, double, 2 * k.n + 1);
         const struct ct_mode_info m = ct_modes_info(s, i);
         points_of(&k, y0, s->mode[i].shape, small, p);
+        // Layout: of the picture
         const double size = extent(rest, k.n), unseen = 1e-6 * small * size, // sections turn
             far = farthest(p, rest, k.n), moved = far > unseen ? far / small : 0;
         const double amount = moved > 0 ? fmin(visible * size / moved, largest_turn) : 0;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Derived: 4500 units of round-off
 static const double still = 1e-12; // of rows' rates: round-off
 
 // ---- equations ------------------------------------------------------------------------------
@@ -255,6 +256,7 @@ void *ct_analysis_find(struct ct_ctx *ctx, void *analysis, struct ct_ctx *own,
 
 void ct_configuration_print(const struct ct_configuration *c, FILE *out)
 {
+    // Layout: smaller accelerations are not told
     const double noticeable = 1e-6; // [m/s^2 or rad/s^2]
     if (c->is_equilibrium) {
         fprintf(out, "about         equilibrium, found in %d steps", c->equilibrium.iterations);

@@ -16,9 +16,12 @@
 
 // Directions with less than this of the mass of the others, in coordinates of unit mass each:
 // round-off.
+// Derived: n eps, n up to some thousand
 static const double massless = 1e-12;
 // An entry is zero if it is this small against the largest: what sums of n round-off errors leave.
+// Derived: of products of four factors
 static const double roundoff = 16 * DBL_EPSILON;
+// Derived: second derivatives of large beams lose six digits
 static const double symmetric
     = 1e-9; // relative: derivatives of potentials are symmetric to round-off
 
@@ -268,6 +271,7 @@ static void normalise(double *shape, int nu)
     double size = 0;
     for (int i = 0; i < nu; i++) {
         const double here = hypot(shape[i], shape[i + nu]);
+        // Derived: n eps
         if (here > size * (1 + 1e-9)) { // the first of equal ones, whatever the round-off
             size = here;
             most = i;
@@ -477,6 +481,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
 // as in LAPACK's dgebal.
 static void balance(double *A, double *T, int n, int f)
 {
+    // Limit: passes of balancing, which changes no eigenvalue
     enum { MOST_PASSES = 20 };
     bool is_changed = true;
     for (int pass = 0; pass < MOST_PASSES && is_changed; pass++) {

@@ -11,11 +11,15 @@
 #include <string.h>
 
 // [rad] in one step, against jumping to another equilibrium.
+// Chosen: shorter steps take more of them, longer ones may lead to another equilibrium.
 static const double longest_turn = 0.2;
 // [m] in one step at first; doubled after steps that went well.
+// Limit: of the first steps
 static const double first_length = 0.2;
 // Of a step against the coordinates: their round-off.
+// Derived: 450 units of round-off
 static const double arrived = 1e-13;
+// Limit: with a message
 enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
 
 static void find_turns(struct ct_equilibrium_search *s)
@@ -99,6 +103,7 @@ static bool take_step(struct ct_equilibrium_search *s)
 static bool go(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
+    // Chosen: by trial
     const double before = s->method->slope(s), part = allowed(s), turned_back = 0.5;
     const size_t nu = (size_t)l->nu;
     scale_step(s, part);
@@ -113,6 +118,7 @@ static bool go(struct ct_equilibrium_search *s)
             if (i == 0 && part < 1)
                 s->length *= 2;
             else if (i)
+                // Limit: of the halvings that are remembered
                 s->length = fmax(ct_vector_largest(s->dq, nu), first_length * 1e-6);
             return true;
         }
@@ -141,6 +147,7 @@ static bool has_arrived(double size, double last)
 
 bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
+    // Limit: after which another method is tried
     enum { MOST = 25 };
     struct ct_equilibrium_search s
         = search_create(l, l->M ? &ct_equilibrium_dense : &ct_equilibrium_sparse);
@@ -213,6 +220,7 @@ static bool descend(struct ct_equilibrium_search *s, struct ct_equilibrium_resul
 // Do forces that have no potential act here, as those that turn with a body?
 static bool has_no_potential(const struct ct_linear *l)
 {
+    // Derived: as of symmetric matrices in eigenvalues.c
     const double roundoff = 1e-9; // of the largest stiffness
     double odd = 0, largest = 0;
     for (int j = 0; j < l->nfree; j++)

@@ -5,7 +5,7 @@
 #include "analysis/linearization.h"
 
 /// [m, rad] From here on a step that is not shorter than half the last one ends the search: it
-/// is round-off.
+/// is round-off. Derived: Newton's method goes from there to round-off in one step.
 #define CT_EQUILIBRIUM_FINE 1e-8
 
 struct ct_equilibrium_result {

@@ -11,9 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-// Of the stiffest direction: no stiffness.
+// Of the stiffest direction: no stiffness. Derived: n eps, n up to some ten thousand.
 static const double flat = 1e-11;
-// Of the forces that meet: none along a direction without stiffness.
+// Of the forces that meet: none along a direction without stiffness. Chosen: far above round-off.
 static const double balanced = 1e-9;
 
 static void reserve(struct ct_equilibrium_search *s)
@@ -48,7 +48,9 @@ static void symmetric_part(const struct ct_equilibrium_search *s, double *out, c
 static void find_stiffness(struct ct_equilibrium_search *s)
 {
     const int n = s->l->nfree;
-    const double little = 1e-6; // of the masses: added, so that massless directions have some
+    // Of the masses: added, so that massless directions have some. Chosen: it changes
+    // motion with mass by a millionth.
+    const double little = 1e-6;
     double *W = s->A, mean = 0;
     symmetric_part(s, W, s->l->Mr);
     for (int i = 0; i < n; i++)
@@ -135,6 +137,7 @@ static bool find_step(struct ct_equilibrium_search *s)
         return true;
     memset(y, 0, (size_t)n * sizeof *y);
     for (int k = 0; k < n; k++) {
+        // Limit: a step that is cut to the longest one in any unit
         const double *v = s->V + (size_t)n * (size_t)k, far = 1e30;
         double g = 0, size = 0;
         for (int i = 0; i < n; i++) {

@@ -14,6 +14,7 @@
 
 // Shifts s, of the largest stiffness against the largest mass: from round-off to beyond the
 // stiffest direction.
+// Limit: of the search, twelve factorisations
 static const double first_shift = 1e-12, next_shift = 30;
 enum { MOST_SHIFTS = 12 };
 

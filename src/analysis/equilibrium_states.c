@@ -12,11 +12,15 @@
 #include <string.h>
 
 // [rad] in one step, as for other models.
+// Definition: as in equilibrium.c
 static const double longest_turn = 0.2;
 // Of a step against the coordinates: their round-off.
+// Derived: 450 units of round-off
 static const double arrived = 1e-13;
 // Of the forces that meet: what is left is none.
+// Derived: sums of some hundred forces, against the largest
 static const double balanced = 1e-9;
+// Limit: with a message
 enum { MOST_STEPS = 200, MOST_HALVINGS = 30 };
 
 struct search {

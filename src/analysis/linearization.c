@@ -10,8 +10,10 @@
 #include <math.h>
 #include <string.h>
 
+// Derived: 450 units of round-off
 static const double closed
     = 1e-13; // rows of positions: a few round-off errors of coordinates of order one
+// Limit: with a message
 enum { MOST_NEWTON = 30 };
 
 static size_t larger(size_t a, size_t b)
@@ -104,6 +106,7 @@ bool ct_linear_close(struct ct_linear *l)
     for (int i = 0; i < MOST_NEWTON; i++) {
         ct_evaluator_constraint(m);
         const double left = ct_vector_max_norm(m->phi, m->nrow);
+        // Definition: the tolerance of assembly
         if (!isfinite(left) || (left >= before / 2 && before > 1e-9))
             return false;
         if (left <= closed || left >= before / 2)
@@ -113,6 +116,7 @@ bool ct_linear_close(struct ct_linear *l)
         ct_evaluator_retract(m, l->y, l->r);
         enter(l);
     }
+    // Definition: the tolerance of assembly
     if (!(ct_vector_max_norm(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
         return false;
     if (ct_vector_max_norm(m->v, m->nrow) == 0)
@@ -426,6 +430,7 @@ bool ct_linear_rest(struct ct_linear *l)
 static void accelerate(struct ct_linear *l, double *w, const double *v)
 {
     const int f = l->nfree;
+    // Derived: n eps, n up to some thousand
     const double massless = 1e-12; // of the largest: round-off of a matrix of order one
     double *M = l->Mr, *scale = l->d, *value = l->r;
     memset(M, 0, (size_t)f * (size_t)f * sizeof *M);

@@ -241,8 +241,9 @@ static void find_null_vectors(struct releases *r)
     const size_t nrow = s->m->nrow;
     r->nz = nrow - (size_t)s->rank;
     r->z = CT_NEWN(r->a, double, nrow * r->nz + 1);
+    struct ct_null_space *null_space = ct_null_space_create(r->a, s);
     for (size_t k = 0; k < r->nz; k++)
-        ct_partition_null_vector(s, s->row[(size_t)s->rank + k], r->z + nrow * k);
+        ct_null_space_vector(null_space, s->row[(size_t)s->rank + k], r->z + nrow * k);
 }
 
 // Reactions are linear in the multipliers: their difference with z and with none.
@@ -295,12 +296,13 @@ static void make_comparable(struct releases *r)
 }
 
 // Round-off of sums of some hundred terms against the largest reaction of null vectors.
+// Derived: null vectors are good to 1e-12, and a hundred are added.
 static const double nothing = 1e-9;
 
 // The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much = 0.5;
+    const double much = 0.5; // Chosen: apart from the largest by far more than round-off
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));
@@ -404,12 +406,13 @@ const char *ct_release_text(struct ct_arena *a, const struct ct_loops *l,
     return name;
 }
 
-// ---- for people ---------------------------------------------------------------------------------
+// ---- for people, and for programs ---------------------------------------------------------------
 
 struct printing {
     struct ct_ctx *own;
     struct ct_sim *sim;
     FILE *out;
+    const char *summary; // path; NULL: none
 };
 
 static const char *list_names(struct ct_arena *a, const struct ct_loop *l,
@@ -462,29 +465,91 @@ static void print_releases(const struct printing *p, const struct ct_loops *loop
     fputc('\n', p->out);
 }
 
-static bool print_loops(void *task)
+static void print_loops(const struct printing *p, const struct ct_loops *l)
 {
-    const struct printing *p = task;
+    // Layout: of the list
     enum { MOST_SHOWN = 100 };
-    struct ct_loops l;
-    ct_loops_create(p->own->model, p->sim, &l);
-    for (size_t i = 0; i < l.nloop && i < MOST_SHOWN; i++)
-        print_loop(p, &l, &l.loop[i]);
-    if (l.nloop > MOST_SHOWN)
-        fprintf(p->out, "             %zu more\n", l.nloop - MOST_SHOWN);
-    if (l.nloop > 1 && isfinite(l.near))
+    for (size_t i = 0; i < l->nloop && i < MOST_SHOWN; i++)
+        print_loop(p, l, &l->loop[i]);
+    if (l->nloop > MOST_SHOWN)
+        fprintf(p->out, "             %zu more\n", l->nloop - MOST_SHOWN);
+    if (l->nloop > 1 && isfinite(l->near))
         fprintf(p->out, "all loops    %zu rows, rank %d, smallest singular value %.3g\n",
-                p->sim->system->equations.nrow, l.rank, l.near);
-    print_releases(p, &l);
-    ct_loops_forget(&l);
-    return true;
+                p->sim->system->equations.nrow, l->rank, l->near);
+    print_releases(p, l);
 }
 
-bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out)
+static void write_rows(struct ct_json *j, const char *key, const struct ct_loop *l,
+                       const struct ct_equations *e, const bool *is)
+{
+    ct_json_array(j, key);
+    for (size_t i = 0; i < l->nrow; i++)
+        if (!is || is[l->row[i]])
+            ct_json_text(j, NULL, e->row[l->row[i]].name);
+    ct_json_end(j);
+}
+
+static void write_loop(struct ct_json *j, const struct ct_loops *loops, const struct ct_loop *l)
+{
+    const struct ct_equations *e = &loops->sim->system->equations;
+    ct_json_object(j, NULL);
+    ct_json_text(j, "joint", l->name);
+    ct_json_array(j, "closes");
+    for (size_t i = 1; i < l->nmember; i++)
+        ct_json_text(j, NULL, l->member[i]);
+    ct_json_end(j);
+    write_rows(j, "rows", l, e, NULL);
+    ct_json_integer(j, "rank", l->rank);
+    ct_json_number(j, "smallest_singular_value", l->near);
+    write_rows(j, "redundant", l, e, loops->is_redundant);
+    write_rows(j, "undetermined", l, e, loops->is_open);
+    ct_json_end(j);
+}
+
+static void write_release(struct ct_json *j, const struct ct_loops *l,
+                          const struct ct_release *r)
+{
+    static const char *const motion[] = {"turn", "slide", "remove"};
+    ct_json_object(j, NULL);
+    ct_json_text(j, "joint", l->sim->system->model.joint[r->joint].name);
+    ct_json_text(j, "motion", motion[r->kind]);
+    ct_json_text(j, "axis", r->kind == CT_RELEASE_REMOVE ? NULL : &"x\0y\0z"[2 * r->axis]);
+    ct_json_bool(j, "chosen", r->is_chosen);
+    ct_json_end(j);
+}
+
+static void write_loops(struct ct_json *j, const void *loops)
+{
+    const struct ct_loops *l = loops;
+    ct_json_array(j, "loops");
+    for (size_t i = 0; i < l->nloop; i++)
+        write_loop(j, l, &l->loop[i]);
+    ct_json_end(j);
+    ct_json_number(j, "smallest_singular_value", l->near);
+    ct_json_array(j, "releases");
+    for (size_t i = 0; i < l->nrelease; i++)
+        write_release(j, l, &l->release[i]);
+    ct_json_end(j);
+}
+
+static bool show_loops(void *task)
+{
+    const struct printing *p = task;
+    struct ct_loops l;
+    ct_loops_create(p->own->model, p->sim, &l);
+    if (p->out)
+        print_loops(p, &l);
+    const bool ok
+        = !p->summary || ct_summary_write(p->own, p->sim, p->summary, write_loops, &l);
+    ct_loops_forget(&l);
+    return ok;
+}
+
+bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out, const char *summary)
 {
     struct ct_ctx own = {0};
-    struct printing p = {&own, sim, out};
-    const bool ok = ctx && sim && out && ct_own_enter(ctx, &own, print_loops, &p);
+    struct printing p = {&own, sim, out, summary};
+    const bool ok = ctx && sim && ct_own_enter(ctx, &own, show_loops, &p);
     ct_own_finish(&own);
     return ok;
 }

@@ -16,7 +16,7 @@
 
 #include "sim/sim.h"
 
-/// Rows beyond which nothing is measured over time: a thousand samples then take seconds.
+/// Limit: rows beyond which nothing is measured over time: a thousand samples then take seconds.
 enum { CT_MOST_MEASURED_ROWS = 100 };
 
 struct ct_loop {

@@ -18,14 +18,18 @@
 #include <string.h>
 
 // [m/s^2, rad/s^2] Accelerations below this are round-off: an equilibrium.
+// Derived: n eps of accelerations of order 10, some hundred terms
 static const double still = 1e-9;
 // Of damping against sqrt(largest K * largest M): none.
+// Derived: 4500 units of round-off
 static const double absent = 1e-12;
 // Where K is singular: the shift below zero against the largest K over the largest M. Round-off of
 // K, eps times that, is small beside it. An eigenvalue is zero that is `zero` of the shift: what
 // round-off of 1/theta leaves.
+// Derived: eps / 1e-9 is small beside 1, and 1e-6 a digit above it.
 static const double small_shift = 1e-9, zero = 1e-6;
 // Of K x - K' x against the largest entries: round-off.
+// Derived: 4500 units of round-off
 static const double symmetric = 1e-12;
 
 struct large {
@@ -192,6 +196,7 @@ static void rank(struct large *g, struct pairs *out, struct ranked *order)
 // no more than `count` of them and the one that finds nothing.
 static struct pairs find_pairs(struct large *g, size_t count)
 {
+    // Limit: of a search
     enum { MORE = 2 }; // vectors of a repeated search: a pair of equal ones at once
     const struct ct_operator op = {apply_operator, apply_metric, g};
     const size_t room = g->nu - g->nrow; // of the null space of J, where OP leads
@@ -315,6 +320,7 @@ bool ct_sparse_modes_stiffness(struct ct_linear *l, size_t count, double *w2)
 size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loaded,
                                double factor, size_t count, double *c, double *shape)
 {
+    // Chosen: loads a thousand million times the first are none
     const double none = 1e-9; // of the largest 1/c
     struct ct_arena *a = ct_arena_create_under(l->arena);
     struct large g = large_create(l->ctx, a, l);

@@ -13,8 +13,10 @@
 #include <math.h>
 #include <string.h>
 
+// Derived: n eps, n up to some thousand
 static const double massless
     = 1e-12; // of the largest eigenvalue, in coordinates of unit mass each
+// Derived: as symmetric matrices in eigenvalues.c
 static const double uncoupled = 1e-9; // a damping that small against the largest is not there
 
 static double *matrix(struct ct_arena *a, int n, int m)

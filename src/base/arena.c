@@ -33,9 +33,9 @@ struct ct_arena {
     size_t total;
 };
 
-// Bytes of a chunk with its header: they double from one page to the size of two large pages.
+// Limit: bytes of a chunk with its header, of the number of chunks and of memory that is not used: they double from one page to the size of two large pages.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
+// Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
 // malloc and are zeroed when memory is given out.
 static const size_t least_page_chunk = 1 << 18;
 
@@ -176,6 +176,7 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
 // four doubles do not cross lines.
 static size_t padding(const struct chunk *c, size_t size)
 {
+    // Definition: bytes of a cache line. Limit: of what padding wastes, a quarter
     const size_t line = 64, least = 256;
     return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
 }
@@ -189,7 +190,7 @@ static bool has_room(const struct chunk *c, size_t size)
 // size of the last.
 static struct chunk *next_chunk(struct ct_arena *a, size_t size)
 {
-    const size_t most_padding = 64;
+    const size_t most_padding = 64; // Definition: a cache line
     struct chunk *c = a->head;
     size_t want = c ? 2 * (sizeof *c + c->size) : first_chunk;
     if (want > largest_chunk)
@@ -233,7 +234,7 @@ void *ct_arena_calloc(struct ct_arena *a, size_t n, size_t size)
 
 void *ct_arena_alloc_cache_line(struct ct_arena *a, size_t size)
 {
-    enum { LINE = 64 };
+    enum { LINE = 64 }; // Definition: bytes of a cache line
     char *p = ct_arena_calloc(a, size + LINE, 1);
     return p + (LINE - (uintptr_t)p % LINE) % LINE;
 }
@@ -308,7 +309,7 @@ char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
 // touched: what is left behind is memory, what is never used is not.
 static size_t next_cap(size_t cap, size_t size)
 {
-    const size_t least = 8;
+    const size_t least = 8; // Limit: of memory
     return !cap ? least : cap < largest_chunk / 8 / size ? 2 * cap : 8 * cap;
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Nobody reads on after so many; the rest is counted.
+// Limit: nobody reads on after so many; the rest is counted.
 enum { MOST_KEPT = 100 };
 
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
@@ -61,7 +61,7 @@ static void print_plain(const char *text, FILE *out)
     }
 }
 
-// Of a long line so much is shown, and so much of it before the column.
+// Layout: of a long line so much is shown, and so much of it before the column.
 enum { EXCERPT = 250, EXCERPT_BEFORE = 60 };
 
 static bool skip_lines(FILE *f, int n)
@@ -145,7 +145,7 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
 // Edit distance with adjacent swaps, given up beyond `limit`. Names are short: quadratic is fine.
 static size_t edit_distance(const char *a, const char *b, size_t limit)
 {
-    enum { LONGEST = 63 };
+    enum { LONGEST = 63 }; // Limit: of names that are compared
     const size_t na = strlen(a), nb = strlen(b);
     if (na > LONGEST || nb > LONGEST || (na > nb ? na - nb : nb - na) > limit)
         return limit + 1;

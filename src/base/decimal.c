@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+// Definition: of the powers of ten in the table
 enum { LEAST = -292, MOST = 324 };
 
 static const uint64_t power[MOST - LEAST + 1][2] = {
@@ -98,7 +99,7 @@ static struct ct_decimal shortest(uint64_t c, int q, bool is_power_of_two)
 
 struct ct_decimal ct_decimal_shortest(double v)
 {
-    enum { STORED = 52, BIAS = 1075 };
+    enum { STORED = 52, BIAS = 1075 }; // Definition: of IEEE doubles
     uint64_t bits;
     memcpy(&bits, &v, sizeof bits);
     const uint64_t hidden = UINT64_C(1) << STORED, fraction = bits & (hidden - 1);
@@ -164,7 +165,7 @@ static size_t copy_word(char *text, const char *word)
 
 size_t ct_decimal_format(char text[CT_DECIMAL_SIZE], double v)
 {
-    enum { LEAST_PLAIN = -4, MOST_PLAIN = 16 }; // exponents, as of %.17g
+    enum { LEAST_PLAIN = -4, MOST_PLAIN = 16 }; // Definition: exponents, as of %.17g
     if (isnan(v))                               // its sign differs between machines
         return copy_word(text, "nan");
     if (isinf(v))

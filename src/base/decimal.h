@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { CT_DECIMAL_SIZE = 32 };
+enum { CT_DECIMAL_SIZE = 32 }; // Limit: of a text; the longest has 24 characters
 
 /// digits 10^exponent; the last digit is not 0, unless it is the only one.
 struct ct_decimal {

@@ -9,7 +9,7 @@
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #include <sys/mman.h>
 
-// Pages of the processor; a size for its large ones; how much is asked for at once.
+// Definition: pages of the processor and its large ones. Limit: how much is asked for at once.
 static const size_t page = 1 << 12, large_page = 1 << 21, ahead = 1 << 16;
 
 static size_t round_up(size_t n, size_t to)

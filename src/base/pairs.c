@@ -3,9 +3,10 @@
 
 #include <stdint.h>
 
-// Each half is spread by a multiplication with 2^64 / golden ratio; Knuth (1998), 6.4.
+// Definition: each half is spread by a multiplication with 2^64 / golden ratio; Knuth (1998), 6.4.
 static size_t hash(int a, int b)
 {
+    // Definition: 2^64 / golden ratio
     const uint64_t spread = UINT64_C(0x9e3779b97f4a7c15);
     const uint64_t h = ((uint64_t)(uint32_t)a * spread ^ (uint64_t)(uint32_t)b) * spread;
     return (size_t)(h >> 32);

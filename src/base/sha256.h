@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-enum { CT_SHA256_SIZE = 32 };
+enum { CT_SHA256_SIZE = 32 }; // Definition: bytes of a digest
 
 /// digest (out) of n bytes.
 void ct_sha256(const unsigned char *b, size_t n, unsigned char digest[CT_SHA256_SIZE]);

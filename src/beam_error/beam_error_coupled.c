@@ -1,5 +1,6 @@
 // See beam_error_coupled.h.
 #include "beam_error/beam_error_coupled.h"
+#include "base/pi.h"
 #include "expr/tape.h"
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -12,12 +13,12 @@
 enum {
     MOST = CT_BEAM_ERROR_COUPLED_MOST,
     SIZE = MOST + CT_BENDING_SHAPES,
-    MOST_BODIES = 40,
-    MOST_MODES = 16,
-    MOST_STEPS = 100, // of one move
-    PASSES = 4,       // of the midpoint's forces
-    BASE = 9,         // angular velocity, velocity, weight per mass; axes of the beam
-    MOTION = 6
+    MOST_BODIES = 40, // Limit: of the time of an estimate; larger systems have that of the beam
+    MOST_MODES = 16,  // Limit: the same
+    MOST_STEPS = 100, // Limit: of one move
+    PASSES = 4,       // Limit: of the midpoint's forces
+    BASE = 9,  // Definition: angular velocity, velocity, weight per mass; axes of the beam
+    MOTION = 6 // Definition: their rates
 };
 
 struct ct_beam_error_coupled {
@@ -384,6 +385,7 @@ static double unsettled(const struct ct_beam_error_coupled *p, int n, const stru
 static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal *s, int model,
                  double t, double h)
 {
+    // Chosen: see the comments beside
     const double settled = 1e-5,
                  allowed = 1e-3; // far below the errors asked for; a tenth of their limit
     const struct ct_beam_error_coupled *p = r->p;
@@ -457,6 +459,7 @@ static double yield(const struct ct_beam_error_coupled_run *r,
 void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
                                  struct ct_beam_error_modal *s)
 {
+    // Limit: of the steps; seven times as quick
     const double most = 0.98; // seven times as quick
     const struct ct_beam_error_coupled *p = r->p;
     memcpy(r->value, p->value, p->nvalue * sizeof *r->value);
@@ -480,18 +483,21 @@ void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
 // Shorter steps are not worth their while: what is too fast for them is carried along.
 static double finest(const struct ct_beam_error_modal *s)
 {
-    const double per_period = 256, two_pi = 6.283185307179586;
+    // Derived: an error of (2 pi/256)^2 / 24 a step, 2.5e-5
+    const double per_period = 256;
     double slowest = INFINITY;
     for (int i = 0; i < s->n; i++)
         slowest = fmin(slowest, s->shape[i].omega2);
-    return two_pi / sqrt(slowest) / per_period;
+    return 2 * CT_PI / sqrt(slowest) / per_period;
 }
 
 void ct_beam_error_coupled_advance(struct ct_beam_error_coupled_run *r,
                                    struct ct_beam_error_modal *s, double t, double glance)
 {
     const double from = s->t,
-                 asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
+                 // Derived: an interval that is a whole number of steps but for round-off of
+        // time
+        asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
                  n = fmin(asked, MOST_STEPS);
     for (double i = 0; i < n && !r->is_lost; i++) {
         for (int m = 0; m < CT_BEAM_MODELS; m++)

@@ -16,6 +16,7 @@
 #include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
 
+// Limit: of the time of an estimate; systems beyond have that of the beam alone
 enum { CT_BEAM_ERROR_COUPLED_MOST = 12 }; // speeds of the scene, beams rigid
 
 struct ct_beam_error_coupled;

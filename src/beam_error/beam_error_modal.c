@@ -1,5 +1,6 @@
 // See beam_error_modal.h.
 #include "beam_error/beam_error_modal.h"
+#include "base/pi.h"
 
 #include <float.h>
 #include <math.h>
@@ -11,6 +12,7 @@ static void kernel(double h, double W, double c, double *C, double *S)
     const double r2 = W - 0.25 * c * c, r = sqrt(fabs(r2)),
                  decay = c != 0 ? exp(-0.5 * c * h) : 1;
     *C = decay * (r2 > 0 ? cos(r * h) : cosh(r * h));
+    // Derived: the square of it is below the unit round-off
     *S = decay * (r * h < 1e-8 ? h : (r2 > 0 ? sin(r * h) : sinh(r * h)) / r);
 }
 
@@ -18,6 +20,7 @@ static void kernel(double h, double W, double c, double *C, double *S)
 static double kernel_sum(double h, double W, double c, double C, double S)
 {
     double C_half, S_half;
+    // Derived: what the series leaves out is of order (W h^2)^2, 1e-8
     if (fabs(W) * h * h > 1e-4)
         return (1 - C - 0.5 * c * S) / W;
     kernel(0.5 * h, W, c, &C_half, &S_half);
@@ -37,6 +40,7 @@ static void step_linear(double x[2], double h, double W, double c, double F)
 // x^2, of what has grown beyond all bounds a number still
 static double square(double x)
 {
+    // Limit: of a number whose square is finite
     const double most = 1e200;
     return fmin(x * x, most);
 }
@@ -47,9 +51,10 @@ static double square(double x)
 static void step_nonlinear(double x[2], double h, double W, double c, double F, double b,
                            double g)
 {
+    // Chosen: pieces of a period
     enum { PIECES = 16, MOST_PIECES = 64 }; // of a period; at most
-    const double two_pi = 6.283185307179586;
-    const int n = 1 + (int)fmin(MOST_PIECES - 1, h * sqrt(fabs(W)) * PIECES / two_pi);
+    const int n = 1 + (int)fmin(MOST_PIECES - 1, h * sqrt(fabs(W)) * PIECES / (2 * CT_PI));
+    // Derived: of the nonlinear part, whose square is left out
     const double small = 1e-3, half = 0.5 * h / n,
                  amplitude2 = square(x[0]) + square(x[1]) / fmax(W, DBL_MIN);
     if (n > 1 && W > 0 && (b + 2 * g / W) * amplitude2 < small) {
@@ -216,6 +221,7 @@ void ct_beam_error_modal_reset_base(struct ct_beam_error_modal *s, const double 
 // monotonically.
 static double static_amplitude(double W, double g, double F)
 {
+    // Limit: of the steps of Newton's method
     enum { MOST = 60 };
     double x = F / W;
     for (int i = 0; i < MOST && g > 0 && W > 0; i++)
@@ -249,6 +255,7 @@ void ct_beam_error_modal_compare(struct ct_beam_error_modal *s, const double end
 
 double ct_beam_error_modal_error(const struct ct_beam_error_modal *s, enum ct_beam_model model)
 {
+    // Chosen: half of the tenth to which an estimate is told
     const double tolerated
         = 0.05; // nothing is known of the error of that part, which is no more than itself
     const bool is_followed

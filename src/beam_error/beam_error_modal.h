@@ -33,6 +33,7 @@
 #include "formulate/bending_mode.h"
 
 /// Beyond it the linear beam is wrong altogether, and no figure is given.
+/// Definition: the whole deflection
 #define CT_ESTIMATED_ERROR_LIMIT 1.0
 
 enum ct_beam_model {

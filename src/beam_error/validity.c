@@ -1,5 +1,6 @@
 // See validity.h.
 #include "beam_error/validity.h"
+#include "base/pi.h"
 #include "expr/tape.h"
 #include "beam_error/bending_modes.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -9,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+// Limit: of the time of an estimate. Definition: a prime, so that other instants are met
 enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 8000, OTHER_INSTANTS = 5003 };
-static const double two_pi = 6.283185307179586;
 
 // eta of a plane
 static ct_ex indicator(struct ct_exs *x, const struct ct_base *m, const struct ct_beam_mode *s)
@@ -73,10 +74,11 @@ void ct_validity_begin(const struct ct_validity *v, const double *start,
 
 double ct_validity_interval(const struct ct_validity *v)
 {
+    // Derived: 32 and 8 instants of a period, of which the largest errs by 0.5 % and 8 %
     const double of_first = 1.0 / 32, of_each = 1.0 / 8;
-    double shortest = of_first * two_pi / v->omega;
+    double shortest = of_first * 2 * CT_PI / v->omega;
     for (int i = 0; i < v->nshape; i++)
-        shortest = fmin(shortest, of_each * two_pi / sqrt(v->shape[i].mode.omega2));
+        shortest = fmin(shortest, of_each * 2 * CT_PI / sqrt(v->shape[i].mode.omega2));
     return shortest;
 }
 
@@ -203,6 +205,7 @@ static bool simulate_modes(struct ct_build *b, const struct ct_validity *v, int 
 
 static bool is_alike(double a, double b)
 {
+    // Chosen: estimates are good to about a third
     const double factor = 1.5;
     return (isnan(a) && isnan(b)) || (a <= factor * b && b <= factor * a)
         || (a > CT_ESTIMATED_ERROR_LIMIT && b > CT_ESTIMATED_ERROR_LIMIT);

@@ -14,6 +14,7 @@ static bool report(struct ct_ctx *ctx, const struct ct_accuracy *a, const struct
     return ok;
 }
 
+// Limit: with a message
 enum { MOST = 16 }; // entries of a list, so 256 variants
 
 // Entries of "a,b,c", in place; returns their number, 0 for NULL, -1 for too many.

@@ -129,6 +129,8 @@ const struct cli_option cli_options[] = {
      "terminal,graph,tree,cutset,circuit,reduced;\n"
      "standard is tree,reduced",
      "all terminal graph tree cutset circuit reduced"},
+    {"full", 0, NULL, CLI_FLAG, FIELD(full), CLI_EQUATIONS, false,
+     "all lines of lists, of systems of more than 100 speeds, too"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_EQUATIONS, false,
      "text, latex, html, c or json", "text latex html c json"},
     {"format", 0, "FORMAT", CLI_TEXT, FIELD(format), CLI_GRAPH, false,
@@ -188,6 +190,7 @@ static bool parse_time(const char *text, double *v)
 
 static bool parse_integer(const char *text, long least, long *v)
 {
+    // Limit: with a message
     const long most = 1000000000; // what the model file allows
     char *end;
     errno = 0;
@@ -486,6 +489,7 @@ static bool check_files(const struct parser *p)
     const char *const file[]
         = {args->output, args->summary,   args->plot, args->curve,   args->report,
            args->model,  args->reference, args->tree, args->members, args->input};
+    // Definition: of the list below
     enum { WRITTEN = 5 };
     for (size_t i = 0; i < WRITTEN; i++)
         for (size_t j = i + 1; j < CLI_COUNT(file); j++)

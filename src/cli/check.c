@@ -7,11 +7,8 @@ static bool check(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args 
     if (!o)
         return false;
     ct_sim_print_check(sim, ct_output_stream(o));
-    bool ok = ct_sim_print_loops(ctx, sim, ct_output_stream(o));
-    ok = ct_output_close(ctx, o, ok);
-    if (ok && args->summary)
-        ok = ct_sim_write_summary(ctx, sim, args->summary);
-    return ok;
+    const bool ok = ct_sim_print_loops(ctx, sim, ct_output_stream(o), args->summary);
+    return ct_output_close(ctx, o, ok);
 }
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)

@@ -31,8 +31,8 @@ struct cli_args {
     long samples, count, sample, threads, lanes, per_decade, shard, shards;
     unsigned long long seed;
     bool has_time; // --time 0 is a time, too
-    bool accuracy, trace, trees, hold, hold_drivers, keep_all, resume, verify, quiet, help,
-        version,
+    bool accuracy, trace, trees, full, hold, hold_drivers, keep_all, resume, verify, quiet,
+        help, version,
         no_memory; // while it was read
 };
 

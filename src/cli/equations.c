@@ -11,8 +11,9 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
         return CLI_USAGE;
     struct ct_system *sys = cli_load(ctx, args);
     struct ct_output *o = sys ? ct_output_open(ctx, args->output) : NULL;
-    const bool ok
-        = o && ct_system_print_equations(ctx, sys, args->show, format, ct_output_stream(o));
+    const bool ok = o
+                 && (args->full ? ct_system_print_equations : ct_system_summarize_equations)(
+                        ctx, sys, args->show, format, ct_output_stream(o));
     int status = ct_output_close(ctx, o, ok) ? CLI_DONE : CLI_FAILED;
     if (status == CLI_DONE && !cli_summarize(ctx, sys, args))
         status = CLI_FAILED;
@@ -31,7 +32,10 @@ const struct cli_command cli_equations = {
             "connected (graph), what becomes a coordinate (tree), balances (cutset), closures "
             "(circuit)\n"
             "and the result (reduced). The format follows the suffix of -o when --format is "
-            "not given.\n",
+            "not given.\n"
+            "Systems of more than 100 speeds are printed in recursive form; lists show their "
+            "first and\n"
+            "last lines unless --full is given.\n",
     .examples = {"cotree equations pendulum.yaml --show all",
                  "cotree equations four_bar.yaml --tree joints -o four_bar.tex"},
     .run = run,

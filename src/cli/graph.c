@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 // A minute: graphs of thousands of edges are drawn in seconds.
+// Limit: of the time of a picture, with a message; and [ms] between looks at it
 enum { MOST_SECONDS = 60, LOOK_MS = 50 };
 
 // Graphviz reads what is in `source` and writes to `out`.

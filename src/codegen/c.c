@@ -193,6 +193,7 @@ static bool has_label(const struct writer *w, uint32_t v)
 // Inline short sums and products with one reader in the same function.
 static bool stands_within(const struct writer *w, uint32_t v, const char *text)
 {
+    // Layout: characters of an expression that stands where it is used
     enum { LONGEST = 40 };
     return w->nread[v] == 1 && w->crossing[v] == none && !w->first_output[v] && !has_label(w, v)
         && strlen(text) <= LONGEST;

@@ -7,6 +7,7 @@
 #include "codegen/reroll.h"
 #include "codegen/x86.h"
 
+// Definition: vector registers of AVX2
 enum { CT_NREGISTER = 16 };
 
 // Beyond CT_AREA_WORK: what a stream of a loop points at.

@@ -110,5 +110,7 @@ bool ct_export_has_derived(const struct ct_export *x);
 struct ct_export_text;
 /// What does not depend on the model but for sizes: solving, projecting, stepping.
 void ct_export_runtime(struct ct_export_text *t, const struct ct_export *x);
+/// The function next_stop: to the next of nknot kinks of tables, or to the end.
+void ct_export_put_next_stop(struct ct_export_text *t, size_t nknot);
 
 #endif

@@ -9,28 +9,7 @@
 // ---- FMI 2.0 ----------------------------------------------------------------------------------
 
 static const char text_two[]
-    = "/* The functions of FMI 2.0 for model exchange and co-simulation. */\n"
-      "#include <stddef.h>\n"
-      "#include <stdlib.h>\n"
-      "#include <string.h>\n"
-      "\n"
-      "#ifdef FMI2_FUNCTION_PREFIX /* for linking several models into one program */\n"
-      "#define PASTE(a, b) a##b\n"
-      "#define NAME_OF(a, b) PASTE(a, b)\n"
-      "#define F(name) NAME_OF(FMI2_FUNCTION_PREFIX, name)\n"
-      "#define API\n"
-      "#else\n"
-      "#define F(name) name\n"
-      "#ifdef _WIN32\n"
-      "#define API __declspec(dllexport)\n"
-      "#elif defined(__GNUC__)\n"
-      "#define API __attribute__((visibility(\"default\")))\n"
-      "#else\n"
-      "#define API\n"
-      "#endif\n"
-      "#endif\n"
-      "\n"
-      "typedef void *fmi2Component;\n"
+    = "typedef void *fmi2Component;\n"
       "typedef void *fmi2FMUstate;\n"
       "typedef unsigned int fmi2ValueReference;\n"
       "typedef double fmi2Real;\n"
@@ -491,30 +470,7 @@ static const char *const text_twofunctions[] = {
 // ---- FMI 3.0 ----------------------------------------------------------------------------------
 
 static const char text_three[]
-    = "/* The functions of FMI 3.0 for model exchange and co-simulation. */\n"
-      "#include <stdbool.h>\n"
-      "#include <stddef.h>\n"
-      "#include <stdint.h>\n"
-      "#include <stdlib.h>\n"
-      "#include <string.h>\n"
-      "\n"
-      "#ifdef FMI3_FUNCTION_PREFIX /* for linking several models into one program */\n"
-      "#define PASTE(a, b) a##b\n"
-      "#define NAME_OF(a, b) PASTE(a, b)\n"
-      "#define F(name) NAME_OF(FMI3_FUNCTION_PREFIX, name)\n"
-      "#define API\n"
-      "#else\n"
-      "#define F(name) name\n"
-      "#ifdef _WIN32\n"
-      "#define API __declspec(dllexport)\n"
-      "#elif defined(__GNUC__)\n"
-      "#define API __attribute__((visibility(\"default\")))\n"
-      "#else\n"
-      "#define API\n"
-      "#endif\n"
-      "#endif\n"
-      "\n"
-      "typedef void *fmi3Instance;\n"
+    = "typedef void *fmi3Instance;\n"
       "typedef void *fmi3InstanceEnvironment;\n"
       "typedef void *fmi3FMUState;\n"
       "typedef uint32_t fmi3ValueReference;\n"
@@ -1131,8 +1087,40 @@ static const char *const text_threefunctions[] = {
     "\n",
     NULL};
 
+static void put_preamble(struct ct_export_text *t, int version)
+{
+    ct_export_putf(
+        t,
+        "/* The functions of FMI %d.0 for model exchange and co-simulation. */\n"
+        "%s"
+        "#include <stddef.h>\n"
+        "%s"
+        "#include <stdlib.h>\n"
+        "#include <string.h>\n"
+        "\n"
+        "#ifdef FMI%d_FUNCTION_PREFIX /* for linking several models into one program */\n"
+        "#define PASTE(a, b) a##b\n"
+        "#define NAME_OF(a, b) PASTE(a, b)\n"
+        "#define F(name) NAME_OF(FMI%d_FUNCTION_PREFIX, name)\n"
+        "#define API\n"
+        "#else\n"
+        "#define F(name) name\n"
+        "#ifdef _WIN32\n"
+        "#define API __declspec(dllexport)\n"
+        "#elif defined(__GNUC__)\n"
+        "#define API __attribute__((visibility(\"default\")))\n"
+        "#else\n"
+        "#define API\n"
+        "#endif\n"
+        "#endif\n"
+        "\n",
+        version, version == 3 ? "#include <stdbool.h>\n" : "",
+        version == 3 ? "#include <stdint.h>\n" : "", version, version);
+}
+
 void ct_export_fmi_types(struct ct_export_text *t, int version)
 {
+    put_preamble(t, version);
     ct_export_put(t, version == 2 ? text_two : text_three);
 }
 

@@ -462,15 +462,6 @@ static const char text_noevents[] = "static int change(double *in, double *work)
                                     "}\n"
                                     "\n";
 
-static const char text_nostops[]
-    = "static double next_stop(double t, double end, int *is_kink)\n"
-      "{\n"
-      "    (void)t;\n"
-      "    *is_kink = 0;\n"
-      "    return end;\n"
-      "}\n"
-      "\n";
-
 static const char text_separate[]
     = "/* A root that is zero belongs to either side: moved off by a little to the side that "
       "its switch stands for, it changes its\n"
@@ -573,7 +564,7 @@ const char *ct_export_fmu(struct ct_arena *a, const struct ct_export *x,
     put_program(&t, "along_outputs", f->along_outputs);
     ct_export_put_named(&t, x->e->nmemory ? text_startmemory : text_nostartmemory);
     if (!ct_export_has_events(x)) {
-        ct_export_put_named(&t, text_nostops);
+        ct_export_put_next_stop(&t, 0);
         ct_export_put_named(&t, text_noevents);
     }
     ct_export_put_named(&t, ct_export_has_events(x) ? text_separate : text_noseparate);

@@ -950,6 +950,11 @@ static void put_memory(struct ct_export_text *t, const struct ct_equations *e)
     put(t, e->nmemory ? text_memory : text_nomemory);
 }
 
+void ct_export_put_next_stop(struct ct_export_text *t, size_t nknot)
+{
+    put(t, nknot ? text_theknots : text_nostops);
+}
+
 static void put_changes(struct ct_export_text *t, const struct ct_export *x)
 {
     put(t, x->nknot ? text_beforeend : text_atend);
@@ -959,7 +964,7 @@ static void put_changes(struct ct_export_text *t, const struct ct_export *x)
         ct_export_putf(t, "enum { n_knot = %zu };\n", x->nknot);
         put_numbers(t, "knot", x->knot, x->nknot);
     }
-    put(t, x->nknot ? text_theknots : text_nostops);
+    ct_export_put_next_stop(t, x->nknot);
     put(t, x->jump ? text_impulse : text_nojump);
 }
 

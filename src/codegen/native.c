@@ -18,6 +18,7 @@
 
 // Instructions from which products and sums are contracted to fused operations: shorter programs
 // keep the bits of the tape.
+// Default: the bits of the tape against shorter programs. Test: native.
 static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);
@@ -161,6 +162,7 @@ static void unmap(void *native)
 // Copy code to memory of its own and make that executable.
 static bool map(struct ct_native *f, const unsigned char *byte, size_t n)
 {
+    // Definition: bytes of the smallest pages
     const size_t page = 4096; // mmap rounds up where pages are larger
     f->nmemory = (n + page - 1) / page * page;
     f->memory

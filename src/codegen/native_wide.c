@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { HALF = CT_NATIVE_WIDE_LANES / 2 };
+enum { HALF = CT_NATIVE_WIDE_LANES / 2 }; // Definition: lanes of a half
 
 struct ct_native_wide {
     const struct ct_native *four;

@@ -8,6 +8,7 @@
 
 #include "codegen/native.h"
 
+// Definition: two vectors of four
 enum { CT_NATIVE_WIDE_LANES = 8 };
 
 struct ct_native_wide;

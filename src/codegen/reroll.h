@@ -20,11 +20,12 @@
 
 #include "expr/listing.h"
 
-/// Strides that one loop can have: as many registers are free for them (x86.c).
+/// Definition: strides that one loop can have, as many registers are free for them (x86.c).
 enum { CT_REROLL_STREAMS = 7 };
-/// Rows that are done together: doubles in a vector of 256 bits.
+/// Definition: rows that are done together, doubles in a vector of 256 bits.
 enum { CT_ROWS_TOGETHER = 4 };
 /// Instructions that a first-level instruction cache of 32 KiB holds, about 8 bytes each.
+/// Derived: 32 KiB / 8 B
 enum { CT_REROLL_CACHED = 4096 };
 
 enum ct_reach {

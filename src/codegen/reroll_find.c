@@ -7,6 +7,7 @@ static const uint32_t none = CT_VALUE_NONE;
 // Instructions of the rolling hash; distances to operands within it are part of the hash. Costs
 // time only: ten times as many find the same loops but for rows that are shorter, a tenth leaves
 // more windows to compare.
+// Limit: of the time of the search
 enum { WINDOW = 16 };
 
 static bool is_commutative(unsigned op)
@@ -57,6 +58,7 @@ static void link_windows(struct ct_repetitions *p)
         size *= 2;
     uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // 1 + place, by hash
     // h = sum of sign[i + k] base^k over the window, moved on by one place
+    // Definition: 2^64 / golden ratio, odd
     const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
     uint64_t h = 0, leaving = 1;
     for (int k = 0; k < WINDOW; k++)
@@ -72,7 +74,7 @@ static void link_windows(struct ct_repetitions *p)
     }
 }
 
-// Instructions that a loop adds to each row at most: strides are added, the end is compared and
+// Derived: instructions that a loop adds to each row at most: strides are added, the end is compared and
 // branched on. What is saved is about as much for each instruction that is not fetched.
 enum { ADDED = CT_REROLL_STREAMS + 2 };
 

@@ -62,6 +62,7 @@ static void find_live_out(const struct ct_repetitions *p)
 
 // Parts of a distributed loop whose rows are done side by side. Costs time only: on the twelve
 // largest references and systems 6 and 60 give the same loops, 1 gives a tenth fewer.
+// Limit: passes over the instructions of a loop
 enum { MOST_PARTS = 2 };
 
 static bool reads_itself(const struct ct_repetitions *p, const struct ct_repetition *r,
@@ -161,10 +162,11 @@ static uint32_t strip_of(uint32_t count, uint32_t lanes)
     return 0;
 }
 
-// Cost model of vectorisation in instructions: a gather of four doubles takes five (two pairs of
+// Derived: cost model of vectorisation in instructions: a gather of four doubles takes five (two pairs of
 // loads and a merge), a value handed between parts two (store and load).
 static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
 {
+    // Derived: as above
     enum { GATHER = 5, HAND_OVER = 2 };
     for (size_t i = 0; i < p->nrepetition && lanes > 1; i++) {
         struct ct_repetition *r = &p->repetition[i];

@@ -193,6 +193,7 @@ static void emit_sign_bit(struct ct_emitter *e, const struct ct_instruction *i, 
     ct_put_bitwise(&e->code, op, result(e, i), a, ct_in_pool(c));
 }
 
+// Definition: opcodes
 enum { AND = 0x54, XOR = 0x57 };
 enum { EQ_OQ = 0x00, NEQ_UQ = 0x04, LT_OQ = 0x11, LE_OQ = 0x12, GE_OQ = 0x1D, GT_OQ = 0x1E };
 
@@ -553,6 +554,7 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                            .place_size = 8 * (uint32_t)lanes,
                            .width = 1};
     const bool any_call = ct_emitter_order(&e);
+    // Limit: of memory at first, which grows
     const size_t usual = 10; // bytes of an instruction, a load or store counted in
     e.code.cap = usual * e.norder + 512;
     e.code.byte = CT_NEWN(a, unsigned char, e.code.cap);

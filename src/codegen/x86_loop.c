@@ -165,6 +165,7 @@ static void start_streams(struct body *b, const struct ct_loop *loop)
 // In SIMD lanes the results of a row fill several cache lines, prefetched by the row before.
 static void fetch_next_row(struct body *b)
 {
+    // Definition: bytes of a cache line
     enum { LINE = 64 };
     for (unsigned k = 0; k < b->nstream && b->e.code.lanes > 1; k++) {
         int32_t first = INT32_MAX, last = INT32_MIN;

@@ -125,7 +125,7 @@ static void order(double *a, double *b)
 // I is diagonal.
 static void principal_moments(const double I[6], double lam[3])
 {
-    enum { SWEEPS = 8 }; // Derived: they converge quadratically, three digits in the first four
+    enum { SWEEPS = 8 }; // Limit: of Jacobi's sweeps, which converge quadratically
     double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
     for (int n = 0; n < SWEEPS; n++)
         for (int k = 2; k >= 0; k--)

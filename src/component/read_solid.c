@@ -14,17 +14,16 @@ static const char wanted_shape[]
 
 // ---- colours ----------------------------------------------------------------------------------
 
-// The basic colours of CSS, and some that machines have; values of CSS.
-static const char *const colour_names[]
-    = {"aqua",   "black", "blue",   "brown",  "cyan",   "fuchsia", "gold",      "gray",
-       "green",  "grey",  "lime",   "maroon", "navy",   "olive",   "orange",    "pink",
-       "purple", "red",   "silver", "tan",    "teal",   "white",   "yellow",    "lightgray",
-       "indigo", "coral", "salmon", "khaki",  "violet", "skyblue", "steelblue", "darkgray"};
-static const char *const colour_values[COUNT(colour_names)]
-    = {"#00ffff", "#000000", "#0000ff", "#a52a2a", "#00ffff", "#ff00ff", "#ffd700", "#808080",
-       "#008000", "#808080", "#00ff00", "#800000", "#000080", "#808000", "#ffa500", "#ffc0cb",
-       "#800080", "#ff0000", "#c0c0c0", "#d2b48c", "#008080", "#ffffff", "#ffff00", "#d3d3d3",
-       "#4b0082", "#ff7f50", "#fa8072", "#f0e68c", "#ee82ee", "#87ceeb", "#4682b4", "#a9a9a9"};
+#define COLOR(name, value) #name,
+static const char *const colour_names[] = {
+#include "component/colors.def"
+};
+#undef COLOR
+#define COLOR(name, value) value,
+static const char *const colour_values[COUNT(colour_names)] = {
+#include "component/colors.def"
+};
+#undef COLOR
 
 // "#rgb" and "#rrggbb" as the latter; NULL: neither.
 static const char *read_digits(struct ct_arena *a, const char *text)
@@ -52,7 +51,7 @@ static bool read_color(struct ct_reader *r, const struct ct_node *node, const ch
         return true;
     const char *near = ct_read_suggestion(r, node->text, colour_names, COUNT(colour_names));
     return ct_error(r->ctx, node->mark, CT_E_WORD, "unknown colour '%s'%s", node->text,
-                    *near ? near : "; a name as in CSS, or \"#rrggbb\" in quotes, is wanted");
+                    *near ? near : "; a name of CSS, or \"#rrggbb\" in quotes, is wanted");
 }
 
 // ---- sizes ------------------------------------------------------------------------------------

@@ -40,6 +40,7 @@ static void write3(const struct work *w, const char *key, ct_ex3 v)
 // [pose, x, y, z]; lengths below round-off of the others are zero
 static void write_place(const struct work *w, const char *key, int pose, const double at[3])
 {
+    // Derived: 45 units of round-off of a rotation
     const double roundoff = 1e-14, size = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
     double v[4] = {pose};
     for (int i = 0; i < 3; i++)
@@ -262,6 +263,7 @@ static double size_of(const struct ct_animation *m)
 // What cannot be seen. Deflections of beams may be shown a hundred times as large.
 static double *find_resolution(const struct work *w)
 {
+    // Layout: of the picture
     const double seen = 1e-6; // of the picture, which so may be enlarged a thousand times
     const double enlarged = 100;
     const double seen_force = 1e-4; // of the largest: arrows

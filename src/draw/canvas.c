@@ -1,5 +1,6 @@
 // See canvas.h.
 #include "draw/canvas.h"
+#include "base/pi.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,11 +8,13 @@
 const char *const ct_palette[]
     = {"#0072b2", "#d55e00", "#009e73", "#aa4499", "#56b4e9", "#c07800"};
 
+// Layout: of the picture
 static const double cell = 2; // [px]
 
 // Places far outside, and those that are not known, are not worth an overflow.
 static int tenths(double px)
 {
+    // Layout: of the picture
     const double far = 1e6; // [px]
     return isnan(px) ? 0 : (int)lround(10 * fmax(-far, fmin(far, px)));
 }
@@ -69,6 +72,7 @@ static void take(struct ct_canvas *c, int column, int row)
 
 static int cell_of(double px)
 {
+    // Layout: of the picture
     const double far = 1e6;
     return (int)floor(fmax(-far, fmin(far, px)) / cell);
 }
@@ -163,6 +167,7 @@ static void keep_farthest(const struct ct_spot *p, size_t first, size_t last, do
 
 size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double most)
 {
+    // Limit: of the stack
     enum { PIECE = 500 }; // bounds the depth of the recursion, and its cost for what is rough
     bool *keep = CT_NEWN(a, bool, n + 1);
     size_t kept = 0;
@@ -266,10 +271,9 @@ void ct_canvas_circle(struct ct_canvas *c, struct ct_spot at, double radius,
 void ct_canvas_arc(struct ct_canvas *c, struct ct_spot at, double radius, double a, double b,
                    const char *attributes)
 {
-    const double pi = 3.14159265358979323846;
     const int r = tenths(radius);
     fprintf(c->out, "<path d=\"M%d %dA%d %d 0 %d 0 %d %d\"%s%s/>\n",
-            tenths(at.x + radius * cos(a)), tenths(at.y - radius * sin(a)), r, r, b - a > pi,
+            tenths(at.x + radius * cos(a)), tenths(at.y - radius * sin(a)), r, r, b - a > CT_PI,
             tenths(at.x + radius * cos(b)), tenths(at.y - radius * sin(b)),
             *attributes ? " " : "", attributes);
 }

@@ -8,11 +8,13 @@
 
 #include "report/outfile.h"
 
+// Layout: of the picture
 enum { CT_FONT = 13 }; // [px]
 
 /// Colours that stay apart without colour vision: Okabe and Ito (2008), without the yellow and
 /// the black.
 extern const char *const ct_palette[];
+// Layout: of the picture
 enum { CT_NPALETTE = 6 };
 
 struct ct_spot { // [px]

@@ -110,6 +110,7 @@ static const char *shared_unit(const struct ct_build *b, uint32_t first, uint32_
 
 static const char *unit_of(const struct ct_build *b, ct_ex e, int depth)
 {
+    // Limit: of the stack
     enum { DEEPEST = 50 };
     const struct ct_exs *x = b->model->x;
     const struct ct_exnode n = *ct_ex_node(x, e);

@@ -1,10 +1,12 @@
 // See facet.h.
 #include "draw/facet.h"
+#include "base/pi.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+// Layout: of the picture
 enum { ROUND = 48 }; // corners of what is round
 
 // ---- places -----------------------------------------------------------------------------------
@@ -74,14 +76,13 @@ static void across(const double n[3], double a[3], double b[3])
 static void cylinder_corners(const struct ct_model *m, const struct ct_solid *solid,
                              double (*p)[3])
 {
-    const double two_pi = 6.283185307179586, r = number(m, solid->size[0]),
-                 half = number(m, solid->size[1]) / 2;
+    const double r = number(m, solid->size[0]), half = number(m, solid->size[1]) / 2;
     double n[3], a[3], b[3];
     for (int i = 0; i < 3; i++)
         n[i] = number(m, solid->axis.e[i]);
     across(n, a, b);
     for (int k = 0; k < 2 * ROUND; k++) {
-        const double phi = two_pi * (k % ROUND) / ROUND;
+        const double phi = 2 * CT_PI * (k % ROUND) / ROUND;
         for (int i = 0; i < 3; i++)
             p[k][i]
                 = r * (cos(phi) * a[i] + sin(phi) * b[i]) + (k < ROUND ? -half : half) * n[i];
@@ -229,17 +230,19 @@ static void add_cylinder(struct work *w)
 
 static void add_sphere(struct work *w, const double centre[3])
 {
-    const double two_pi = 6.283185307179586, lit = 0.9;
+    // Layout: of the picture
+    const double lit = 0.9;
     const struct ct_view *v = w->f->view;
     const double r = number(w->f->scene->model, w->solid->size[0]);
+    // Layout: of the picture
     enum { FINE = 2 * ROUND };
     double(*p)[3] = ct_arena_calloc(w->f->arena, FINE, sizeof *p);
     for (int k = 0; k < FINE; k++)
         for (int i = 0; i < 3; i++)
             p[k][i] = centre[i]
                     + r
-                          * (cos(two_pi * k / FINE) * v->right[i]
-                             + sin(two_pi * k / FINE) * v->up[i]);
+                          * (cos(2 * CT_PI * k / FINE) * v->right[i]
+                             + sin(2 * CT_PI * k / FINE) * v->up[i]);
     w->place = p;
     add(w, NULL, FINE, all_edges(w->f->arena, FINE))->light = lit;
 }
@@ -275,6 +278,7 @@ static int compare_sides(const void *p, const void *q)
 static bool is_line(const double (*normal)[3], const struct side *s, size_t n,
                     const struct ct_view *v)
 {
+    // Layout: of the picture
     const double kink = 0.87; // cosine of 30 degrees
     if (n != 2)
         return true;

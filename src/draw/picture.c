@@ -54,6 +54,7 @@ static void label_body(struct ct_sketch *d, int body)
 // Bodies' names first, then those of joints, springs and loads.
 static void write_names(struct ct_sketch *d)
 {
+    // Layout: of the picture
     enum { SMALL = 11 };
     const struct ct_model *m = d->s->model;
     const char *attributes = ct_arena_printf(
@@ -85,6 +86,7 @@ static void write_names(struct ct_sketch *d)
 static void draw_axes(struct ct_sketch *d, struct ct_spot at)
 {
     static const char *const names[] = {"x", "y", "z"};
+    // Layout: of the picture
     const double length = 30, beyond = 9, seen = 0.1;
     ct_canvas_open(&d->canvas, "axes", "ground", "font-size=\"120\" font-style=\"italic\"");
     for (int i = 0; i < 3; i++) {
@@ -117,6 +119,7 @@ static void draw_gravity(struct ct_sketch *d, struct ct_spot at)
         ct_draw_arrow(&d->pen, (struct ct_spot){at.x - half * v.x, at.y - half * v.y},
                       (struct ct_spot){at.x + half * v.x, at.y + half * v.y}, "#000000", 1.6);
     } else { // along the line of sight: a dot to the eye, a cross away from it
+        // Layout: of the picture
         const double r = 7, c = 0.7071 * r;
         ct_canvas_circle(&d->canvas, at, r,
                          "fill=\"none\" stroke=\"#000000\" stroke-width=\"12\"", 0);
@@ -149,12 +152,14 @@ static const char *length_name(struct ct_arena *a, double mantissa, int exponent
 static void draw_scale(struct ct_sketch *d, double right, double y)
 {
     static const double mantissas[] = {5, 2, 1};
+    // Layout: of the picture
     const double most = 110, scale = d->view.scale * d->view.shortening; // [px], [px/m]
     const int exponent = (int)floor(log10(most / scale));
     double mantissa = 1;
     for (size_t i = COUNT(mantissas); i-- > 0;)
         if (mantissas[i] * pow(10, exponent) * scale <= most)
             mantissa = mantissas[i];
+    // Layout: of the picture
     const double width = mantissa * pow(10, exponent) * scale, tick = 4;
     const struct ct_spot a = {right - width, y}, b = {right, y};
     ct_canvas_open(&d->canvas, "scale", NULL, "stroke=\"#000000\" stroke-width=\"14\"");

@@ -1,9 +1,11 @@
 // See placement.h. A label tries directions around each of its places, the nearest first: a
 // greedy choice, which is known to come near to the best one where labels are not crowded.
 #include "draw/placement.h"
+#include "base/pi.h"
 
 #include <math.h>
 
+// Layout: of the picture
 enum { NDIRECTION = 16, NDISTANCE = 3 };
 
 struct box {
@@ -23,13 +25,13 @@ static struct box box_at(const struct ct_label *l, struct ct_spot at, double ang
 
 static bool find_box(const struct ct_canvas *c, const struct ct_label *l, struct box *found)
 {
-    const double pi = 3.14159265358979323846, width = ct_canvas_text_width(l->text, l->font);
+    const double width = ct_canvas_text_width(l->text, l->font);
     // to the upper right first, then around
     static const int order[NDIRECTION] = {2, 6, 14, 10, 4, 12, 0, 8, 1, 3, 5, 7, 9, 11, 13, 15};
     for (int k = 0; k < NDISTANCE; k++)
         for (size_t i = 0; i < l->n; i++)
             for (int d = 0; d < NDIRECTION; d++) {
-                const double angle = 2 * pi * order[d] / NDIRECTION;
+                const double angle = 2 * CT_PI * order[d] / NDIRECTION;
                 const double away = l->away + 5.0 * k;
                 *found = box_at(l, l->place[i], angle, away, width);
                 if (ct_canvas_count_taken(c, found->low, found->high) == 0)

@@ -8,6 +8,7 @@
 #include <string.h>
 
 // [px]
+// Layout: of the picture
 enum { LEFT = 78, TOP = 36, WIDTH = 600, HEIGHT = 190, GAP = 26, BOTTOM = 52, LEGEND = 30 };
 enum { MOST_NAME = 220, SMALL = 12, LINE = 17 };
 
@@ -116,6 +117,7 @@ struct axis {
 static struct axis choose_axis(double low, double high, int count, bool is_whole)
 {
     static const double mantissas[] = {1, 2, 5, 10};
+    // Derived: some units of round-off of a division
     const double roundoff = 1e-12, most = fmax(fabs(low), fabs(high));
     const double constant = 1e-6; // less would need labels of more than six digits
     if (!(high - low > constant * most)) {
@@ -148,6 +150,7 @@ static double place(const struct axis *a, double v)
 static const char *tick_name(struct ct_arena *a, const struct axis *axis, double v)
 {
     const double unit = pow(10, axis->exponent), step = axis->step / unit;
+    // Derived: a power of ten but for round-off
     const int decimals = (int)fmax(0, -floor(log10(step) + 1e-9));
     if (fabs(v) < axis->step / 2)
         return "0";
@@ -248,6 +251,7 @@ static const char grid[] = "stroke=\"#dcdcdc\" stroke-width=\"8\"";
 static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
 {
     const struct axis *x = &w->x, *y = &panel->y;
+    // Derived: sums of a million steps
     const double roundoff = 1e-9; // of a step
     for (double n = ceil(x->low / x->step - roundoff);
          n * x->step <= x->high + roundoff * x->step; n++) {
@@ -300,6 +304,7 @@ static void line_style(char *style, size_t size, size_t k)
 
 static void draw_line(struct work *w, const struct panel *panel, size_t k)
 {
+    // Layout: of the picture
     const double invisible = 0.1; // [px]
     const size_t column = panel->line[k];
     struct ct_spot *p = CT_NEWN(w->a, struct ct_spot, w->nsample);

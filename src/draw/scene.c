@@ -157,6 +157,7 @@ static void push_frame(struct ct_build *b, struct values *v, int node)
 // Enough that a polyline looks smooth where every element bends like a wave of its own.
 static int points_of_beam(const struct ct_flexible *f)
 {
+    // Layout: of the picture
     enum { FEWEST = 40, MOST = 400 };
     const int n = f->beam->nelement;
     return 1 + (n >= MOST ? MOST : n * (n >= FEWEST ? 1 : (FEWEST + n - 1) / n));

@@ -9,6 +9,7 @@
 
 // [px]: of the geometry at most; around it; the strip below; the whole at least
 enum {
+    // Layout: of the picture
     MOST_WIDTH = 640,
     MOST_HEIGHT = 460,
     MARGIN = 58,
@@ -87,6 +88,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
     const struct reach r = find_reach(d);
     const double w = r.high[0] - r.low[0], h = r.high[1] - r.low[1];
     d->size = fmax(fmax(w, h), r.high[2] - r.low[2]);
+    // Derived: round-off of places, however they are computed
     const double nothing = 1e-9 * d->size; // round-off
     d->view.scale = fmin(w > nothing ? MOST_WIDTH / w : INFINITY,
                          h > nothing ? MOST_HEIGHT / h : INFINITY);
@@ -103,6 +105,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
 // Pins as large as fits between neighbours.
 double ct_sketch_symbol_size(const struct ct_sketch *d)
 {
+    // Layout: of the picture
     const double largest = 7, least = 2.2, share = 0.3, same = 3; // [px]; of the distance
     double nearest = INFINITY;
     const size_t n = d->s->model->njoint;
@@ -183,6 +186,7 @@ void ct_sketch_find_blocks(struct ct_sketch *d)
 static bool add_place(const struct ct_sketch *d, struct ct_outline *o, const double place[3],
                       const double **known, size_t *n)
 {
+    // Derived: of places given with six digits
     const double same = 1e-6 * d->size; // [m]
     for (size_t i = 0; i < *n; i++) {
         double across[3];
@@ -232,6 +236,7 @@ static size_t hull(struct ct_arena *a, struct ct_spot *p, size_t n)
 // Does the line from a to b, or from b to a, lead on to c?
 static bool extends(const double a[3], const double b[3], const double c[3])
 {
+    // Layout: of the picture
     const double straight = 0.02, beyond = 0.1; // of the distance from a to b
     double d[3], e[3], across[3];
     for (int i = 0; i < 3; i++) {

@@ -13,6 +13,7 @@
 
 #include <math.h>
 
+// Layout: of the picture
 enum { CT_STRIP = 84 }; // [px] below, for axes, gravity and the scale
 
 struct ct_sketch {

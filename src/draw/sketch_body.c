@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 
+// Layout: of the picture
 enum { TRIAD = 46 }; // [px], axes of a loose body
 
 // ---- drawing: paths, bodies -------------------------------------------------------------------
@@ -13,6 +14,7 @@ enum { TRIAD = 46 }; // [px], axes of a loose body
 static bool is_drawn_already(const struct ct_sketch *d, size_t i)
 {
     const struct ct_picture *q = d->picture;
+    // Layout: of the picture
     const double same = 0.5; // [px]
     for (size_t other = 0; other < i; other++) {
         size_t k = 0;
@@ -30,6 +32,7 @@ static bool is_drawn_already(const struct ct_sketch *d, size_t i)
 static void draw_path(struct ct_sketch *d, size_t i)
 {
     const struct ct_picture *q = d->picture;
+    // Layout: of the picture
     const double invisible = 0.15, still = 1; // [px]
     struct ct_spot *p = CT_NEWN(d->a, struct ct_spot, q->nplace);
     double moved = 0;
@@ -66,6 +69,7 @@ static int channel(const char *color, int k)
 // Mixed with white, then dimmed by the light.
 static void tint(const char *color, double light, char out[8])
 {
+    // Layout: of the picture
     const double share = 0.42, dark = 0.68;
     int v[3];
     for (int k = 0; k < 3; k++)
@@ -77,6 +81,7 @@ static void tint(const char *color, double light, char out[8])
 static void draw_facet(struct ct_sketch *d, const struct ct_facet *f)
 {
     char fill[8], style[96];
+    // Layout: of the picture
     const double least = 0.3; // [px]
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t i = 0; i < f->n; i++) {
@@ -268,6 +273,7 @@ void ct_sketch_draw_bodies(struct ct_sketch *d)
     for (size_t i = 1; i < n; i++) {
         o[i] = (struct by_depth){d->outline[i].depth, (int)i};
         // those in a plane keep their order, whatever round-off says of their depths
+        // Derived: of places given with six digits
         const double apart = 1e-6 * (d->size > 0 ? d->size : 1);
         o[i].depth = round(o[i].depth / apart);
     }

@@ -13,6 +13,7 @@ static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j
 static struct ct_spot below(struct ct_spot along)
 {
     const struct ct_spot side = {-along.y, along.x};
+    // Derived: of unit vectors, zero but for round-off
     const bool turned = side.y < -1e-9 || (fabs(side.y) <= 1e-9 && side.x < 0);
     return turned ? (struct ct_spot){-side.x, -side.y} : side;
 }
@@ -23,6 +24,7 @@ static bool is_crowded(const struct ct_sketch *d, size_t i, struct ct_spot at,
 {
     const struct ct_scene_joint *j = &d->s->joint[i];
     const int block = ct_sketch_body_of(d, ct_sketch_body_of(d, j->to) == 0 ? j->from : j->to);
+    // Layout: of the picture
     const double clearly = 0.1;
     double most = 0, least = 0;
     for (size_t k = 0; k < d->s->model->njoint; k++) {
@@ -43,6 +45,7 @@ static bool is_crowded(const struct ct_sketch *d, size_t i, struct ct_spot at,
 static void draw_guide(struct ct_sketch *d, size_t i, struct ct_spot at)
 {
     const struct ct_scene_joint *j = &d->s->joint[i];
+    // Layout: of the picture
     const double s = d->pen.size, seen = 0.05;
     double axis[3];
     joint_axis(d, j, 0, axis);
@@ -243,6 +246,7 @@ static void draw_load(struct ct_sketch *d, const struct ct_scene_force *f)
 {
     const double *force = d->value + f->first, *torque = force + 3;
     const struct ct_spot at = ct_sketch_frame_spot(d, f->to);
+    // Layout: of the picture
     const double arm = 44, seen = 0.05, r = 3 * d->pen.size; // [px]
     if (ct_sketch_size_of(force) > 0) {
         const struct ct_spot p = ct_view_across(&d->view, force);
@@ -263,6 +267,7 @@ static void draw_load(struct ct_sketch *d, const struct ct_scene_force *f)
     if (ct_sketch_size_of(torque) > 0) {
         // counterclockwise where its vector points to the eye
         const bool ccw = ct_dot3(torque, d->view.toward) >= 0;
+        // Layout: of the picture
         const double from = -2.2, to = 2.2;
         char style[64];
         snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"18\" fill=\"none\"",

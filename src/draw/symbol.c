@@ -1,10 +1,9 @@
 // See symbol.h.
 #include "draw/symbol.h"
+#include "base/pi.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static const double pi = 3.14159265358979323846;
 
 // of outlines: lines, white inside
 static const char outline[] = "stroke=\"#000000\" fill=\"#ffffff\"";
@@ -28,6 +27,7 @@ static double length_of(struct ct_spot d)
 
 static struct ct_spot unit(struct ct_spot d, struct ct_spot standard)
 {
+    // Layout: of the picture
     const double length = length_of(d), seen = 1e-3; // less is along the line of sight
     return length > seen ? (struct ct_spot){d.x / length, d.y / length} : standard;
 }
@@ -43,9 +43,10 @@ static struct ct_spot left_of(struct ct_spot d)
 static size_t half_ellipse(struct ct_spot *p, struct ct_spot at, struct ct_spot g, double minor,
                            struct ct_spot f, double major, double a)
 {
+    // Layout: of the picture
     enum { N = 12 };
     for (int k = 0; k <= N; k++) {
-        const double t = a + pi * k / N;
+        const double t = a + CT_PI * k / N;
         p[k] = at_plus2(at, minor * cos(t), g, major * sin(t), f);
     }
     return N + 1;
@@ -54,6 +55,7 @@ static size_t half_ellipse(struct ct_spot *p, struct ct_spot at, struct ct_spot 
 void ct_draw_cylinder(struct ct_pen *pen, struct ct_spot at, const double axis[3],
                       double stretch)
 {
+    // Layout: of the picture
     const double facing = ct_dot3(axis, pen->view->toward), r = pen->size,
                  from_end = 0.999; // a cylinder that is seen from its end is a circle
     if (fabs(facing) > from_end) {
@@ -65,12 +67,12 @@ void ct_draw_cylinder(struct ct_pen *pen, struct ct_spot at, const double axis[3
     const struct ct_spot far = at_plus(at, half, a), near = at_plus(at, -half, a);
     const struct ct_spot g = unit((struct ct_spot){half * a.x, half * a.y}, a), f = left_of(g);
     struct ct_spot p[40];
-    size_t n = half_ellipse(p, far, g, minor, f, r, -pi / 2);
-    n += half_ellipse(p + n, near, g, minor, f, r, pi / 2);
+    size_t n = half_ellipse(p, far, g, minor, f, r, -CT_PI / 2);
+    n += half_ellipse(p + n, near, g, minor, f, r, CT_PI / 2);
     ct_canvas_lines(pen->canvas, p, n, true, outline, 2);
     ct_canvas_take_polygon(pen->canvas, p, n);
-    n = half_ellipse(p, near, g, minor, f, r, -pi / 2);
-    n += half_ellipse(p + n, near, g, minor, f, r, pi / 2);
+    n = half_ellipse(p, near, g, minor, f, r, -CT_PI / 2);
+    n += half_ellipse(p + n, near, g, minor, f, r, CT_PI / 2);
     ct_canvas_lines(pen->canvas, p, n, true, outline, 0);
 }
 
@@ -82,6 +84,7 @@ static void cross3(const double a[3], const double b[3], double out[3])
 
 static bool normalise(double v[3])
 {
+    // Layout: of the picture
     const double length = sqrt(ct_dot3(v, v)), least = 1e-3;
     for (int i = 0; i < 3 && length > least; i++)
         v[i] /= length;
@@ -106,6 +109,7 @@ static void draw_box(struct ct_pen *pen, struct ct_spot at, const double n[3],
 {
     const double *axis[3] = {n, a, b};
     for (int k = 0; k < 3; k++) {
+        // Layout: of the picture
         const double facing = ct_dot3(axis[k], pen->view->toward), seen = 1e-3;
         if (fabs(facing) < seen)
             continue;
@@ -176,7 +180,8 @@ void ct_draw_cross(struct ct_pen *pen, struct ct_spot at, const double a[3], con
 
 void ct_draw_ball(struct ct_pen *pen, struct ct_spot at, struct ct_spot open)
 {
-    const double s = pen->size, away = pi + atan2(-open.y, open.x), reach = 1.9;
+    // Layout: of the picture
+    const double s = pen->size, away = CT_PI + atan2(-open.y, open.x), reach = 1.9;
     ct_canvas_circle(pen->canvas, at, 1.45 * s, "fill=\"#ffffff\" stroke=\"none\"", 2);
     ct_canvas_arc(pen->canvas, at, 1.45 * s, away - reach, away + reach,
                   "stroke=\"#000000\" fill=\"none\"");
@@ -244,8 +249,10 @@ void ct_draw_wall(struct ct_pen *pen, struct ct_spot at, struct ct_spot along, d
 
 void ct_draw_spring(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, double offset)
 {
+    // Layout: of the picture
     enum { FEWEST = 4, MOST = 16 }; // turns
     const struct ct_spot d = {b.x - a.x, b.y - a.y};
+    // Layout: of the picture
     const double length = length_of(d), wide = 1.1 * pen->size, lead = 0.14, pitch = 1.7;
     const double turns = (1 - 2 * lead) * length / (pitch * wide);
     const int n = 2 * (int)fmax(FEWEST, fmin(MOST, round(turns)));

@@ -44,6 +44,7 @@ static void set_iso(struct ct_view *v, int up)
 
 static const char *standard(const struct ct_scene *s)
 {
+    // Layout: of the picture
     const double along = 1 - 1e-9; // cosine; round-off of a normal that is an axis
     const int k = longest(s->normal);
     return s->is_planar && fabs(s->normal[k]) > along ? names[k] : names[3];

@@ -206,6 +206,7 @@ static bool gather(struct ct_exported *w)
                               .at_work = m->at_work,
                               .ninput = m->ninput,
                               .state = w->state,
+                              // Definition: the tolerance of assembly
                               .closed = 1e-9,
                               .lanes = w->lanes};
     w->x.parameter = list_parameters(w);

@@ -10,6 +10,7 @@
 #include "codegen/export.h"
 #include "live/live.h"
 
+// Limit: of the states that a test program compares
 enum { CT_EXPORT_STATES = 4 };
 
 struct ct_exported {

@@ -44,6 +44,7 @@ static bool record(struct ct_exported *w, double t, const double *y)
     struct ct_partition *s = ct_run_partition(r);
     struct ct_export_state *to = &w->state[w->x.nstate];
     double *value = CT_NEWN(a, double, m->e->nresult + 1);
+    // Derived: ten times the tolerance of assembly
     const double met = 1e-8; // assembled to about 1e-12, in metres and radians
     ct_evaluator_set(m, t, y);
     ct_evaluator_constraint(m);
@@ -116,6 +117,7 @@ bool ct_exported_record_states(struct ct_exported *w)
 
 // ---- a motion -------------------------------------------------------------------------------------
 
+// Limit: of a test program
 enum { SAMPLES = 8 };
 
 // A state that is stepped for a recorded motion, with its own diagnostics.
@@ -183,6 +185,7 @@ static double compare(const double *got, const double *want, size_t ny)
 static long count_steps(const struct ct_exported *w)
 {
     const struct ct_tape_counts n = w->x.motion->counts;
+    // Limit: of operations of a test program
     const double operations
         = (double)(n.multiplications + n.additions + n.divisions) + 8 * (double)n.functions,
         all = 4e6;
@@ -195,6 +198,7 @@ void ct_exported_record_motion(struct ct_exported *w)
 {
     const struct ct_equations *e = &w->sim->system->equations;
     struct ct_export_motion *r = &w->x.run;
+    // Limit: of the error of that method in a test program
     const double wanted = 1e-6; // error of that method
     const size_t ny = e->nq + e->nu, n = SAMPLES * ny + 1;
     double *want = CT_NEWN(w->ctx->model, double, n),
@@ -204,6 +208,7 @@ void ct_exported_record_motion(struct ct_exported *w)
     struct stepper fixed
         = make_stepper(w, &(struct ct_sim_options){.method = "rk4", .step = duration}),
         tight
+        // Derived: far below what is wanted
         = make_stepper(w, &(struct ct_sim_options){.method = "dopri5", .tolerance = 1e-10});
     r->nstep = count_steps(w);
     for (int k = 0; k < 12 && !r->nsample && ny; k++, duration /= 4) {
@@ -215,6 +220,7 @@ void ct_exported_record_motion(struct ct_exported *w)
         r->nsample = SAMPLES;
         r->y = want;
         r->duration = duration;
+        // Derived: ten times the error, and of the reference
         r->tolerance = fmax(10 * error, 1e-9);
     }
     destroy_stepper(&fixed);

@@ -86,7 +86,7 @@ static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
 // Large stores grow eightfold: the nodes left behind take memory, room that is never used takes none (arena.c).
 static size_t next_cap(size_t cap)
 {
-    const size_t large = (size_t)1 << 15;
+    const size_t large = (size_t)1 << 15; // Limit: of memory, half a megabyte
     return !cap ? LEAST_NODES : cap < large ? 2 * cap : 8 * cap;
 }
 

@@ -297,7 +297,8 @@ static struct turn add_turns(struct ct_polys *ps, struct turn a, struct turn b, 
     return (struct turn){ct_poly_add(ps, sc, sign, cs), ct_poly_add(ps, cc, -sign, ss)};
 }
 
-// Whole multiples up to this are multiplied out: cos(2 q) = cos^2 q - sin^2 q. XXX
+// Whole multiples up to this are multiplied out: cos(2 q) = cos^2 q - sin^2 q.
+// Limit: of the terms; cos(4 q) has three.
 enum { LARGEST_MULTIPLE = 4 };
 
 static struct turn expand_angle(struct ct_collector *c, struct ct_poly argument)
@@ -386,7 +387,8 @@ static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_a
         out[1].c = -half;
 }
 
-// Bounds on the factors of a product and on the harmonics of a polynomial, for readable results.
+// Limit: of the factors of a product and the harmonics of a polynomial, for readable results;
+// beyond, products stay.
 enum { LARGEST_DEGREE = 6, LARGEST_WAVES = 256 };
 
 // Degree in sines and cosines, or LARGEST_DEGREE + 1 where the product-to-sum form does not apply.

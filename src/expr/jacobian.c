@@ -168,7 +168,7 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out)
 {
-    const size_t least_full = 1 << 16;
+    const size_t least_full = 1 << 16; // Limit: of memory
     struct walk w = {.x = x, .scratch = scratch, .full = least_full};
     const size_t n = ct_ex_walk(x, f, nf);
     uint32_t *id = CT_NEWN(scratch, uint32_t, n + 1), most = 0;

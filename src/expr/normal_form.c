@@ -13,7 +13,7 @@
 
 // Limit: terms of a sum, which bounds time and memory; two forms of more terms are not compared.
 enum { MOST_TERMS = 2000 };
-// A multiple of an angle beyond this stays as it is: cos(8 a) has 8 terms.
+// Limit: a multiple of an angle beyond this stays as it is: cos(8 a) has 8 terms.
 enum { MOST_TURNS = 8 };
 
 struct pair {

@@ -181,7 +181,7 @@ static bool drop_useless(struct sharing *s)
 
 static bool is_taken(const struct ct_names *taken, const char *name)
 {
-    return ct_names_get(taken, name) >= 0;
+    return ct_names_get(taken, name + (name[0] == '-')) >= 0;
 }
 
 static const char *free_name(const struct sharing *s, const struct ct_names *taken,
@@ -208,7 +208,7 @@ static struct ct_share list_definitions(struct sharing *s)
         struct ct_definition d = {{id}, s->meaning[id], s->saving[id]};
         if (!d.name || is_taken(&taken, d.name))
             d.name = free_name(s, &taken, &number);
-        ct_names_put(s->arena, &taken, d.name, 0);
+        ct_names_put(s->arena, &taken, d.name + (d.name[0] == '-'), 0);
         CT_PUSH(s->arena, list.at, list.n, cap, d);
     }
     return list;
@@ -241,6 +241,22 @@ static void list_nodes(struct sharing *s)
         s->meaning[s->id[k]] = name(s->o.data, s->x, (ct_ex){s->id[k]});
 }
 
+// All that has a meaning and two users. Lengths are finite from then on: paths through a recursion can be more than
+// numbers count.
+static void choose_names(struct sharing *s)
+{
+    unsigned char *users = CT_NEWN(s->arena, unsigned char, s->x->nnode);
+    uint32_t arg[3];
+    for (size_t k = 0; k < s->nroot; k++)
+        users[s->root[k].id] += users[s->root[k].id] < 2;
+    for (size_t k = 0; k < s->n; k++)
+        for (int i = operands(s->x, s->id[k], arg); i-- > 0;)
+            users[arg[i]] += users[arg[i]] < 2;
+    for (size_t k = 0; k < s->n; k++)
+        if (s->meaning[s->id[k]] && users[s->id[k]] > 1 && !is_trivial(s->x, s->id[k]))
+            s->saving[s->id[k]] = 1;
+}
+
 struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e, size_t n,
                             const struct ct_share_options *options)
 {
@@ -251,6 +267,8 @@ struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e
     s.o.enough = s.o.enough > 0 ? s.o.enough : 1500;
     s.o.least = s.o.least > 0 ? s.o.least : 20;
     list_nodes(&s);
+    if (s.o.names_first)
+        choose_names(&s);
     measure(&s);
     for (size_t k = 0, named; k < s.o.most && s.total > s.o.enough; k += named) {
         named = choose(&s, s.o.most - k);

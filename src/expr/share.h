@@ -18,6 +18,9 @@ struct ct_share_options {
     size_t most;   // definitions; 0: 40
     double enough; // characters of the whole print at which naming stops; 0: 1500
     double least;  // characters a definition must save; 0: 20
+    // What has a name by meaning gets it wherever two expressions use it. A name that begins with a minus sign is that
+    // of the negative: what is defined is the name without the sign, as -e.
+    bool names_first;
     /// The name of a node by its meaning, or NULL; NULL: the labels of the store.
     const char *(*name)(void *data, const struct ct_exs *x, ct_ex e);
     void *data;

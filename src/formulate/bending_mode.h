@@ -5,12 +5,12 @@
 
 #include <stdbool.h>
 
-enum {
-    CT_PLANE_SHAPES = 3,
-    CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES,
-    CT_BEAM_MODE_STATIONS
-    = 4 // quarters of the beam, the end last, where deflections are looked at
-};
+/// Modes of a plane. Default: more see finer motion, and cost. Test: beam_error_modal.
+enum { CT_PLANE_SHAPES = 3 };
+enum { CT_BENDING_SHAPES = 2 * CT_PLANE_SHAPES }; // Definition: those of both planes
+/// Places where deflections are looked at, quarters of the beam, the end last. Derived: the highest
+/// of three modes has three half waves.
+enum { CT_BEAM_MODE_STATIONS = 4 };
 
 /// A bending shape phi of unit mass.
 struct ct_beam_mode {

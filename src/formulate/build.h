@@ -20,10 +20,14 @@
 
 #include "base/pairs.h"
 #include "component/model.h"
+#include "component/roundoff.h"
+#include "expr/switches.h"
 #include "formulate/equations.h"
 #include "graph/graph.h"
 
-enum { CT_LONG_PATH = 40 }; // pieces between two nodes
+/// Pieces between two nodes above which places on the way are computed on their own.
+/// Chosen: fewer make equations that read as one sum, more make programs longer.
+enum { CT_LONG_PATH = 40 };
 
 enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };
 

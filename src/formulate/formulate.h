@@ -46,10 +46,13 @@ struct ct_formulate_options {
 };
 
 /// Up to this many speeds every formulation is tried: they are cheap to generate, and the mass matrix is what people
-/// look at.
+/// look at. Chosen: the time to generate them against shorter programs.
 enum { CT_SMALL_SYSTEM = 24 };
-enum { CT_MOST_FULL = 3000 }; // speeds; full matrices of larger systems would take hours
-enum { CT_MOST_DENSE = 300 }; // speeds; larger systems are analysed with sparse matrices
+/// Limit: speeds; full matrices of larger systems would take hours, and a message says so.
+enum { CT_MOST_FULL = 3000 };
+/// Speeds of the systems that are analysed with dense matrices; larger ones with sparse matrices.
+/// Chosen: dense matrices take some seconds there.
+enum { CT_MOST_DENSE = 300 };
 
 /// A pair of trees that the search has weighed.
 struct ct_tree_candidate {
@@ -58,7 +61,7 @@ struct ct_tree_candidate {
     double cost;             // operations of an evaluation, in multiplications
 };
 
-enum { CT_MOST_CANDIDATES = 10 };
+enum { CT_MOST_CANDIDATES = 10 }; // Layout: of what `cotree graph --trees` lists
 
 /// What tree selection found, for the report.
 struct ct_tree_report {

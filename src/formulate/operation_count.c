@@ -3,7 +3,8 @@
 
 double ct_counted_cost(const struct ct_tape_counts *c)
 {
-    const double per_function = 8, per_division = 4; // in multiplications
+    // Default: weights that choose between forms of the equations. Test: tree_pairs, solvers.
+    const double per_function = 8, per_division = 4;
     return (double)(c->multiplications + c->additions) + per_division * (double)c->divisions
          + per_function * (double)c->functions;
 }

@@ -8,12 +8,6 @@
 
 enum { TRANS, ROT, NTREE };
 
-// Defaults of struct ct_search_options.
-// Default: pairs of trees up to which all are tried, rather than the descent. Test: exchange.
-static const double default_limit = 500;
-// Default: evaluations of a descent, and edges above the least weight. Test: exchange.
-static const int default_budget = 200, default_excess = 3;
-
 struct pair {
     struct ct_tree tree[NTREE];
     int weight;
@@ -330,11 +324,11 @@ static void run(struct search *s, struct pair start, const struct ct_search_opti
 {
     evaluate(s, &start);
     s->stats->cost_least_weight = start.cost;
-    s->stats->exhaustive = s->stats->npair <= (o->limit != 0 ? o->limit : default_limit);
+    s->stats->exhaustive = s->stats->npair <= o->limit;
     if (s->stats->exhaustive)
         try_all(s, &start);
     else
-        descend(s, start, o->budget != 0 ? o->budget : default_budget);
+        descend(s, start, o->budget);
 }
 
 bool ct_tree_search(struct ct_arena *a, const struct ct_graph *g,
@@ -359,8 +353,7 @@ bool ct_tree_search(struct ct_arena *a, const struct ct_graph *g,
     settle_tied(&s, &least);
     if (least.weight == INT_MAX)
         return false;
-    const int excess = options->excess != 0 ? options->excess : default_excess;
-    s.heaviest = least.weight + (excess > 0 ? excess : 0);
+    s.heaviest = least.weight + options->excess;
     stats->weight_least = least.weight;
     run(&s, least, options);
 

@@ -23,9 +23,9 @@ struct ct_tree_rules {
 struct ct_search_options {
     struct ct_tree_rules trans, rot;
     const bool *tied; // per edge: in both trees or in neither (R3); may be NULL
-    double limit; // all pairs are tried if there are at most this many; 0: 500, negative: never
-    int budget;   // evaluations of the descent; 0: 200
-    int excess;   // allowed weight above the least; 0: 3, negative: none
+    double limit;     // all pairs are tried if there are at most this many
+    int budget;       // evaluations of the descent
+    int excess;       // allowed weight above the least
 };
 
 /// A pair of trees by their branches, one entry per edge.

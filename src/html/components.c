@@ -183,17 +183,46 @@ static void add_top_level(struct lines *l, const struct ct_model *m)
         }
 }
 
+// The arm to a centre of mass is written at the key `com`, or follows from the rest of its body.
+static void add_centre(struct lines *l, const struct ct_model *m, const struct ct_body *body)
+{
+    const struct ct_value *com = ct_instance_value(&body->instance, "com");
+    const char *name = ct_arena_printf(l->a, "%s.com", body->instance.name);
+    add_lines(l, m, name, com && com->given ? com->mark : body->instance.mark);
+}
+
+// The entry of an output, with what it depends on.
+static void add_outputs(struct lines *l, const struct ct_system *sys)
+{
+    const struct ct_model *m = &sys->model;
+    const struct ct_output *before = NULL;
+    for (size_t i = 0; i < sys->equations.nresult; i++) {
+        const struct ct_output *o = output_of(m, sys->equations.result[i].name);
+        if (!o || o == before)
+            continue;
+        struct ct_mark mark = o->mark;
+        if (mark.line >= 0 && (size_t)mark.line < l->nline)
+            mark.column = (int)indent_of(l->line[mark.line]); // all of the entry
+        add_lines(l, m, ct_components_of_result(l->a, sys, i), mark);
+        before = o;
+    }
+}
+
 // `ground` is a body that has no mark where it is not listed.
 struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
-                                                    const struct ct_model *m,
+                                                    const struct ct_system *sys,
                                                     const char *const *line, size_t n,
                                                     size_t *count)
 {
+    const struct ct_model *m = &sys->model;
     struct lines l = {.a = a, .line = line, .nline = n};
     for (size_t i = 0; i < m->nparameter; i++)
         add_lines(&l, m, m->parameter[i].name, m->parameter[i].mark);
     for (size_t i = 0; i < m->nbody; i++)
         add_lines(&l, m, i ? m->body[i].instance.name : "ground", m->body[i].instance.mark);
+    for (size_t i = 1; i < m->nbody; i++)
+        if (!ct_ex3_is_zero(m->body[i].com))
+            add_centre(&l, m, &m->body[i]);
     for (size_t i = 0; i < m->nframe; i++)
         if ((int)i != m->body[m->frame[i].body].frame)
             add_lines(&l, m, m->frame[i].name, m->frame[i].mark);
@@ -201,6 +230,7 @@ struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
         add_lines(&l, m, m->joint[i].name, m->joint[i].mark);
     for (size_t i = 0; i < m->nforce; i++)
         add_lines(&l, m, m->force[i].name, m->force[i].mark);
+    add_outputs(&l, sys);
     add_top_level(&l, m);
     *count = l.n;
     return l.at;

@@ -17,14 +17,15 @@ const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m,
 const char *ct_components_of_result(struct ct_arena *a, const struct ct_system *sys,
                                     size_t result);
 
-/// Lines of the model file that a component is written in: the line of its key, and those that belong to it.
+/// Lines of the model file that a component is written in: the line of its key, and those that belong to it; and of an
+/// output, with the components that it depends on.
 struct ct_component_lines {
-    const char *name;
-    int first, last; // from 0
+    const char *name; // several: separated by blanks
+    int first, last;  // from 0
 };
 /// All of them, for n lines of text; *count (out).
 struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
-                                                    const struct ct_model *m,
+                                                    const struct ct_system *sys,
                                                     const char *const *line, size_t n,
                                                     size_t *count);
 

@@ -39,7 +39,7 @@ static void split_lines(struct ct_arena *a, struct ct_source *s)
 
 static void read_source(struct ct_arena *a, const struct ct_system *sys, struct ct_source *s)
 {
-    enum { MOST = 1 << 26 }; // more than a model may have
+    enum { MOST = 1 << 26 }; // Limit: more than a model may have
     char *text;
     if (sys->text) {
         s->text = sys->text;

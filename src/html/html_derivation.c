@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-// Characters of mathematics of a stage: typeset, and as plain text.
+// Limit: characters of mathematics of a stage: typeset, and as plain text.
 enum { MOST_TYPESET = 40000, MOST_PLAIN = 150000 };
 
 static size_t length_of(const struct ct_page *p)

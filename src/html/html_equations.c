@@ -3,12 +3,15 @@
 #include "html/components.h"
 #include "html/html.h"
 #include "html/terms.h"
+#include "report/deflate.h"
 #include "report/mathml.h"
 #include "report/packed.h"
 
 #include <string.h>
 
-enum { MOST_BYTES = 600000 }; // of the section
+// Limit: of the section; of what a script of the page unpacks, of which browsers read some 20 MB
+// a second. Beyond, plain text, then a note.
+enum { MOST_BYTES = 600000, MOST_TYPESET = 6000000 };
 
 static const char *origins_of(struct ct_html *h, const struct ct_equation_term *t)
 {
@@ -30,6 +33,7 @@ struct writer {
     struct ct_html *h;
     FILE *out;
     struct ct_derivation *plain; // terms are plain text; NULL: they are typeset
+    bool is_folded;              // each equation
 };
 
 static const char *value_of(const struct writer *w, size_t column)
@@ -84,19 +88,20 @@ static size_t put_equation(const struct writer *w, size_t first)
                             && p->term[r.last].equation == t->equation;)
         r.last++;
     struct ct_mathml_equation e = {.name = ct_provenance_equation(h->terms->derivation.e, t)};
-    fputs("<div class=\"labelled\">", w->out);
-    if (t->kind == CT_EQUATION_OUTPUT) {
+    const bool has_label = t->kind != CT_EQUATION_OUTPUT, is_folded = w->is_folded && has_label;
+    fputs(is_folded ? "<details class=\"labelled\">" : "<div class=\"labelled\">", w->out);
+    if (!has_label) {
         e.left = output_of(w, r.first, e.name);
         e.right = side_of(w, r.first, r.last);
     } else {
         e.left = side_of(w, r.first, r.middle);
         e.right = side_of(w, r.middle, r.last);
-        fputs("<span class=\"label\">", w->out);
+        fputs(is_folded ? "<summary class=\"label\">" : "<span class=\"label\">", w->out);
         ct_html_put(w->out, e.name);
-        fputs("</span>\n", w->out);
+        fputs(is_folded ? "</summary>\n" : "</span>\n", w->out);
     }
     ct_mathml_equation(w->out, &e);
-    fputs("</div>\n", w->out);
+    fputs(is_folded ? "</details>\n" : "</div>\n", w->out);
     return r.last;
 }
 
@@ -162,33 +167,31 @@ static void put_data(struct ct_html *h)
     ct_html_close_data(&d);
 }
 
-static void put_all(const struct writer *w)
+static void put_note(struct ct_html *h)
 {
-    const struct ct_terms_recording *t = w->h->terms;
+    const struct ct_terms_recording *t = h->terms;
     fputs("<p class=\"note\">The number beside a term is its value at <span "
           "class=\"clock\">t = 0 s</span>.",
-          w->out);
+          h->out);
     if (t->stride > 1)
-        fprintf(w->out, " Values are kept at one of %zu samples and interpolated between.",
-                t->stride * w->h->recording->stride);
+        fprintf(h->out, " Values are kept at one of %zu samples and interpolated between.",
+                t->stride * h->recording->stride);
     if (!t->nvalue && t->provenance.nterm)
-        fputs(" There are too many terms to carry their values.", w->out);
-    fputs("</p>\n", w->out);
-    put_definitions(w);
-    put_kind(w, CT_EQUATION_MOTION, "Equations of motion");
-    put_kind(w, CT_EQUATION_POSITION, "Constraints");
-    put_kind(w, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
-    put_kind(w, CT_EQUATION_EFFORT, "Efforts of the drivers");
-    put_kind(w, CT_EQUATION_OUTPUT, "Outputs that are reactions or accelerations");
+        fputs(" There are too many terms to carry their values.", h->out);
+    fputs("</p>\n", h->out);
 }
 
-// The section with terms of one look; NULL where it would be too long.
-static const char *write_all(struct ct_html *h, struct ct_derivation *plain)
+static const char *write_all(struct ct_html *h, struct ct_derivation *plain, bool is_folded)
 {
     struct ct_text_stream *s = ct_html_open_text(h);
-    put_all(&(struct writer){h, ct_html_text_stream(s), plain});
-    const char *text = ct_html_close_text(s);
-    return strlen(text) <= MOST_BYTES ? text : NULL;
+    const struct writer w = {h, ct_html_text_stream(s), plain, is_folded};
+    put_definitions(&w);
+    put_kind(&w, CT_EQUATION_MOTION, "Equations of motion");
+    put_kind(&w, CT_EQUATION_POSITION, "Constraints");
+    put_kind(&w, CT_EQUATION_ACCELERATION, "Constraints, differentiated twice");
+    put_kind(&w, CT_EQUATION_EFFORT, "Efforts of the drivers");
+    put_kind(&w, CT_EQUATION_OUTPUT, "Outputs that are reactions or accelerations");
+    return ct_html_close_text(s);
 }
 
 // As `cotree equations` prints them, folded.
@@ -213,23 +216,48 @@ static void put_text(struct ct_html *h, struct ct_derivation *plain)
     fputs("</pre></details>\n", h->out);
 }
 
+// Plain text for readers without scripts; a script replaces it by the same typeset, equation by equation (web/equations.js). False: too long
+// for that.
+static bool put_packed(struct ct_html *h, struct ct_derivation *plain)
+{
+    const char *text = write_all(h, NULL, true);
+    struct ct_html_data d;
+    size_t n;
+    if (strlen(text) > MOST_TYPESET)
+        return false;
+    const unsigned char *deflated
+        = ct_deflate(h->a, (const unsigned char *)text, strlen(text), &n);
+    put_note(h);
+    fputs("<div id=\"equations-text\">\n", h->out);
+    put_text(h, plain);
+    fputs("</div>\n", h->out);
+    ct_html_open_data(h, &d, "data-equations");
+    ct_json_text(&d.json, "data", ct_base64(h->a, deflated, n));
+    ct_html_close_data(&d);
+    return true;
+}
+
 void ct_html_equations(struct ct_html *h)
 {
     const struct ct_equations *e = &h->sys->equations;
     const struct ct_terms_recording *t = h->terms;
     struct ct_derivation plain;
+    bool has_terms = true;
     ct_html_open_section(h, "equations", "Equations");
     fprintf(h->out, "<p>%zu unknown %s, %zu %s.</p>\n", e->nu, e->nu == 1 ? "speed" : "speeds",
             e->nrow, e->nrow == 1 ? "constraint" : "constraints");
     ct_derivation_init(&plain, h->a, t->derivation.e, &h->sys->model, CT_LOOK_TEXT);
-    const char *text = write_all(h, NULL);
-    if (!text)
-        text = write_all(h, &plain);
-    if (text)
+    const char *text = write_all(h, NULL, false);
+    if (strlen(text) > MOST_BYTES)
+        text = write_all(h, &plain, false);
+    if (strlen(text) <= MOST_BYTES) {
+        put_note(h);
         fputs(text, h->out);
-    else
+    } else if (!put_packed(h, &plain)) {
         put_text(h, &plain);
-    if (text && t->nvalue && t->nrow)
+        has_terms = false;
+    }
+    if (has_terms && t->nvalue && t->nrow)
         put_data(h);
     ct_html_close_section(h);
 }

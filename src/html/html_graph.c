@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double FEW = 16; // vertices: so many have room
+static const double FEW = 16; // Layout: vertices: so many have room
+// Layout: of the picture and the equations below it
 enum {
     MOST_DRAWN = 400, // vertices: beyond, no picture can be read
     MOST_NAMED = 30, // edges: beyond, they have their numbers only, and names when they are lit
@@ -22,7 +23,7 @@ enum {
     RADIUS = 7,  // [px] of a vertex
     ARROW = 7,   // [px] from the middle of an arrow to its tip, and a gap
     SPREAD = 44, // [px] between the middles of edges that join the same vertices
-    WIDE = 1100  // [px] a page
+    WIDE = 1500  // [px] beyond, names are too small on a page (1048 px): the picture scrolls
 };
 
 struct picture {
@@ -105,6 +106,7 @@ static void put_edge(struct picture *p, int i)
     const struct ct_edge w = e->graph->edge[i];
     FILE *out = p->h->out;
     const struct ct_place a = p->at[w.tail], b = p->at[w.head];
+    // Layout: [px], against division by zero
     const double length = fmax(hypot(b.x - a.x, b.y - a.y), 1e-3);
     const double nx = -(b.y - a.y) / length, ny = (b.x - a.x) / length;
     const double off = offset_of(e->graph, i);
@@ -154,6 +156,7 @@ static void put_node(struct picture *p, int v)
         if (w.tail != v && w.head != v)
             continue;
         const struct ct_place other = p->at[w.tail == v ? w.head : w.tail];
+        // Layout: [px], against division by zero
         const double r = fmax(hypot(other.x - p->at[v].x, other.y - p->at[v].y), 1e-3);
         dx -= (other.x - p->at[v].x) / r;
         dy -= (other.y - p->at[v].y) / r;

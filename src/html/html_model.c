@@ -66,7 +66,7 @@ void ct_html_model(struct ct_html *h)
         return;
     }
     const struct ct_component_lines *at
-        = ct_components_find_lines(h->a, &h->sys->model, s->line, s->nline, &n);
+        = ct_components_find_lines(h->a, h->sys, s->line, s->nline, &n);
     fputs("<p class=\"note\">", h->out);
     ct_html_put_name(h->out, h->sys->model.file);
     fputs("</p>\n<ol class=\"source\">\n", h->out);

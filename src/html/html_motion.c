@@ -3,7 +3,7 @@
 
 #include "draw/picture.h"
 
-// The motion takes half a megabyte of the page at most, at about a byte for each number.
+// Limit: the motion takes half a megabyte of the page at most, at about a byte for each number.
 enum { MOST_NUMBERS = 500000, MOST_ROWS = 2001, LEAST_ROWS = 201 };
 
 static size_t most_rows(const struct ct_animation *m)

@@ -103,7 +103,8 @@ static void put_energy_light(struct ct_html *h)
 {
     const double drift = h->sim->report.energy_drift;
     const double wanted = fmax(h->sim->tolerance, h->sim->least_rtol);
-    open_light(h, drift <= 10 * wanted ? GOOD : FAIR, "accuracy", "energy");
+    open_light(h, drift <= 10 * wanted && !h->stopped ? GOOD : FAIR, "accuracy", "energy");
+    fputs(h->stopped ? "before the stop " : "", h->out);
     fputs("the balance changes by ", h->out);
     ct_html_put_number(h->out, drift);
     fputs(" of the largest energy", h->out);

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-enum { MOST_SWEEPS = 300 };
-// Vertices move by less than a pixel in all sweeps that would follow.
+enum { MOST_SWEEPS = 300 }; // Limit: of the time of the layout
+// Layout: [px] vertices move by less than a pixel in all sweeps that would follow.
 static const double still = 1e-2;
 
 // d (n x n) = shortest ways along edges, by Floyd and Warshall.
@@ -41,6 +41,7 @@ static double move(struct ct_place *at, const double *d, size_t n, size_t i)
         if (j == i || !(want > 0) || isinf(want))
             continue;
         const double dx = at[i].x - at[j].x, dy = at[i].y - at[j].y;
+        // Layout: against division by zero
         const double r = fmax(hypot(dx, dy), 1e-9 * want), w = 1 / (want * want);
         x += w * (at[j].x + want * dx / r);
         y += w * (at[j].y + want * dy / r);

@@ -8,6 +8,7 @@
 #include "analysis/modes.h"
 #include "draw/picture.h"
 #include "html/html.h"
+#include "report/mathml.h"
 #include "report/outfile.h"
 #include "report/packed.h"
 
@@ -29,6 +30,7 @@ struct modes_page {
 static void differentiate(struct modes_page *p, const double *y0, const double *shape,
                           double *out)
 {
+    // Derived: near the cube root of the unit round-off both are some 1e-11
     const double step = 1e-5;
     struct ct_evaluator *m = p->modes->at.l->m;
     const size_t n = p->animation.ncolumn;
@@ -80,9 +82,17 @@ static void put_about(struct ct_html *h, const struct ct_modes *s)
 {
     struct ct_text_stream *text = ct_html_open_text(h);
     ct_modes_print_summary(s, ct_html_text_stream(text));
-    fputs("<pre>", h->out);
-    ct_html_put(h->out, ct_html_close_text(text));
-    fputs("</pre>\n", h->out);
+    fputs("<dl>\n", h->out);
+    for (const char *line = ct_html_close_text(text); *line;) {
+        const size_t n = strcspn(line, "\n"), word = strcspn(line, " \n");
+        if (word)
+            fprintf(h->out, "<dt>%.*s</dt>", (int)word, line);
+        fputs("<dd>", h->out);
+        ct_html_text(h->out, line + word, n - word);
+        fputs("</dd>\n", h->out);
+        line += n + (line[n] == '\n');
+    }
+    fputs("</dl>\n", h->out);
 }
 
 static void put_table(struct ct_html *h, const struct ct_modes *s)

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { MOST_ROWS = 4001 }; // a screen has fewer columns of pixels
+enum { MOST_ROWS = 4001 }; // Limit: a screen has fewer columns of pixels
 
 void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
                          struct ct_terms_recording *terms)
@@ -18,7 +18,7 @@ void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
 // Singular values cost more than a sample does: so many of them at most.
 static void measure_loops(struct ct_recording *r, double t, bool is_last)
 {
-    enum { MOST_MEASURED = 501 };
+    enum { MOST_MEASURED = 501 }; // Limit: of the page
     struct ct_arena *a = r->sim->own.model;
     const size_t n = 1 + r->loops.nloop, nrow = 1 + (r->nsample - 1) / r->stride;
     const size_t stride = 1 + (nrow - 1) / MOST_MEASURED;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// A fifth of a megabyte of the page, at some three bytes for each number.
+// Limit: a fifth of a megabyte of the page, at some three bytes for each number.
 enum { MOST_NUMBERS = 60000, LEAST_ROWS = 21 };
 
 static void list_expressions(struct ct_terms_recording *t, struct ct_arena *a,
@@ -29,6 +29,7 @@ void ct_terms_create(struct ct_terms_recording *t, struct ct_arena *a, struct ct
     struct ct_equations *e = &sys->equations;
     *t = (struct ct_terms_recording){.stride = 1};
     ct_derivation_init(&t->derivation, a, e, &sys->model, CT_LOOK_HTML);
+    t->derivation.is_recursive = false; // the page shows terms of M u' = Q + J' lambda
     ct_derivation_reduce(&t->derivation, &t->reduced);
     ct_provenance_derive(&t->derivation, &t->reduced, &t->provenance);
     list_expressions(t, a, e);

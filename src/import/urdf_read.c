@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const size_t max_bytes = (size_t)64 << 20;
+static const size_t max_bytes = (size_t)64 << 20; // Limit: with a message
 
 struct reader {
     struct ct_ctx *ctx;

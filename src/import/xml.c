@@ -34,7 +34,7 @@ static void fail(struct reading *r, const char *what)
 
 static void XMLCALL begin(void *user, const char *name, const char **attribute)
 {
-    enum { DEEPEST = 100 };
+    enum { DEEPEST = 100 }; // Limit: of the stack, with a message
     struct reading *r = user;
     struct ct_xml *e = CT_NEW(r->a, struct ct_xml);
     if (r->depth++ >= DEEPEST) {

@@ -11,13 +11,14 @@
 /// when there is no smooth motion across, since the polynomial leaves the constraints: the
 /// mechanism only passes close by.
 extern const struct ct_method ct_crossing;
+/// Definition: of the method.
 enum { CT_CROSSING_STAGES = 14 };
 
 /// A smooth motion meets the constraints also in the middle, up to this [m, rad].
 extern const double ct_crossing_mismatch_limit;
 
-/// Beside a singular configuration f has fewer digits: crossings may err by this part of the
-/// largest state.
+/// Near a singular configuration f has fewer digits: crossings may err by this part of the largest
+/// state.
 extern const double ct_crossing_roundoff;
 
 /// The steps to come begin within what they cross, at this part of the whole: the rest of a

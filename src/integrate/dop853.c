@@ -280,7 +280,8 @@ const struct ct_method ct_method_dop853 = {
     .dense_tableau = &dense_tableau,
     .order = 8,
     .error_order = 7,
-    // the two results of the estimate may cross by accident: a long step after a short one is not to be trusted
+    // the two results of the estimate may cross by accident: a long step after a short one is not
+    // to be trusted
     .most_growth = 1.5,
     .create = create,
     .restart = ct_compensation_restart,
@@ -288,8 +289,8 @@ const struct ct_method ct_method_dop853 = {
     .step = step,
     .resolved_limit
     = 2.5, // stable up to about 6; where accuracy holds steps up, at 1e-4, they come to 2.4 (cart pole, four-bars)
-    // left of the imaginary axis |R(z)| <= 1 for |z| <= 5.95; but at z = -4.95 the estimate is largest, and falls to zero at -5.65: control
-    // would go on to -6.4, where errors grow
+    // left of the imaginary axis |R(z)| <= 1 for |z| <= 5.95; but at z = -4.95 the estimate is
+    // largest, and falls to zero at -5.65: control would go on to -6.4, where errors grow
     .stability_limit = 4.8,
     .stiffness_estimate = swiftness,
     .prepare = prepare,

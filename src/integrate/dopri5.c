@@ -149,7 +149,8 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
 static const struct ct_tableau tableau
     = {.stages = STAGES, .stride = STAGES, .C = C, .A = &A[0][0], .E = E, .nerror = STAGES};
 
-// The quintic as a table: stages 7 and 8 are f at the points of the quartic at 1/2 and 1/5. With b the last row of A,
+// The quintic as a table: stages 7 and 8 are f at the points of the quartic at 1/2 and 1/5. With b
+// the last row of A,
 //
 //     point   t^2 (3 - 2 t) b + t (1 - t)^2 e_0 - t^2 (1 - t) e_6 + t^2 (1 - t)^2 D
 //     miss    k_point - 6 t (1 - t) b - (1 - t) (1 - 3 t) e_0 - t (3 t - 2) e_6

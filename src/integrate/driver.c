@@ -4,14 +4,16 @@
 //         -> samples on the way -> commit -> event -> sample on it
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
-// is tried again shorter; until `commit` nothing has changed. Step control is that of step_control.h.
+// is tried again shorter; until `commit` nothing has changed. Step control is that of
+// step_control.h.
 #include "integrate/driver.h"
 
 #include <math.h>
 #include <string.h>
 
-// Crossings may err by more than ct_crossing_roundoff where they begin nearer to the position than crossings do, with the square of how much
-// nearer, up to this part of what is wanted: from still nearer by there would be less. (8.28)
+// Crossings may err by more than ct_crossing_roundoff where they begin nearer to the position than
+// crossings do, with the square of how much nearer, up to this part of what is wanted (8.28).
+// Default: with less, crossings fail for round-off. Test: singular_approach.
 static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};
@@ -96,7 +98,8 @@ static bool take_bearings(struct ct_driver *r)
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
-// Largest change of accelerations since the start, over the largest of them; INFINITY where there are none.
+// Largest change of accelerations since the start, over the largest of them; INFINITY where there
+// are none.
 static double changed_by(const struct ct_driver *r)
 {
     const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
@@ -108,8 +111,9 @@ static double changed_by(const struct ct_driver *r)
     return size > 0 ? change / size : INFINITY;
 }
 
-// The rate at which accelerations begin to change, looked for from h on, along the parabola that r->point is the second
-// derivative of: from rest their change grows with the square of time. 0 where it is not found.
+// The rate at which accelerations begin to change, looked for from h on, along the parabola that
+// r->point is the second derivative of: from rest their change grows with the square of time. 0
+// where it is not found.
 static double find_rate(struct ct_driver *r, double h, double limit)
 {
     enum { LOOKS = 5 };
@@ -152,10 +156,12 @@ static double first_step(struct ct_driver *r, double limit)
 
 // --- one step --------------------------------------------------------------------------------
 
-// Has the projection moved y1 so far that its derivative must be found again? That of the step errs by h df/dy times
-// the way, so less than `unnoticed` of the tolerance is lost in the error of the step. Steps of fixed length keep it: it
-// is the first of their stages alone, and what it errs is of an order more than the error of the step, from which the way comes.
-// Over seven closed mechanisms and tops errors stay as they are with and without to a few percent, where steps resolve the motion.
+// Has the projection moved y1 so far that its derivative must be found again? That of the step errs
+// by h df/dy times the way, so less than `unnoticed` of the tolerance is lost in the error of the
+// step. Steps of fixed length keep it: it is the first of their stages alone, and what it errs is
+// of an order more than the error of the step, from which the way comes. Over seven closed
+// mechanisms and tops errors stay as they are with and without to a few percent, where steps
+// resolve the motion.
 static bool has_moved(struct ct_driver *r)
 {
     const double unnoticed = 0.01;
@@ -167,7 +173,8 @@ static bool has_moved(struct ct_driver *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
-// Steps of fixed length end on samples: where there are no roots to find and nobody looks into steps none is interpolated.
+// Steps of fixed length end on samples: where there are no roots to find and nobody looks into
+// steps none is interpolated.
 static bool is_never_interpolated(const struct ct_driver *r)
 {
     return r->o->step > 0 && r->p->nroot == 0 && !r->o->over_step;
@@ -233,8 +240,8 @@ static bool is_put(const struct ct_driver *r, const struct ct_planned_step *s)
     return s->method == &ct_crossing && r->method->leaves_speeds && r->p->project;
 }
 
-// Crossings begin on the constraints, which speeds of some methods meet to their order only; not where they miss these by so much more than
-// is wanted that steps have lost the motion.
+// Crossings begin on the constraints, which speeds of some methods meet to their order only; not
+// where they miss these by so much more than is wanted that steps have lost the motion.
 static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double most = 10; // times what is wanted
@@ -266,7 +273,8 @@ static void restore_speeds(struct ct_driver *r, const struct ct_planned_step *s)
     memcpy(r->dy, r->put_dy, bytes);
 }
 
-// From y to end by the method and the projection. Refused with s->error > 1 when that is the reason.
+// From y to end by the method and the projection. Refused with s->error > 1 when that is the
+// reason.
 static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *s)
 {
     struct ct_tolerance own;
@@ -304,7 +312,8 @@ static enum ct_eval interpolate(struct ct_driver *r, struct ct_planned_step *s)
     return s->method->prepare(r->p, r->t, s->h, r->y, r->y1, s->work, r->stats);
 }
 
-// Are outputs that amplify as good in the next sample as at the end of the step? If not, steps end on samples from here on.
+// Are outputs that amplify as good in the next sample as at the end of the step? If not, steps end
+// on samples from here on.
 static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
@@ -357,7 +366,8 @@ static enum ct_eval step_to_event(struct ct_driver *r, struct ct_planned_step *s
     return CT_EVAL_OK;
 }
 
-// The interpolant is the step itself: a place on it where the root is zero to round-off, as roots are found late by up to the resolution.
+// The interpolant is the step itself: a place on it where the root is zero to round-off, as roots
+// are found late by up to the resolution.
 static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s, double theta)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
@@ -439,7 +449,8 @@ static enum ct_eval finish_step(struct ct_driver *r, struct ct_planned_step *s, 
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
-// So near to the end of a motion that locks, as part of the run, nothing more is to be had from steps.
+// So near to the end of a motion that locks, as part of the run, nothing more is to be had from
+// steps.
 static const double nearest_lock = 1e-6;
 
 static bool is_at_lock(const struct ct_driver *r)

@@ -99,7 +99,8 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s);
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_step *s);
-/// Time to the next singular configuration from t, up to where steps have been accepted, and where to begin to cross it.
+/// Time to the next singular configuration from t, up to where steps have been accepted, and where
+/// to begin to cross it.
 void ct_driver_look_ahead(struct ct_driver *r, double t);
 void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s);
@@ -112,16 +113,19 @@ static inline bool ct_driver_has_remainder(const struct ct_driver *r)
 }
 /// Is t in the gap of a crossing, where only its interpolant tells the state?
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_planned_step *s, double t);
-/// A step h was refused for this error: is it round-off of f, which is taken off errors from now on?
+/// A step h was refused for this error: is it round-off of f, which is taken off errors from now
+/// on?
 bool ct_driver_is_roundoff(struct ct_driver *r, double h, double error);
 /// A step h was accepted; the same question.
 void ct_driver_note_step(struct ct_driver *r, double h, double error);
 
 /// Is there a sample inside the step?
 bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s);
-/// Does the step, ready to be interpolated, damp a motion that it does not follow, so that its interpolant does not hold?
+/// Does the step, ready to be interpolated, damp a motion that it does not follow, so that its
+/// interpolant does not hold?
 bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s);
-/// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on its end.
+/// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on
+/// its end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_planned_step *s,
                                    double end);
 /// Those due at the state of now.

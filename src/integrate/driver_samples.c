@@ -54,8 +54,8 @@ static double change_over_step(const struct ct_driver *r)
     return size > 0 ? change / size : 0;
 }
 
-// Is there a motion that the step does not follow, much faster than the one there is? Not each step shows it, so that it is
-// remembered.
+// Is there a motion that the step does not follow, much faster than the one there is? Not each step
+// shows it, so that it is remembered.
 static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double kept = 0.95; // from look to look
@@ -73,8 +73,9 @@ bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_ste
     return r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
 }
 
-// Does the interpolant err in the next sample, or else in the middle of the step, by so much of what steps may? A step from the start of this one to there tells. Each
-// time it does not, more steps to come are not asked; where it does, as many as ever are taken to err as well.
+// Does the interpolant err in the next sample, or else in the middle of the step, by so much of
+// what steps may? A step from the start of this one to there tells. Each time it does not, more
+// steps to come are not asked; where it does, as many as ever are taken to err as well.
 static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
 {
     enum { MOST_UNASKED = 31 };
@@ -105,7 +106,8 @@ bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s)
     return is_unresolved(r, s) && interpolant_errs(r, s);
 }
 
-// y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from the start of this one.
+// y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from
+// the start of this one.
 static bool find_state(struct ct_driver *r, const struct ct_planned_step *s, double t,
                        double *y)
 {

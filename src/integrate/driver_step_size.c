@@ -4,21 +4,26 @@
 #include <assert.h>
 #include <math.h>
 
-// What a crossing that failed shrinks its reach by aims at this part of what its error would allow.
+// A crossing that failed for its error begins nearer by what the error says, with the safety factor
+// of step control. Derived: SAFE of DOPRI5 (Hairer and Wanner).
 static const double safety = 0.9;
 
-// A step across a singular configuration that fails is tried again from nearer, after so many times
-// not any more: then the position is not singular but only nearly so.
+// A crossing that failed is tried again from nearer by this factor.
+// Default: the number of trials against digits lost near by. Test: crossing.
 static const double nearer = 0.5;
+// After so many failures the configuration counts as nearly singular only.
+// Default: crossings given up against trials in vain. Test: crossing.
 static const int most_crossings = 6;
-// This much further away than where it should begin, a crossing may begin at once; after one that
-// failed only where a step to there has ended.
+// A crossing may begin at once where it should begin after at most this factor of the time to the
+// configuration; after a failure only where a step to that place has ended.
+// Default: short steps to that place against longer crossings. Test: crossing.
 static const double early = 1.3, on_time = 1.02;
-// Times to a position that differ by such a factor are those of two.
+// Predicted times that differ by such a factor belong to two configurations.
+// Default: predictions err, and configurations follow each other. Test: crossing.
 static const double other = 2;
-// The end of a run is reached by a crossing, too, when it is this part of its reach before the
-// position.
+// A run that ends less than this part of the reach before the configuration ends by a crossing.
 static const double beside = 0.5;
+
 double ct_driver_step_limit(const struct ct_driver *r)
 {
     const double run = r->o->t1 - r->o->t0;
@@ -200,7 +205,7 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
 // Shorter, which none is any more after so many times.
 static void shrink_remainder(struct ct_driver *r)
 {
-    enum { MOST = 12 };
+    enum { MOST = 12 }; // Default: as most_crossings. Test: crossing.
     r->failed_crossings++;
     r->remainder.h = r->failed_crossings < MOST ? nearer * r->remainder.h : 0;
 }

@@ -6,39 +6,31 @@
 #include <math.h>
 #include <string.h>
 
-// Places within a step, besides its end. Root functions cost about as much as a derivative,
-// so these three add half of the cost of a step of six stages.
+// Places within a step where sign changes are looked for.
+// Default: what is missed against evaluations; two_waves_in_a_step_are_seen. Test: events.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
-// Between probes a root may cross and come back: where the parabola through three of them turns,
-// unless it turns back before zero by more than this part of its second difference. So much it may
-// err by where the motion is smooth over a step.
+// A root that crosses between probes and comes back is suspected where the parabola through three
+// of them has its minimum below this part of its second difference, which is what it errs by.
+// Default: what is missed against evaluations; a_parabola_tells_of_dips. Test: events.
 const double ct_event_location_margin = 0.1;
-// It is looked for with ever closer places, each time so much closer, and is found where it is
-// deeper beyond zero than this part of what g is in the step: some thousand round-off errors.
-static const double closer = 0.125, least_depth = 1e-12;
-enum { CLOSEST = 5 };
+// The minimum is looked for with three places, each time so much closer to each other.
+// Default: crossings_close_together_are_both_seen fails with 0.9. Test: events.
+static const double closer = 0.125;
 
-// Time is resolved to this part of max(|t|, h). Some thousand round-off errors, so that secants
-// still see a change of g, and far below what a tolerance of 1e-12 does to a state.
+// Times are resolved to this part of max(|t|, h), and values of g to this part of their size in
+// the step: some thousand units of round-off, so that secants still see a change of g.
+// Default: accuracy of events against their round-off. Test: events.
 static const double resolution = 1e-12;
 
-// How much later, in parts of a usual step, a root is looked at that has just fired: g changes
-// by 1e-7 of what it does in a step, some 1e8 round-off errors, and is still a straight line.
-static const double glance = 1e-7;
-
-// Spacing of the difference that gives the slope at the event, in parts of the time since the
-// step began: the slope is off by about as much, so each correction by it gains three digits.
-// Near the start it is this many resolutions, for the same number of digits.
-static const double slope_spacing = 1e-3, slope_resolutions = 1e3, slope_most = 0.1;
+// Spacing of the forward differences for slopes of g, as part of a step. Derived: the square root
+// of the unit round-off, where round-off and curvature err alike.
+static const double spacing = 0x1p-26;
 
 // With events a run has at least this many steps, so that probes are never too far apart when
 // the motion between events is so simple (free fall) that steps could grow without limit.
+// Default: what is missed against steps. Test: events.
 static const double event_steps = 50;
-
-// State events in a row, each within this part of max(|t|, run) after the one before, pile up:
-// a bouncing ball comes here after its height has fallen by 1e-18.
-static const double pile_time = 1e-9;
 
 double ct_event_location_resolution(double t, double h)
 {
@@ -53,7 +45,7 @@ double ct_event_location_longest_step(double run)
 bool ct_event_location_accumulates(struct ct_event_location *w, double t, double run)
 {
     w->accumulated
-        = t - w->last_event <= pile_time * fmax(fabs(t), run) ? w->accumulated + 1 : 0;
+        = t - w->last_event <= ct_event_location_resolution(t, run) ? w->accumulated + 1 : 0;
     w->last_event = t;
     return w->accumulated >= CT_EVENT_ACCUMULATION;
 }
@@ -102,7 +94,7 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
 static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, const double *y,
                                const double *dy)
 {
-    const double later = glance * h;
+    const double later = spacing * h;
     for (int i = 0; i < w->p->ny; i++)
         w->point[i] = y[i] + later * dy[i];
     const enum ct_eval e = evaluate(w, t + later, w->point, w->g);
@@ -177,8 +169,8 @@ static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_
     return e;
 }
 
-// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just fired may
-// still be on the wrong side: until it has got away it must go further than it was then.
+// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just
+// fired may still be on the wrong side: until it has got away it must go further than it was then.
 static bool has_crossed(const struct ct_event_location *w, int i, const double *g)
 {
     const double x = w->side[i] * g[i];
@@ -259,13 +251,11 @@ static enum ct_eval locate(struct ct_event_location *w, const struct ct_stepper_
     return CT_EVAL_OK;
 }
 
-// The roots that fire at theta, from w->high, and their slopes there, which they keep for `reach`.
+// The roots that fire at theta, from w->high, and their slopes there.
 static enum ct_eval mark(struct ct_event_location *w, const struct ct_stepper_span *s,
-                         double theta, double reach)
+                         double theta)
 {
-    const double least = slope_resolutions * ct_event_location_resolution(s->t, s->h) / s->h;
-    const double size = fmin(slope_most * fmin(1, reach), slope_spacing * theta + least);
-    const double d = theta > 0.5 ? -size : size;
+    const double d = theta > 0.5 ? -spacing : spacing;
     const enum ct_eval e = evaluate_inside(w, s, theta + d, w->g);
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
         w->crossed[i] = has_crossed(w, i, w->high) ? (signed char)-w->side[i] : 0;
@@ -295,22 +285,21 @@ bool ct_event_location_may_dip(double a, double b, double c)
         && 2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend;
 }
 
-// A place within the step where root i, which has not crossed at places `spacing` apart about
-// theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if there is
-// none.
+// A place within the step where root i, which has not crossed at places `apart` from each other
+// about theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if
+// there is none.
 static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
-                             int i, const double *f, double depth, double spacing,
-                             double *theta)
+                             int i, const double *f, double depth, double apart, double *theta)
 {
     double x = *theta, at[3] = {f[0], f[1], f[2]};
     *theta = 2;
-    for (int k = 0; k < CLOSEST && ct_event_location_may_dip(at[0], at[1], at[2]); k++) {
+    while (apart > spacing && ct_event_location_may_dip(at[0], at[1], at[2])) {
         const double bend = at[0] - 2 * at[1] + at[2];
-        x -= spacing * (at[2] - at[0]) / (2 * bend);
-        spacing *= closer;
-        x = fmin(fmax(x, spacing), 1 - spacing);
+        x -= apart * (at[2] - at[0]) / (2 * bend);
+        apart *= closer;
+        x = fmin(fmax(x, apart), 1 - apart);
         for (int j = 0; j < 3; j++) {
-            const double place = x + (j - 1) * spacing;
+            const double place = x + (j - 1) * apart;
             const enum ct_eval e = evaluate_inside(w, s, place, w->high);
             if (e != CT_EVAL_OK)
                 return e;
@@ -341,7 +330,7 @@ static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_ste
             if (w->recently_fired[i] > 0 || f[0] <= 0 || f[2] <= 0
                 || !ct_event_location_may_dip(f[0], f[1], f[2]))
                 continue;
-            const enum ct_eval e = find_dip(w, s, i, f, least_depth * size, probes[0], &x);
+            const enum ct_eval e = find_dip(w, s, i, f, resolution * size, probes[0], &x);
             if (e != CT_EVAL_OK)
                 return e;
             if (x < before)
@@ -353,11 +342,11 @@ static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_ste
 // The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in
 // w->high.
 static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_span *s,
-                           double low, double high, bool is_dip, double *theta)
+                           double low, double high, double *theta)
 {
     const double width = fmin(0.5, ct_event_location_resolution(s->t, s->h) / s->h);
     const enum ct_eval e = locate(w, s, low, high, width, theta);
-    return e == CT_EVAL_OK ? mark(w, s, *theta, is_dip ? high - *theta : INFINITY) : e;
+    return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
 }
 
 // If a root comes back from beyond zero before `before`, where the probe `end` does not see it:
@@ -376,7 +365,7 @@ static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_step
         k++;
     memcpy(w->low, w->probed + n * (size_t)k, n * sizeof *w->low);
     e = evaluate_inside(w, s, x, w->high);
-    return e == CT_EVAL_OK ? narrow(w, s, k ? probes[k - 1] : 0, x, true, theta) : e;
+    return e == CT_EVAL_OK ? narrow(w, s, k ? probes[k - 1] : 0, x, theta) : e;
 }
 
 enum ct_eval ct_event_location_search(struct ct_event_location *w,
@@ -410,7 +399,7 @@ enum ct_eval ct_event_location_search(struct ct_event_location *w,
                 return e;
             memcpy(w->low, seen, n * sizeof *w->low);
             memcpy(w->high, seen + n, n * sizeof *w->high);
-            return narrow(w, s, before, probes[j], false, theta);
+            return narrow(w, s, before, probes[j], theta);
         }
         note_away(w, w->high);
         before = probes[j];
@@ -450,7 +439,8 @@ enum ct_eval ct_event_location_accept(struct ct_event_location *w, double t, dou
             w->crossed[i] = (signed char)-w->side[i];
             w->slope[i] = 0;
         }
-        // ten resolutions: the location and its refinement are each good to a few
+        // ten resolutions, as the location and its refinement are each good to a few
+        // Default: infinitely_many_bounces_are_an_error fails with a hundred. Test: events.
         if (w->crossed[i])
             w->recently_fired[i] = fmax(
                 DBL_MIN, // zero itself is no crossing back

@@ -1,14 +1,14 @@
 // Event location: which root functions (state events) change sign within a step, and when.
 //
 //     side      -1 or +1 for each root: where it was last seen; 0: at rest on zero
-//     rest      a root at rest fires as soon as it is not zero: at the start of the step in which it
-//               is seen to have left, since smooth motions leave zero at once or at an event
-//     probes    a step is looked at in a few places, and where a parabola through three of them turns
-//               about zero, so that a root that crosses and comes back is seen
+//     rest      a root at rest fires as soon as it is not zero: at the start of the step in which
+//               it is seen to have left, since smooth motions leave zero at once or at an event
+//     probes    g is evaluated in a few places of a step, and where a parabola through three of
+//               them turns about zero, so that a root that crosses and comes back is seen
 //
 // What always holds between steps: g0 is g at the start of the next step, and a root that has
-// just fired has the side to which it is moving. So it cannot fire twice for one crossing, and
-// a root that comes back at once (a bounce) is still seen.
+// just fired has the side of p->sides, or else the side to which it is moving. So it cannot fire
+// twice for one crossing, and a root that comes back at once (a bounce) is still seen.
 #ifndef CT_INTEGRATE_EVENT_LOCATION_H
 #define CT_INTEGRATE_EVENT_LOCATION_H
 
@@ -27,9 +27,11 @@ struct ct_event_location {
     int accumulated;             // state events in a row without time going on
 };
 
-/// Corrections to the time of an event, each worth three digits or more.
+/// Corrections to the time of an event. Derived: Newton's method doubles digits, and the interpolant
+/// has two or more of the 12 to which times are resolved.
 enum { CT_EVENT_CORRECTIONS = 3 };
 /// State events in a row, each close to the one before, that are an infinite number.
+/// Default: with more, times stop to go on before they are counted. Test: events.
 enum { CT_EVENT_ACCUMULATION = 100 };
 
 /// Times closer than this to an event cannot be told from it.
@@ -54,9 +56,9 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
 enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, double h,
                                      const double *y, const double *dy);
 
-/// Look for the first event in a step that ends in y_end (projected). *theta (out): its place,
-/// 0 where a root leaves its rest, or 2 if there is none. The roots that fire there are in `crossed`. When this or a later stage
-/// refuses the step, look again after the next try.
+/// Look for the first event in a step that ends in y_end (projected). *theta (out): its place, 0
+/// where a root leaves its rest, or 2 if there is none. The roots that fire there are in `crossed`.
+/// When this or a later stage refuses the step, look again after the next try.
 enum ct_eval ct_event_location_search(struct ct_event_location *w,
                                       const struct ct_stepper_span *s, const double *y_end,
                                       double *theta);

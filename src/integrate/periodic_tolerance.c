@@ -3,12 +3,13 @@
 
 #include <math.h>
 
-// Steps between looks. What the first ones err acts on all turns.
+// Steps between updates. The first steps are as important as any, as their errors act on all turns.
 enum { STEPS_BETWEEN = 16 };
-// What runs ask of their steps is found on those of up to so many turns.
+// Up to so many turns the tolerance of steps is that of the run.
 static const double usual_turns = 20;
 
-// For 2000 turns: with less, steps would err by their round-off.
+// Derived: the share of a hundred times as many turns, as it falls with their square; with less,
+// round-off would be felt.
 static const double least_share = 1e-4;
 
 struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
@@ -18,8 +19,8 @@ struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
     return (struct ct_periodic_tolerance){.t0 = t0, .t1 = t1, .small = small, .share = 1};
 }
 
-// A turn is there and back: twice as far as it gets for coordinates, which begin at its end, four
-// times the largest speed. What has not turned yet has not repeated anything.
+// Derived: in a turn a coordinate goes twice its range, there and back, and a speed four times its
+// largest value. A motion that has not turned yet has not repeated anything.
 static double turns_so_far(const struct ct_periodic_tolerance *r)
 {
     const double far_q = fmax(sqrt(r->range_q), r->small),

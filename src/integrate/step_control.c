@@ -7,19 +7,23 @@
 #include <stdint.h>
 #include <string.h>
 
-// Steps aim at this part of what the error would allow. Over the reference problems explicit
-// methods reach an error with 5 % fewer evaluations at 0.8 than at 0.9: fewer steps are made in
-// vain.
+// PI control of step sizes, as in the codes DOPRI5 and RADAU5 of Hairer and Wanner (1996), key
+// hairer1996, IV.2 and IV.8: h_new = h safety error_before^beta / error^alpha.
+//
+// Safety factors. Explicit: over the reference problems an error is reached with 5 % fewer
+// evaluations at 0.8 than at 0.9, as fewer steps are refused; implicit: that of RADAU5.
+// Default: long steps against refused ones. Test: integrate.
 static const double safety = 0.8, implicit_safety = 0.9;
-static const double most_shrink = 0.2; // an error estimate is not trusted further than this
-static const double most_growth
-    = 5; // nor this, nor what a method says once it has found its pace
-static const double remembered_error
-    = 1e-4; // least error the controller remembers: smaller ones
-            // are luck and would make it shrink the next step
+// Derived: FAC1 of DOPRI5, the least factor from one step to the next.
+static const double most_shrink = 0.2;
+// The largest one, unless the method names its own.
+static const double most_growth = 5;
+// Derived: FACOLD of DOPRI5, the least error that the controller remembers; smaller ones would make
+// it shrink the next step.
+static const double remembered_error = 1e-4;
 
-// Steps that are a ten-thousandth longer or shorter are as good, so powers need four digits: the
-// exponent of a number and a polynomial of its mantissa, a tenth of the time of log and exp.
+// Powers of errors need four digits: the exponent of a number and a polynomial of its mantissa take
+// a tenth of the time of log and exp. Derived: the coefficients are those of least largest error.
 enum { EXPONENT_AT = 52, BIAS = 1023 };
 
 // log2(x), x >= 0 finite, to 2e-4, continuous; of zero -1023.
@@ -51,9 +55,11 @@ struct ct_step_control ct_step_control_start(void)
     return (struct ct_step_control){.log_before = least, .log_least = least};
 }
 
-// Runs whose steps have stopped to grow are not begun in earnest if they would take so many times
-// the steps allowed.
+// A run ends early where its steps do not grow any more, that is by this factor over a window of a
+// thousandth of the steps allowed, and the end would take `endless` times the steps allowed.
+// Default: runs ended early against time lost on runs that cannot end. Test: failed_runs.
 static const double endless = 3, growing = 1.1;
+// Default: how often that is asked. Test: failed_runs.
 enum { WINDOWS = 1000 };
 
 bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,
@@ -85,7 +91,7 @@ static void learn(struct ct_step_control *c, const struct ct_method *m)
 {
     const double power = 1.0 / (m->error_order + 1);
     c->method = m;
-    c->beta = 0.2 * power;
+    c->beta = 0.2 * power; // Derived: DOPRI5 has 0.04 = 0.2/5 and alpha = 1/5 - 0.75 beta
     c->alpha = power - 0.75 * c->beta;
     c->log_safety = log2(safety_of(m));
     for (int i = 0; i < 2; i++)
@@ -129,6 +135,9 @@ void ct_step_control_refuse(struct ct_step_control *c, const struct ct_method *m
     c->was_refused = true;
 }
 
+// Derived: the numbers here and in ct_step_control_first are those of the starting step size of
+// Hairer, Norsett and Wanner (1993), key hairer1993, II.4; a hundredth of the tolerance in
+// ct_step_control_first_at_rate is the same aim.
 double ct_step_control_euler_step(double d0, double d1, double limit)
 {
     return fmin(d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1, limit);

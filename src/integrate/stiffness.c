@@ -457,11 +457,22 @@ double ct_trial_pace(const struct ct_trial *r)
     return r->nstep > warming(r) ? (r->t - r->t0) / (work(r) - r->spent0) : 0;
 }
 
-bool ct_trial_has_lost(struct ct_trial *r, double t, double pace)
+bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace)
 {
     r->t = t;
+    if (event > r->t0) { // counting begins behind the first step from there
+        r->t0 = r->window.t = t;
+        r->spent0 = r->window.spent = work(r);
+        r->window.pace = 0;
+        r->nstep = 0;
+        return false;
+    }
     if (++r->nstep % test_every != 0)
         return false;
-    r->pace = (t - r->t0) / work(r);
-    return r->pace < pace;
+    const double spent = work(r), before = r->window.pace;
+    r->pace = (t - r->t0) / (spent - r->spent0);
+    r->window.pace = (t - r->window.t) / (spent - r->window.spent);
+    r->window.t = t;
+    r->window.spent = spent;
+    return r->pace < pace && before > 0 && r->window.pace <= before;
 }

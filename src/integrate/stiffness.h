@@ -64,6 +64,10 @@ struct ct_trial {
     double start, end;    // from where on, and the end of the run
     double t0, t, spent0; // where counting began, where it is, the work before
     double pace;          // of all steps, where a trial does not end
+    struct {
+        double t, spent; // where it begins, the work before
+        double pace;     // of the one before; 0: there is none
+    } window;            // of steps
 };
 
 /// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations,
@@ -117,9 +121,11 @@ double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
 double ct_trial_pace(const struct ct_trial *r);
 /// After each step of a run that went over to the implicit method, begun as a trial that does not
-/// end: true if all of it has gained less than `pace`. A hard stretch, as where an iteration fails
-/// for a while, does not outweigh what was gained before, and no more is spent than the other
-/// method would have.
-bool ct_trial_has_lost(struct ct_trial *r, double t, double pace);
+/// end: true if all of it since the last event has gained less than `pace`. A hard stretch, as where
+/// an iteration fails for a while, does not outweigh what was gained before, and no more is spent
+/// than the other method would have. An event may excite vibrations: what was gained before tells
+/// nothing then, and as long as they die out and each hundred steps gain more than those before,
+/// nothing is lost.
+bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace);
 
 #endif

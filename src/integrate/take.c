@@ -6,18 +6,19 @@
 #include <string.h>
 
 enum { DEGREE = 8, NODES = DEGREE + 1, COARSE = 5 };
-// Halvings that lead from a step to the round-off of time.
-enum { LEVELS = 56 };
+// Halvings of a step. Derived: as many as lead from 1 to the unit round-off.
+enum { LEVELS = DBL_MANT_DIG };
 // A kink takes one interval for each halving; a function that is noise would take any number.
 enum { MOST_INTERVALS = 400 };
-// Grid on which zeros and extremes of an interpolant are sought first: several points between any two zeros of its derivative that
-// are farther apart than those of T8 at the ends.
+// Grid on which zeros and extremes of an interpolant are sought first: several points between any
+// two zeros of its derivative that are farther apart than those of T8 at the ends.
 enum { GRID = 32 };
 
-// Of what is wanted of outputs, for the interpolant.
+// The error of interpolants, as part of what is wanted of outputs.
 static const double share = 0.1;
 
-// Of the largest value, in an interpolant: sums of nine terms, of functions that have some themselves.
+// Of the largest value, in an interpolant: sums of nine terms, of functions that have some
+// themselves.
 static const double roundoff = 64 * DBL_EPSILON;
 
 // The order in which nodes are asked for: those of degree 4 first.
@@ -113,7 +114,8 @@ bool ct_take_scan_wants(const struct ct_take_scan *s, double *t)
 
 // ---- interpolants -------------------------------------------------------------------------------------
 
-// c (NODES, out): coefficients of the Chebyshev polynomials that have the values f (NODES) in the nodes.
+// c (NODES, out): coefficients of the Chebyshev polynomials that have the values f (NODES) in the
+// nodes.
 static void expand(double *c, const double *f)
 {
     for (int k = 0; k < NODES; k++) {
@@ -147,18 +149,19 @@ static double integral(const double *c)
     return sum;
 }
 
-// What the interpolant errs by: coefficients of smooth functions fall, so those left out are less than the last.
+// What the interpolant errs by: coefficients of smooth functions fall, so those left out are less
+// than the last.
 static double error_of(const double *c)
 {
     return fabs(c[DEGREE - 1]) + fabs(c[DEGREE]);
 }
 
-// The largest value of sign * p, by the golden section between neighbours of the largest on the grid where that may come
-// near to `record`.
+// The largest value of sign * p, by the golden section between neighbours of the largest on the
+// grid where that may come near to `record`.
 static double largest(const struct ct_take_scan *s, const double *c, double sign, double record)
 {
-    enum { SECTIONS = 42 }; // to the square root of a round-off error
-    const double golden = 0.61803398874989484820;
+    const double golden = 0.61803398874989484820; // Definition: (sqrt(5) - 1)/2
+    const double narrow = 0x1p-26; // Derived: an extreme is flat to round-off within its root
     double value[GRID + 1];
     int best = 0;
     for (int i = 0; i <= GRID; i++) {
@@ -170,7 +173,7 @@ static double largest(const struct ct_take_scan *s, const double *c, double sign
     if (2 * most - fmin(value[before], value[behind]) < record)
         return most;
     double a = s->grid[before], b = s->grid[behind];
-    for (int i = 0; i < SECTIONS; i++) {
+    while (b - a > narrow) {
         const double left = b - golden * (b - a), right = a + golden * (b - a);
         const double at_left = sign * value_at(c, left), at_right = sign * value_at(c, right);
         most = fmax(most, fmax(at_left, at_right));
@@ -185,12 +188,12 @@ static double largest(const struct ct_take_scan *s, const double *c, double sign
 // Where p, negative at a, has risen to zero, b being where it has.
 static double zero_between(const double *c, double a, double b)
 {
-    enum { HALVINGS = 60 };
-    for (int i = 0; i < HALVINGS; i++) {
+    for (;;) {
         const double middle = (a + b) / 2;
+        if (!(middle > a && middle < b))
+            return b;
         *(value_at(c, middle) < 0 ? &a : &b) = middle;
     }
-    return b;
 }
 
 // ---- what is taken ------------------------------------------------------------------------------------
@@ -253,8 +256,8 @@ static void bounds(const double *f, int step, double *least, double *most)
     }
 }
 
-// Is there nothing in the interval, as nodes tell? A function that steps resolve does not leave what it has in them by more
-// than they differ.
+// Is there nothing in the interval, as nodes tell? A function that steps resolve does not leave
+// what it has in them by more than they differ.
 static bool is_idle(const struct ct_take_scan *s, size_t k, const double *f, int step)
 {
     const struct state *q = &s->state[k];
@@ -275,7 +278,8 @@ static bool is_idle(const struct ct_take_scan *s, size_t k, const double *f, int
     }
 }
 
-// Is the interpolant as good as is wanted? Errors of integrals count by the part of the step that the interval is.
+// Is the interpolant as good as is wanted? Errors of integrals count by the part of the step that
+// the interval is.
 static bool is_resolved(const struct ct_take_scan *s, size_t k, const struct interval *v,
                         const double *f, const double *c)
 {
@@ -319,7 +323,8 @@ static bool look_coarsely(struct ct_take_scan *s, struct interval *v)
     return any;
 }
 
-// Half of the interval waits, the other one is next. False: it is as short as time can tell, or enough have been looked at.
+// Half of the interval waits, the other one is next. False: it is as short as time can tell, or
+// enough have been looked at.
 static bool halve(struct ct_take_scan *s, struct interval *v)
 {
     const double middle = v->a + (v->b - v->a) / 2;

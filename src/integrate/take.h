@@ -1,17 +1,19 @@
-// What is taken from functions of time over a whole run, not its samples: extremes, means, the first zero.
+// What is taken from functions of time over a whole run, not its samples: extremes, means, the
+// first zero.
 //
 //     begin -> [ step -> { wants -> give } ] -> results
 //
-// In each accepted step a function is interpolated in the Chebyshev points of degree 8 of an interval, which is the step at first;
-// where the last two coefficients are larger than the tolerance allows the interval is halved.  Source: trefethen2013
+// In each accepted step a function is interpolated in the Chebyshev points of degree 8 of an
+// interval, which is the step at first; where the last two coefficients are larger than the
+// tolerance allows the interval is halved.  Source: trefethen2013
 //
 //     max, min   of the interpolant; intervals that stay below the largest value so far need five points
 //     mean       integral of the interpolant over the length of the run (Clenshaw-Curtis); rms: of the square
 //     time       the first zero of the interpolant behind a place where it is negative
 //
-// What always holds: what is taken depends on the steps and the functions alone, so runs side by side and runs alone do the
-// same. Kinks and jumps inside of steps cost intervals, and are found to round-off; a step gets no more than MOST_INTERVALS
-// of them. Nothing allocates after create.
+// What always holds: what is taken depends on the steps and the functions alone, so runs side by
+// side and runs alone do the same. Kinks and jumps inside of steps cost intervals, and are found to
+// round-off; a step gets no more than MOST_INTERVALS of them. Nothing allocates after create.
 #ifndef CT_INTEGRATE_TAKE_H
 #define CT_INTEGRATE_TAKE_H
 
@@ -39,7 +41,8 @@ void ct_take_scan_step(struct ct_take_scan *s, double t0, double t1);
 bool ct_take_scan_wants(const struct ct_take_scan *s, double *t);
 /// f (n): the functions there, all finite.
 void ct_take_scan_give(struct ct_take_scan *s, const double *f);
-/// out (n, in: the functions at the end of the run): what was taken; FINAL stays. A run of no length has what it ends with.
+/// out (n, in: the functions at the end of the run): what was taken; FINAL stays. A run of no
+/// length has what it ends with.
 void ct_take_scan_results(const struct ct_take_scan *s, double *out);
 
 #endif

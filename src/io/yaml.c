@@ -10,7 +10,7 @@
 #include <string.h>
 #include <yaml.h>
 
-// Bounds on nesting, on values with aliases written out and on bytes. Later stages recurse over the
+// Limit: of nesting, of values with aliases written out and of bytes. Later stages recurse over the
 // tree, so E103 replaces a stack overflow or exhausted memory. (tests/unit/test_yaml.c)
 enum { MAX_DEPTH = 64, MAX_WEIGHT = 2000000 };
 static const size_t max_bytes = (size_t)16 << 20;

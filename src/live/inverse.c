@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-// Half of the digits: accelerations come from elsewhere, as those of a plan or of another program.
+// Derived: half of the digits, as accelerations come from elsewhere, as those of a plan or of another program.
 static const double met = 1.5e-8;
 
 struct inverse {

@@ -53,6 +53,9 @@ struct ct_damped {
     struct ct_arena *arena;            // what is for one pattern
     size_t n, ncolumn, nentry, *start; // the pattern: rows, columns, entries of A
     int *column;
+    const struct ct_sparse_rows *A; // of the last factors
+    double damping;
+    bool is_empty, is_singular;
     struct ct_sparse *K; // NULL: the library is not available
     double *value;       // of K: n times damping, ncolumn times -damping, A, A'
     double *b, *x;       // (n + ncolumn)
@@ -101,10 +104,10 @@ static void analyse(struct ct_damped *s, const struct ct_sparse_rows *A, size_t 
     s->K = ct_sparse_create(a, (int)(n + ncolumn), row, column, most, CT_SPARSE_ANY);
 }
 
-// The same by dense QR, of rows of A and of damping.
-static double solve_dense(struct ct_damped *s, double *x, const struct ct_sparse_rows *A,
-                          const double *b, double damping)
+// By dense QR, of rows of A and of damping.
+static void solve_dense(struct ct_damped *s, double *x, const double *b)
 {
+    const struct ct_sparse_rows *A = s->A;
     const size_t n = s->n + s->ncolumn, ncolumn = s->ncolumn;
     struct ct_arena *own = ct_arena_create_under(s->arena);
     double *D = CT_NEWN(own, double, n *ncolumn), *y = CT_NEWN(own, double, n);
@@ -114,36 +117,48 @@ static double solve_dense(struct ct_damped *s, double *x, const struct ct_sparse
         for (size_t k = A->start[i]; k < A->start[i + 1]; k++)
             D[i + n * (size_t)A->column[k]] += A->value[k];
     for (size_t k = 0; k < ncolumn; k++)
-        D[s->n + k + n * k] = damping;
+        D[s->n + k + n * k] = s->damping;
     ct_lstsq(y, D, (int)n, (int)ncolumn, (int)n, 0, CT_NEWN(own, int, ncolumn), work);
     memcpy(x, y, ncolumn * sizeof *x);
     ct_arena_destroy(own);
-    return (double)n * (double)(ncolumn * ncolumn);
 }
 
-double ct_damped_solve(struct ct_damped *s, double *x, const struct ct_sparse_rows *A, size_t n,
-                       size_t ncolumn, const double *b, double damping)
+double ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
+                        size_t ncolumn, double damping)
 {
-    if (n == 0 || ncolumn == 0) {
-        memset(x, 0, ncolumn * sizeof *x);
+    s->is_empty = n == 0 || ncolumn == 0;
+    if (s->is_empty) {
+        s->ncolumn = ncolumn;
         return 0;
     }
     if (!has_pattern(s, A, n, ncolumn))
         analyse(s, A, n, ncolumn);
+    s->A = A;
+    s->damping = damping;
     if (!s->K)
-        return solve_dense(s, x, A, b, damping);
-    memcpy(s->b, b, n * sizeof *b); // what follows stays zero
+        return (double)(n + ncolumn) * (double)(ncolumn * ncolumn);
     for (size_t i = 0; i < n + ncolumn; i++)
         s->value[i] = i < n ? damping : -damping;
     for (int side = 0; side < 2; side++)
         memcpy(s->value + n + ncolumn + (side ? s->nentry : 0), A->value,
                s->nentry * sizeof *s->value);
-    if (!ct_sparse_factor_repivot(s->K, s->value)) {
-        for (size_t k = 0; k < ncolumn; k++)
-            x[k] = NAN;
-        return 0;
+    s->is_singular = !ct_sparse_factor_repivot(s->K, s->value);
+    return s->is_singular ? 0 : ct_sparse_operations(s->K) + ct_sparse_fill(s->K);
+}
+
+void ct_damped_solve(struct ct_damped *s, double *x, const double *b)
+{
+    if (s->is_empty) {
+        memset(x, 0, s->ncolumn * sizeof *x);
+        return;
     }
-    ct_sparse_solve_extended(s->K, s->x, s->b);
-    memcpy(x, s->x + n, ncolumn * sizeof *x);
-    return ct_sparse_operations(s->K) + ct_sparse_fill(s->K);
+    if (!s->K) {
+        solve_dense(s, x, b);
+        return;
+    }
+    memcpy(s->b, b, s->n * sizeof *b); // what follows stays zero
+    if (!s->is_singular)
+        ct_sparse_solve_extended(s->K, s->x, s->b);
+    for (size_t k = 0; k < s->ncolumn; k++)
+        x[k] = s->is_singular ? NAN : s->x[s->n + k];
 }

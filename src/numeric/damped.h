@@ -7,7 +7,7 @@
 //
 // by LU with pivoting and refinement in extended precision. Its condition is |A| / damping; that of
 // the normal equations is the square. Singular values of A far below the damping have no part in x,
-// as in the solution of least norm.
+// as in the solution of least norm; those that are round-off, eps, multiply what b has along them by eps / damping^2.
 //
 // Source: the augmented system and its scaling, Bjorck (1996), section 2.7, key bjorck1996.
 #ifndef CT_NUMERIC_DAMPED_H
@@ -35,10 +35,11 @@ double ct_sparse_rows_largest_column(const struct ct_sparse_rows *A, size_t n, s
 
 struct ct_damped;
 struct ct_damped *ct_damped_create(struct ct_arena *a);
-/// x (ncolumn, out) for the first n rows of A and b (n), which x may overlap; damping > 0. The
-/// analysis of the pattern is kept for the next call. Returns about how many multiplications it
-/// took. x is NaN where A or b are not finite.
-double ct_damped_solve(struct ct_damped *s, double *x, const struct ct_sparse_rows *A, size_t n,
-                       size_t ncolumn, const double *b, double damping);
+/// Factor for the first n rows of A, which must stay until the last solution; damping > 0. The analysis of a pattern is kept
+/// for the next factors of the same. Returns about how many multiplications it took.
+double ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
+                        size_t ncolumn, double damping);
+/// x (ncolumn, out) for b (n), which it may overlap. NaN where A is not finite.
+void ct_damped_solve(struct ct_damped *s, double *x, const double *b);
 
 #endif

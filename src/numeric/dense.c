@@ -237,13 +237,13 @@ static inline void substitute(double *x, const double *LU, const int *pivot, con
     }
     for (int k = 0; k < n; k++) { // L z = b
         const double *l = LU + (size_t)lda * k;
-        for (int i = k + 1; i < n; i++)
+        for (int i = k + 1; i < n && (n <= FEW || x[k] != 0); i++)
             x[i] -= l[i] * x[k];
     }
     for (int k = n; k-- > 0;) { // U x = z
         const double *u = LU + (size_t)lda * k;
         x[k] /= u[k];
-        for (int i = 0; i < k; i++)
+        for (int i = 0; i < k && (n <= FEW || x[k] != 0); i++)
             x[i] -= u[i] * x[k];
     }
 }

@@ -48,6 +48,7 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 // structures are next to positive definite, where any order of the diagonal is stable, and one pivot beside it can fill all
 // the rest. Where growth is larger they are sought by threshold partial pivoting, and these kept while growth is at most so
 // many times that of the search. Growth costs as many digits: three of sixteen are given up.
+// Default: digits against searches, which allocate. Test: factors.
 static const double growth_limit = 1e3;
 
 // ---- orders ------------------------------------------------------------------------------------

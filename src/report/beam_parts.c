@@ -2,19 +2,40 @@
 #include "report/beam_parts.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
+#include "formulate/dynamics/dynamics.h"
+#include "formulate/dynamics/small_motion.h"
 
 #include <string.h>
 
-// Operators and operands below which a name is no shorter.
+// Layout: operators and operands below which a name is no shorter.
 enum { LEAST_NAMED = 8 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
 
-static void replace(struct ct_arena *a, struct ct_beam_parts *p, ct_ex of, ct_ex by)
+static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct_ex symbol)
 {
     size_t n = p->n;
-    CT_PUSH(a, p->of, n, p->of_cap, of);
-    CT_PUSH(a, p->by, p->n, p->by_cap, by);
+    CT_PUSH(a, p->node, n, p->node_cap, node);
+    CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
+}
+
+// The angular velocity of the frame stands in other parts.
+static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
+{
+    return p->nturning && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
+             ? ct_ex_subst(x, value, p->turning, p->turning_full, (size_t)p->nturning)
+             : value;
+}
+
+static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
+                  const char *name)
+{
+    const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
+                                   (uint32_t)p->definitions.n);
+    const struct ct_reduced_definition d
+        = {.symbol = symbol, .value = value, .full = without_names(x, p, value)};
+    CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
+    return symbol;
 }
 
 // value under a name, or itself where it is short or constant.
@@ -24,10 +45,21 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
     const bool is_constant = !(ct_ex_kinds(x, value) & ~(1u << CT_SYM_PARAM));
     if (is_constant || ct_reduced_size(x, value, LEAST_NAMED) < LEAST_NAMED)
         return value;
-    const ct_ex symbol = ct_ex_sym(x, CT_SYM_LOCAL, ct_arena_strdup(x->arena, name),
-                                   (uint32_t)p->definitions.n);
-    const struct ct_reduced_definition d = {.symbol = symbol, .value = value, .full = value};
-    CT_PUSH(a, p->definitions.at, p->definitions.n, p->definition_cap, d);
+    return make(a, x, p, value, name);
+}
+
+// In space, where there are several beams, an angular velocity has a name however short it is: beams on one body then
+// differ by their names alone.
+static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
+                            ct_ex value, const char *name, bool always)
+{
+    const ct_ex symbol = !always || ct_ex_is_const(x, value, NULL)
+                           ? define(a, x, p, value, name)
+                           : make(a, x, p, value, name);
+    if (!ct_ex_same(symbol, value)) {
+        p->turning[p->nturning] = symbol;
+        p->turning_full[p->nturning++] = value;
+    }
     return symbol;
 }
 
@@ -35,10 +67,10 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
 static ct_ex name(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
                   const char *text)
 {
-    const ct_ex known = ct_beam_parts_name(p, x, value);
+    const ct_ex known = ct_beam_parts_name(p, value);
     const ct_ex symbol = ct_ex_same(known, value) ? define(a, x, p, value, text) : known;
     if (!ct_ex_same(symbol, known))
-        replace(a, p, value, symbol);
+        remember(a, p, value, symbol);
     return symbol;
 }
 
@@ -51,83 +83,86 @@ static bool is_normal(struct ct_build *b, const struct ct_flexible *f, int i)
 }
 
 static void name_rigid(struct ct_arena *a, struct ct_build *b, const struct ct_flexible *f,
-                       struct ct_beam_parts *p)
+                       struct ct_beam_parts *p, struct ct_inertia *I)
 {
     static const char *const entry[] = {"xx", "yx", "zx", "xy", "yy", "zy", "xz", "yz", "zz"};
     for (int i = 0; i < 3; i++)
-        name(a, b->x, p, f->inertia->moment.e[i],
-             ct_arena_printf(a, "s_%s.%s", f->name, axis_name[i]));
+        I->moment.e[i] = name(a, b->x, p, I->moment.e[i],
+                              ct_arena_printf(a, "s_%s.%s", f->name, axis_name[i]));
     for (int i = 0; i < 9; i++) { // column-major, symmetric: the same nodes
-        const bool is_there
-            = b->topology->is_planar ? i % 4 == 0 && is_normal(b, f, i / 4) : i / 3 >= i % 3;
-        if (is_there)
-            name(a, b->x, p, f->inertia->inertia.e[i],
-                 ct_arena_printf(a, "i_%s.%s", f->name, entry[i]));
+        const int row = i % 3, column = i / 3;
+        if (b->topology->is_planar && (row != column || !is_normal(b, f, row)))
+            continue;
+        I->inertia.e[i] = name(
+            a, b->x, p, I->inertia.e[i],
+            ct_arena_printf(a, "i_%s.%s", f->name, entry[row > column ? column + 3 * row : i]));
     }
 }
 
-// Forces with u' = 0: what the base's acceleration gives, less Q_vf, and the elastic ones.
+// Forces with u' = 0: quadratic velocity ones, elastic ones, those of the motion relative to the frame.
 static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_flexible *f,
-                        const ct_ex3 *moved, const ct_ex3 *swept, struct ct_beam_parts *p)
+                        struct ct_beam_parts *p, struct ct_named_inertia *out)
 {
     struct ct_exs *x = b->x;
-    ct_ex3 F, T, less[2];
+    ct_ex3 less[2];
     const struct ct_base m = ct_flexible_base(b, f, CT_BIAS),
-                         felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]),
-                         turned = {.w = felt.w};
+                         felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
-    ct_ex *all = CT_NEWN(a, ct_ex, nu + 1), *inertia = CT_NEWN(a, ct_ex, nu + 1),
-          *still = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);
-    ct_flexible_rows(b, f, &felt, CT_BIAS, all);
-    ct_flexible_inertia_rows(b, f, &felt, CT_BIAS, inertia);
+    struct ct_base turned = {{{{0}}}};
+    p->nturning = 0;
+    for (int i = 0; i < 3; i++)
+        turned.w.e[i] = define_turning(a, x, p, felt.w.e[i],
+                                       ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
+                                       b->nflexible > 1 && !b->topology->is_planar);
+    ct_ex *still = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);
     ct_flexible_inertia_rows(b, f, &turned, CT_BIAS, still);
     ct_flexible_stiffness_rows(b, f, elastic);
     for (int k = 0; k < f->nelastic; k++) {
         const int u = f->elastic[k].u;
-        const ct_ex Q
-            = define(a, x, p, ct_ex_neg(x, still[u]),
-                     ct_arena_printf(a, "Q_vf_%s", f->elastic[k].name)),
-            V = define(a, x, p, elastic[u], ct_arena_printf(a, "V_q_%s", f->elastic[k].name));
-        ct_ex by
-            = ct_ex_add(x, ct_ex3_dot(x, moved[k], felt.a), ct_ex3_dot(x, swept[k], felt.al));
-        by = ct_ex_sub(x, by, Q);
-        replace(a, p, inertia[u], by);
-        replace(a, p, all[u], ct_ex_add(x, by, V));
+        out->velocity[k] = define(a, x, p, ct_ex_neg(x, still[u]),
+                                  ct_arena_printf(a, "Q_vf_%s", f->elastic[k].name));
+        out->elastic[k]
+            = define(a, x, p, elastic[u], ct_arena_printf(a, "V_q_%s", f->elastic[k].name));
     }
-    f->inertia->method->wrench(b, f, &felt, CT_BIAS, &F, &T);
+    f->inertia->method->wrench(b, f, &turned, CT_BIAS, &out->force, &out->torque);
     for (int i = 0; i < 3; i++) {
-        name(a, x, p, F.e[i], ct_arena_printf(a, "F_v_%s.%s", f->name, axis_name[i]));
-        name(a, x, p, T.e[i], ct_arena_printf(a, "T_v_%s.%s", f->name, axis_name[i]));
+        out->force.e[i] = name(a, x, p, out->force.e[i],
+                               ct_arena_printf(a, "F_v_%s.%s", f->name, axis_name[i]));
+        out->torque.e[i] = name(a, x, p, out->torque.e[i],
+                                ct_arena_printf(a, "T_v_%s.%s", f->name, axis_name[i]));
     }
 }
 
 static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_beam_parts *p)
+                         struct ct_beam_parts *p, struct ct_named_inertia *out)
 {
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
-    ct_ex *M = CT_NEWN(a, ct_ex, nu * nu + 1);
-    struct ct_columns c = {CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
-    ct_flexible_columns(b, f, &c, M);
+    struct ct_arena *work = ct_arena_create_under(a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1);
+    ct_flexible_columns(b, f, &out->columns, M);
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
         for (int i = 0; i < 3; i++) {
-            c.moved[k].e[i] = name(a, x, p, c.moved[k].e[i],
-                                   ct_arena_printf(a, "m_rf_%s.%s", of, axis_name[i]));
-            c.swept[k].e[i] = name(a, x, p, c.swept[k].e[i],
-                                   ct_arena_printf(a, "m_thetaf_%s.%s", of, axis_name[i]));
+            ct_ex *moved = &out->columns.moved[k].e[i], *swept = &out->columns.swept[k].e[i];
+            *moved = name(a, x, p, *moved, ct_arena_printf(a, "m_rf_%s.%s", of, axis_name[i]));
+            *swept
+                = name(a, x, p, *swept, ct_arena_printf(a, "m_thetaf_%s.%s", of, axis_name[i]));
         }
         for (size_t l = 0; l <= k; l++) {
             const size_t row = (size_t)f->elastic[k].u, column = (size_t)f->elastic[l].u;
             const char *to = f->elastic[l].name + strlen(f->name) + 1;
-            name(a, x, p, M[(row > column ? row : column) + nu * (row > column ? column : row)],
-                 ct_arena_printf(a, "m_ff_%s.%s", of, to));
+            out->M[k * n + l] = out->M[l * n + k] = name(
+                a, x, p, M[(row > column ? row : column) + nu * (row > column ? column : row)],
+                ct_arena_printf(a, "m_ff_%s.%s", of, to));
         }
     }
-    name_forces(a, b, f, c.moved, c.swept, p);
+    ct_arena_destroy(work);
+    name_forces(a, b, f, p, out);
 }
 
 // Two elements in space; operators and operands of all parts that are collected and read.
+// Limit: of the time to collect; beyond, the sums are counted
 enum { MOST_COORDINATES = 12, MOST_SPEEDS = 1000, LONGEST = 40000 };
 
 // Sums over points of sections that vary are not read by anyone.
@@ -141,41 +176,113 @@ static bool varies(const struct ct_exs *x, const struct ct_beam *beam)
     return kinds & 1u << CT_SYM_LOCAL;
 }
 
+struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n)
+{
+    struct ct_named_inertia *s = CT_NEW(a, struct ct_named_inertia);
+    s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
+    s->M = CT_NEWN(a, ct_ex, n * n + 1);
+    s->velocity = CT_NEWN(a, ct_ex, n + 1);
+    s->elastic = CT_NEWN(a, ct_ex, n + 1);
+    return s;
+}
+
+static bool may_have_parts(const struct ct_equations *e, const struct ct_flexible *f)
+{
+    return f->nelastic && f->nelastic <= MOST_COORDINATES && e->nu <= MOST_SPEEDS
+        && !varies(e->x, f->beam);
+}
+
+bool ct_beam_parts_exist(const struct ct_equations *e)
+{
+    bool any = false;
+    for (size_t i = 0; i < e->build->nflexible; i++)
+        any = any || may_have_parts(e, &e->build->flexible[i]);
+    return any && !ct_small_motion_is_wanted(e->build);
+}
+
+bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list)
+{
+    double size = 0;
+    for (size_t k = 0; k < list->n && size <= LONGEST; k++)
+        size += ct_reduced_size(x, list->at[k].value, LONGEST - size + 1);
+    return size > LONGEST;
+}
+
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
-                       struct ct_beam_parts *p)
+                       enum ct_long_parts which, struct ct_beam_parts *p)
 {
     const struct ct_flexible *f = &e->build->flexible[i];
     const struct ct_beam_parts before = *p;
-    double size = 0;
-    if (!f->nelastic || f->nelastic > MOST_COORDINATES || e->nu > MOST_SPEEDS
-        || varies(e->x, f->beam))
+    if (!may_have_parts(e, f))
         return false;
-    name_rigid(a, e->build, f, p);
-    for (size_t k = before.definitions.n; k < p->definitions.n; k++)
-        size += ct_reduced_size(e->x, p->definitions.at[k].value, LONGEST - size + 1);
-    const size_t rigid = p->definitions.n;
-    if (size <= LONGEST)
-        name_elastic(a, e->build, f, p);
-    for (size_t k = rigid; k < p->definitions.n && size <= LONGEST; k++)
-        size += ct_reduced_size(e->x, p->definitions.at[k].value, LONGEST - size + 1);
-    if (size > LONGEST) {
+    struct ct_inertia *I = CT_NEW(a, struct ct_inertia);
+    struct ct_named_inertia *named = ct_named_inertia_create(a, (size_t)f->nelastic);
+    *I = *f->inertia;
+    I->named = named;
+    name_rigid(a, e->build, f, p, I);
+    const struct ct_definitions rigid
+        = {p->definitions.at + before.definitions.n, p->definitions.n - before.definitions.n};
+    bool is_long = which == CT_LONG_PARTS_NONE && ct_beam_parts_are_long(e->x, &rigid);
+    if (!is_long) {
+        name_elastic(a, e->build, f, p, named);
+        const struct ct_definitions all = {p->definitions.at + before.definitions.n,
+                                           p->definitions.n - before.definitions.n};
+        is_long = which == CT_LONG_PARTS_NONE && ct_beam_parts_are_long(e->x, &all);
+    }
+    if (is_long) {
         p->n = before.n;
         p->definitions.n = before.definitions.n;
+    } else if (p->inertia) {
+        p->inertia[i] = I;
     }
-    return size <= LONGEST;
+    return !is_long;
 }
 
-void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_beam_parts *p)
+void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_long_parts which,
+                          struct ct_beam_parts *p)
 {
-    *p = (struct ct_beam_parts){0};
-    for (size_t i = 0; i < e->build->nflexible; i++)
-        ct_beam_parts_add(a, e, i, p);
+    const size_t n = e->build->nflexible;
+    *p = (struct ct_beam_parts){.inertia = CT_NEWN(a, struct ct_inertia *, n + 1)};
+    // terms of higher order in `small` coordinates are left out by derivatives, for which names are constants
+    for (size_t i = 0; i < n && !ct_small_motion_is_wanted(e->build); i++)
+        ct_beam_parts_add(a, e, i, which, p);
 }
 
-ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, const struct ct_exs *x, ct_ex node)
+void ct_named_dynamics_derive(struct ct_arena *a, const struct ct_equations *e,
+                              struct ct_inertia *const *inertia, struct ct_named_dynamics *out)
+{
+    struct ct_equations *made = CT_NEW(a, struct ct_equations);
+    struct ct_build b = *e->build;
+    struct ct_flexible *f = CT_NEWN(a, struct ct_flexible, b.nflexible + 1);
+    for (size_t i = 0; i < b.nflexible; i++) {
+        f[i] = b.flexible[i];
+        if (inertia[i])
+            f[i].inertia = inertia[i];
+    }
+    *made = *b.eqs;
+    made->M = NULL;
+    made->nM = made->M_cap = 0;
+    made->Q = CT_NEWN(a, ct_ex, e->nu + 1);
+    made->has_dynamics = false;
+    b.arena = a;
+    b.flexible = f;
+    b.eqs = made;
+    b.dynamics.masses = (struct ct_lumped_masses){0};
+    b.dynamics.sweep[CT_BIAS] = b.dynamics.sweep[CT_FULL] = NULL;
+    ct_dynamics_derive(&b);
+    *out = (struct ct_named_dynamics){.M = made->M,
+                                      .nM = made->nM,
+                                      .Q = made->Q,
+                                      .effort = CT_NEWN(a, ct_ex, e->ndriver + 1)};
+    for (size_t i = 0; i < e->ncoordinate; i++)
+        if (e->coordinate[i].driver >= 0)
+            out->effort[e->coordinate[i].driver] = ct_driver_effort(&b, (int)i);
+}
+
+ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, ct_ex node)
 {
     for (size_t i = 0; i < p->n; i++)
-        if (ct_ex_same(p->of[i], node) && ct_ex_symbol(x, p->by[i]))
-            return p->by[i];
+        if (ct_ex_same(p->node[i], node))
+            return p->symbol[i];
     return node;
 }

@@ -7,6 +7,7 @@
 //     Q_vf_rod.1.u        quadratic velocity force                                     (3.87)
 //     F_v_rod.x, T_v_rod.z    force and torque of the motion relative to the frame with u' = 0; with those of its
 //                         turning, w x (w x s) and w x i w, minus Q_vr and Q_vtheta    (3.87)
+//     om_rod.x            angular velocity of the frame in its own axes, in which forces and torques stand
 //     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f where that is linear (4.11)
 //
 // stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation with its parts put in is the
@@ -16,19 +17,46 @@
 
 #include "report/reduced.h"
 
+struct ct_inertia;
+
 struct ct_beam_parts {
     struct ct_definitions definitions;
-    ct_ex *of, *by; // nodes of the equations, and what they are in terms of the definitions
-    size_t n, of_cap, by_cap, definition_cap;
+    ct_ex *node, *symbol; // of the engine's expressions, those with a name
+    size_t n, node_cap, symbol_cap, definition_cap;
+    ct_ex turning[3], turning_full[3]; // om of the beam in hand, and what it is
+    int nturning;
+    struct ct_inertia *
+        *inertia; // by beam: its integrals by name, NULL where it has none; NULL: not wanted
 };
 
-/// Of all beams; those of more than 12 elastic coordinates, of sections that vary, or too long to read have none. Nodes live in e->x,
-/// lists in a.
-void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, struct ct_beam_parts *p);
+/// What is too long to be written without names of its own.
+enum ct_long_parts { CT_LONG_PARTS_NONE, CT_LONG_PARTS_TOO };
+
+/// Of all beams; those of more than 12 elastic coordinates or of sections that vary have none. Nodes live in e->x, lists
+/// in a.
+void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_long_parts which,
+                          struct ct_beam_parts *p);
 /// Adds those of one beam, number i; false: it has none.
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
-                       struct ct_beam_parts *p);
+                       enum ct_long_parts which, struct ct_beam_parts *p);
+/// Has a beam parts, if they are not too long?
+bool ct_beam_parts_exist(const struct ct_equations *e);
+/// Are definitions too long to be written without names of their own?
+bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list);
 /// The name of a node; itself where it has none.
-ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, const struct ct_exs *x, ct_ex node);
+ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, ct_ex node);
+
+/// Mass matrix (lower triangle), forces and efforts of drivers of branches with integrals of beams by name.
+struct ct_named_dynamics {
+    struct ct_entry *M;
+    size_t nM;
+    ct_ex *Q;      // nu
+    ct_ex *effort; // ndriver
+};
+/// Derives them again from the kinematics of e; inertia: by beam, NULL for that of the engine.
+void ct_named_dynamics_derive(struct ct_arena *a, const struct ct_equations *e,
+                              struct ct_inertia *const *inertia, struct ct_named_dynamics *out);
+/// Of n elastic coordinates, all zero.
+struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n);
 
 #endif

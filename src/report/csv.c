@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
+// Limit: of a buffer
 enum { WAITING = 1 << 15 }; // bytes of rows that are written at once
 
 bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path, enum ct_suffix suffix,

@@ -8,6 +8,7 @@
 
 #include <limits.h>
 
+// Definition: of zlib. Limit: of a buffer
 enum { WINDOW = 15, RAW = -WINDOW, WITH_GZIP_HEADER = WINDOW + 16, MEMORY = 8, ROOM = 1 << 14 };
 
 struct ct_gzip {

@@ -2,7 +2,7 @@
 #include "report/derivation.h"
 
 #include "expr/collect.h"
-#include "formulate/build.h"
+#include "formulate/dynamics/small_motion.h"
 
 #include <string.h>
 
@@ -23,9 +23,9 @@ static const char *plain_name(const struct ct_derivation *d, const struct ct_sym
 static const char *latex_definition(struct ct_arena *a, const char *name)
 {
     static const char *const letter[][2]
-        = {{"phi_", "\\varphi"}, {"c_", "c"},        {"s_", "s"}, {"R_", "R"},
-           {"w_", "\\omega"},    {"al_", "\\alpha"}, {"d_", "d"}, {"v_", "v"},
-           {"a_", "a"},          {"F_", "F"},        {"T_", "T"}};
+        = {{"phi_", "\\varphi"}, {"c_", "c"}, {"s_", "s"}, {"R_", "R"}, {"w_", "\\omega"},
+           {"al_", "\\alpha"},   {"d_", "d"}, {"v_", "v"}, {"a_", "a"}, {"F_", "F"},
+           {"T_", "T"},          {"m_", "m"}, {"h_", "h"}, {"I_", "I"}, {"om_", "\\Omega"}};
     for (size_t i = 0; i < COUNT(letter); i++) {
         const size_t n = strlen(letter[i][0]);
         if (strncmp(name, letter[i][0], n))
@@ -115,6 +115,8 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
 {
     *d = (struct ct_derivation){.a = a, .e = e, .m = m, .page = {.arena = a, .look = look}};
     d->work = ct_arena_create_under(a);
+    d->is_recursive
+        = e->nmotion > CT_MOST_MATRIX_SPEEDS && !ct_small_motion_is_wanted(e->build);
     d->print = (struct ct_print){
         .style = look == CT_LOOK_TEXT ? CT_PRINT_TEXT : CT_PRINT_LATEX,
         .symbol = symbol,
@@ -125,6 +127,14 @@ void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_e
     };
     d->nrank = e->x->nsym;
     d->rank = rank_parameters(d);
+}
+
+void ct_derivation_append(struct ct_derivation *d, struct ct_growing_text *t, const char *more)
+{
+    for (; *more; more++)
+        CT_PUSH(d->a, t->at, t->n, t->cap, *more);
+    CT_PUSH(d->a, t->at, t->n, t->cap, '\0');
+    t->n--;
 }
 
 const char *ct_derivation_text_as(struct ct_derivation *d, ct_ex v, const struct ct_print *p)

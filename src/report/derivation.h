@@ -6,11 +6,16 @@
 #include "report/page.h"
 #include "report/reduced.h"
 
+/// Systems of more speeds are shown in recursive form, and in lists of their first and last few unless all is asked
+/// for: a mass matrix of as many columns as a line has characters is not read.
+enum { CT_MOST_MATRIX_SPEEDS = CT_PAGE_WIDTH };
+
 struct ct_derivation {
     struct ct_arena *a;
     struct ct_arena *work; // of one text, then cleared
     struct ct_equations *e;
     const struct ct_model *m;
+    bool is_recursive; // which form the equations get (reduced.h)
     struct ct_page page;
     struct ct_print print; // for expressions, in the page's look
     const int *rank;       // of the first nrank symbols: their order in products
@@ -19,6 +24,13 @@ struct ct_derivation {
 
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
                         const struct ct_model *m, enum ct_look look);
+
+/// A text that grows at its end, at a cost of what is added. Starts all zero.
+struct ct_growing_text {
+    char *at; // ends with a zero, which n does not count; NULL while nothing was added
+    size_t n, cap;
+};
+void ct_derivation_append(struct ct_derivation *d, struct ct_growing_text *t, const char *more);
 
 /// An expression in a style of print.
 const char *ct_derivation_text_as(struct ct_derivation *d, ct_ex v, const struct ct_print *p);
@@ -39,8 +51,6 @@ const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 /// A direction: x, -y, or [a, b, c].
 const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
 
-/// Lines of text beyond which subexpressions get names.
-enum { CT_MOST_LINES = 30 };
 /// Lines that v takes, about.
 size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v);
 /// Under a heading; nothing if there are none.
@@ -60,6 +70,12 @@ static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 
 /// The reduced equations as a reader wants them: collected, or with names where they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
+
+/// The same with the elastic coordinates of each beam as one vector; r: constraints and efforts. false: equations are
+/// short without that, or no beam has named parts.
+struct ct_beam_blocks;
+bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
+                          struct ct_beam_blocks *s);
 
 /// The mass matrix and the Jacobian of the constraints; of more than a page it is said how large they are.
 void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r);

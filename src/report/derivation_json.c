@@ -373,6 +373,19 @@ static void put_terms(struct writer *w, const struct ct_reduced *r)
     ct_json_end(&w->j);
 }
 
+// Left and right sides of the recursive form.
+static void put_sides(struct writer *w, const struct ct_reduced *r)
+{
+    ct_json_array(&w->j, "motion");
+    for (size_t i = 0; i < w->d->e->nmotion; i++) {
+        ct_json_array(&w->j, NULL);
+        ct_json_text(&w->j, NULL, text(w, r->cutset[i]));
+        ct_json_text(&w->j, NULL, text(w, r->Q[i]));
+        ct_json_end(&w->j);
+    }
+    ct_json_end(&w->j);
+}
+
 static void put_reduced(struct writer *w)
 {
     const struct ct_equations *e = w->d->e;
@@ -384,12 +397,17 @@ static void put_reduced(struct writer *w)
     size_t nM = e->nM;
     while (nM && ct_speed_is_state(e, (size_t)e->M[nM - 1].row)) // behind all others
         nM--;
-    put_matrix(w, "M", e->M, r.M, nM);
-    put_vector(w, "Q", r.Q, e->nmotion);
+    if (r.is_recursive) {
+        put_sides(w, &r);
+    } else {
+        put_matrix(w, "M", e->M, r.M, nM);
+        put_vector(w, "Q", r.Q, e->nmotion);
+    }
     put_matrix(w, "J", e->J, r.J, e->nJ);
     put_vector(w, "phi", r.phi, e->nrow);
     put_vector(w, "gam", r.gam, e->nrow);
-    put_terms(w, &r);
+    if (!r.is_recursive)
+        put_terms(w, &r);
 }
 
 void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages)

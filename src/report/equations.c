@@ -1,6 +1,7 @@
 // The derivation, stage by stage; see equations.h.
 #include "report/equations.h"
 
+#include "formulate/formulate.h"
 #include "report/derivation.h"
 
 #include <string.h>
@@ -43,17 +44,29 @@ bool ct_equations_format_find(const char *name, enum ct_equations_format *format
 
 bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
                         const struct ct_model *m, unsigned stages,
-                        enum ct_equations_format format)
+                        enum ct_equations_format format, bool is_full)
 {
     struct ct_derivation d;
     const enum ct_look look = format == CT_FORMAT_LATEX ? CT_LOOK_LATEX
                             : format == CT_FORMAT_HTML  ? CT_LOOK_HTML
                                                         : CT_LOOK_TEXT;
     ct_derivation_init(&d, scratch, e, m, look);
+    d.page.is_full = is_full;
+    d.is_recursive = d.is_recursive && format != CT_FORMAT_C; // its function returns M
+    if (!d.is_recursive)
+        ct_formulate_dynamics(e);
+    d.page.is_summary = e->nmotion > CT_MOST_MATRIX_SPEEDS && !is_full;
     const bool is_page = format != CT_FORMAT_C && format != CT_FORMAT_JSON;
+    if (d.page.is_summary)
+        ct_page_sentence(&d.page,
+                         "A summary, as there are more than %d speeds: lists show their first "
+                         "and last lines; --full prints all.",
+                         CT_MOST_MATRIX_SPEEDS);
     for (size_t i = 0; is_page && i < COUNT(stages_in_order); i++)
         if (stages & stages_in_order[i].bit)
             stages_in_order[i].fill(&d);
+    if (d.page.is_summary)
+        ct_page_shorten(&d.page);
     switch (format) {
     case CT_FORMAT_TEXT:
         ct_page_print_text(out, &d.page);

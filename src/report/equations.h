@@ -19,6 +19,7 @@
 
 enum {
     CT_STAGE_TERMINAL = 1,
+    // Definition: bits of the stages
     CT_STAGE_GRAPH = 2,
     CT_STAGE_TREE = 4,
     CT_STAGE_CUTSET = 8,
@@ -38,10 +39,11 @@ enum ct_equations_format {
 
 /// Print the stages in their order. C prints the reduced equations whatever the stages are. New nodes
 /// are made in e->x. Work space and texts live in scratch. False: the stream has failed.
+/// is_full: long lists, and all lists of more than CT_MOST_MATRIX_SPEEDS speeds, are not shortened.
 /// Cost: bounded for large systems, whose expressions are named instead of collected.
 bool ct_equations_print(FILE *out, struct ct_arena *scratch, struct ct_equations *e,
                         const struct ct_model *m, unsigned stages,
-                        enum ct_equations_format format);
+                        enum ct_equations_format format, bool is_full);
 
 /// The bit of a stage by its name ("tree"), "all" for all; 0 if there is none of that name.
 unsigned ct_stage_find(const char *name, size_t length);

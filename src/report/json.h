@@ -20,6 +20,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+// Limit: asserted, of the documents that are written
 enum { CT_JSON_DEPTH = 32 }; // nesting, asserted
 
 struct ct_json {

@@ -12,6 +12,7 @@
 enum {
     NUMBERS = 0,
     TEXT = 1,
+    // Definition: of MAT files of level 4
     LONGEST_NAME = 63
 }; // type 0000 and 0001: doubles, shown as numbers or text
 

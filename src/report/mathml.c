@@ -569,6 +569,7 @@ void ct_mathml_inline(FILE *out, const char *latex)
 
 // Widths in LaTeX at 10 pt [pt], so 10 are 1 em. A phone is 390 px wide, 22 em within margins of 1 em: what is wider
 // than a line there, its indent off, may be broken; a piece of half that is long enough to end behind a factor.
+// Layout: as above
 enum { PHONE_LINE = 180, LONG_PIECE = PHONE_LINE / 2 };
 
 static size_t width_of(struct span t)

@@ -7,6 +7,7 @@
 #include <math.h>
 
 enum {
+    // Layout: [0.1 px] of the picture
     COLUMNS = 3,
     SIDE = 2600,
     LEAST_HEIGHT = 700,

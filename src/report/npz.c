@@ -9,6 +9,7 @@
 // Magic, version, length of the header, the header: a Python dictionary, padded to a multiple of 64.
 static void put_header(struct ct_archive_bytes *out, const char *type, const char *shape)
 {
+    // Definition: of NPY files
     enum { BEFORE = 10, ALIGN = 64 };
     char *text = ct_arena_printf(
         out->arena, "{'descr': '%s', 'fortran_order': True, 'shape': (%s), }", type, shape);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+// Definition: of 24 bits
 enum { MOST = 0xfffffe, ABSENT = 0xffffff }; // of k: 24 bits
 
 char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n)

@@ -80,6 +80,80 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
     return &b->equation[b->nequation - 1];
 }
 
+// ---- summaries --------------------------------------------------------------------------------
+
+// Layout: lines at each end of a list: two points of a chain in a plane, one in space with its rotation.
+enum { FEW = 4 };
+
+static bool is_list(size_t n)
+{
+    return n > 2 * FEW + 1;
+}
+
+enum ct_shown ct_page_shown(const struct ct_page *p, size_t i, size_t n)
+{
+    return !p->is_summary || !is_list(n) || i < FEW || i + FEW >= n ? CT_SHOWN
+         : i == FEW                                                 ? CT_SHOWN_AS_MORE
+                                                                    : CT_LEFT_OUT;
+}
+
+static void shorten_table(struct ct_page *p, struct ct_page_block *b)
+{
+    const size_t n = strlen(b->align), nrow = b->ncell / n - 1; // without the head
+    if (!is_list(nrow))
+        return;
+    const char **row = b->cell + n * (1 + FEW); // the first that goes
+    for (size_t k = 0; k < n; k++)
+        row[k] = k == 0 ? "..."
+               : k == 1 ? ct_arena_printf(p->arena, "%zu more", nrow - 2 * FEW)
+                        : "";
+    memmove(row + n, b->cell + b->ncell - n * FEW, n * FEW * sizeof *row);
+    b->ncell = n * (2 + 2 * FEW);
+}
+
+// A side that fills more than a screen, by its length.
+static const char *shorten_side(struct ct_page *p, const char *side)
+{
+    const size_t n = side ? strlen(side) : 0;
+    if (n <= CT_MOST_LINES * CT_PAGE_WIDTH)
+        return side;
+    return p->look == CT_LOOK_TEXT
+             ? ct_arena_printf(p->arena, "... (%zu characters)", n)
+             : ct_arena_printf(p->arena, "\\ldots \\text{ (%zu characters)}", n);
+}
+
+static void shorten_equations(struct ct_page *p, struct ct_page_block *b)
+{
+    for (size_t i = 0; i < b->nequation; i++) {
+        b->equation[i].left = shorten_side(p, b->equation[i].left);
+        b->equation[i].right = shorten_side(p, b->equation[i].right);
+    }
+}
+
+void ct_page_shorten(struct ct_page *p)
+{
+    struct ct_page_block *all = p->block;
+    const size_t n = p->nblock;
+    p->block = NULL;
+    p->nblock = p->block_cap = 0;
+    for (size_t i = 0; i < n; i++) {
+        struct ct_page_block first = all[i], last = all[i];
+        const bool is_split = first.kind == CT_PAGE_EQUATIONS && is_list(first.nequation);
+        if (first.kind == CT_PAGE_TABLE)
+            shorten_table(p, &first);
+        shorten_equations(p, &first);
+        first.nequation = is_split ? FEW : first.nequation;
+        first.is_folded = false;
+        CT_PUSH(p->arena, p->block, p->nblock, p->block_cap, first);
+        if (!is_split)
+            continue;
+        ct_page_sentence(p, "... %zu more", last.nequation - 2 * FEW);
+        last.equation += last.nequation - FEW;
+        last.nequation = FEW;
+        CT_PUSH(p->arena, p->block, p->nblock, p->block_cap, last);
+    }
+}
+
 size_t ct_text_width(const char *s)
 {
     size_t n = 0;

@@ -10,9 +10,13 @@
 
 #include "expr/print.h"
 
+// Layout: of a page
 enum { CT_PAGE_WIDTH = 100 };
+/// Layout: lines of a screen: beyond, subexpressions get names, and summaries leave equations out.
+enum { CT_MOST_LINES = 30 };
 /// Width of a line of mathematics in HTML on a phone of 390 px [pt] in LaTeX of 10 pt, which is 1 em: 24 em of 16 px
 /// less margins of 1 em.
+/// Layout: of a page
 enum { CT_PAGE_PHONE = 220 };
 
 enum ct_page_kind {
@@ -54,6 +58,8 @@ struct ct_page {
     struct ct_arena *arena;
     enum ct_look look;
     const char *about; // of the equations that are added
+    bool is_summary;   // long lists are shortened
+    bool is_full;      // nothing is left out, however long
     struct ct_page_block *block;
     size_t nblock, block_cap;
 };
@@ -77,6 +83,13 @@ void ct_page_matrix(struct ct_page *p, size_t ncolumn);
 bool ct_page_matrix_end(struct ct_page *p);
 /// Starts a group of equations.
 void ct_page_equations(struct ct_page *p);
+/// What a page shows of number i of n things of a list: if it is a summary, of long lists the first and last few, and
+/// where the others begin a sign that there are more.
+enum ct_shown { CT_SHOWN, CT_SHOWN_AS_MORE, CT_LEFT_OUT };
+enum ct_shown ct_page_shown(const struct ct_page *p, size_t i, size_t n);
+/// The same for all tables and groups of equations that are on the page, which say how many were left out, and for
+/// sides of equations that fill more than a screen.
+void ct_page_shorten(struct ct_page *p);
 /// Adds one, and returns it for what else is known of it.
 struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
                                           const char *left, const char *right,

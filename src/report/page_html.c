@@ -113,6 +113,7 @@ static void put_equations(FILE *out, struct ct_arena *a, const struct ct_page_bl
 // Columns that hold more than a name or a number wrap.
 static bool *find_words(struct ct_arena *a, const struct ct_page_block *b, size_t n)
 {
+    // Layout: a longer text is words
     enum { LONGEST_NAME = 24 };
     bool *has_words = CT_NEWN(a, bool, n + 1);
     for (size_t i = n; i < b->ncell; i++)

@@ -56,6 +56,7 @@ static size_t words_width(const char *s)
 // ---- equations --------------------------------------------------------------------------------
 
 // What lines are indented by: \quad, and again where they go on; the room an estimate may be wrong by.
+// Layout: of a page
 enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
 // Before a factor, or a relation.
@@ -92,6 +93,7 @@ struct line {
 };
 
 // Lines of an environment: TeX holds all of it in memory. Within an equation it may be longer, so that most end behind one.
+// Layout: of a page
 enum { MOST_LINES = 60, MOST_LINES_WITHIN = 200 };
 
 // Ends a line of align*, and the environment where it is long enough.
@@ -300,6 +302,7 @@ static bool is_math(const struct ct_page_block *b, size_t cell)
     return n && cell >= n && isupper((unsigned char)b->align[cell % n]);
 }
 
+// Layout: of a page
 enum { SEPARATION = 12 }; // between columns [pt]
 
 // The widest part of a cell that cannot be broken [pt]: a formula, or what stands between blanks, dots and underscores.
@@ -375,7 +378,9 @@ static void put_table(FILE *out, const struct ct_page_block *b, struct ct_arena 
 
 // ---- matrices ---------------------------------------------------------------------------------
 
+// Layout: of a page
 enum { COLUMN_GAP = 6, MOST_ROWS = 45 };
+// Layout: of a page
 static const double script_size
     = 0.8; // of \scriptsize: letters of 7 pt are wider for their size
 

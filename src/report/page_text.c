@@ -108,6 +108,7 @@ static void put_line_of_note(FILE *out, const char *note, size_t indent)
 static void put_equation(FILE *out, const struct ct_page_equation *e, size_t label_width,
                          size_t left_width)
 {
+    // Layout: columns
     const size_t indent = 2;
     const size_t left = ct_text_width(e->left),
                  right = e->right ? 3 + ct_text_width(e->right) : 0;
@@ -160,6 +161,7 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
 }
 
 // Left sides up to this are brought to one width, so that the equal signs stand below each other.
+// Layout: columns
 enum { ALIGNED = 20 };
 
 static void put_equations(FILE *out, const struct ct_page_block *b)

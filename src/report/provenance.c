@@ -17,6 +17,7 @@
 
 // Beyond this many operators and operands a side is not multiplied out: where it is written by definitions, bodies
 // that are tidied have fewer than 1000 (reduced.c).
+// Limit: of the time to expand; beyond, a side has no table of terms
 static const double longest = 20000;
 
 // ---- sets of origins ----------------------------------------------------------------------------
@@ -327,6 +328,7 @@ static double value_of(const struct finder *f, uint32_t id, int point)
 
 // Sums of some hundred products differ by that much of their size where they are written in another order; that two
 // different expressions agree as well at two points is not to be expected.
+// Derived: n eps, n of some hundred, of products of some factors
 static const double same_value = 1e-10;
 
 static bool is_same(double a, double b)

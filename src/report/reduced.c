@@ -2,12 +2,15 @@
 #include "report/reduced.h"
 
 #include "expr/collect.h"
+#include "report/page.h"
 #include "base/sort.h"
 #include "expr/share.h"
-#include "formulate/dynamics/dynamics.h"
+
+#include <stdint.h>
 
 // Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
 // collecting takes seconds.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 20000;
 
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most)
@@ -141,10 +144,9 @@ static void find_efforts(struct ct_equations *e, ct_ex *effort)
     }
 }
 
-void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
-                        struct ct_reduced *r)
+static struct ct_reduced allocate(struct ct_arena *a, const struct ct_equations *e)
 {
-    *r = (struct ct_reduced){
+    return (struct ct_reduced){
         .M = CT_NEWN(a, ct_ex, e->nM + 1),
         .J = CT_NEWN(a, ct_ex, e->nJ + 1),
         .Q = CT_NEWN(a, ct_ex, e->nu + 1),
@@ -153,6 +155,12 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
         .effort = CT_NEWN(a, ct_ex, e->ndriver + 1),
         .rate = CT_NEWN(a, ct_ex, e->nq + 1),
     };
+}
+
+void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
+                        struct ct_reduced *r)
+{
+    *r = allocate(a, e);
     find_efforts(e, r->effort);
     r->is_collected = may_collect && size_of_all(e, r->effort) <= largest_collected;
     for (size_t i = 0; i < e->nM; i++)
@@ -171,16 +179,45 @@ void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_col
         r->rate[i] = collect(e, e->q[i].rate);
 }
 
+void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    struct ct_build *b = e->build;
+    *r = allocate(a, e);
+    r->is_recursive = true;
+    r->cutset = CT_NEWN(a, ct_ex, e->nu + 1);
+    for (size_t i = 0; i < e->nu; i++) {
+        r->cutset[i] = ct_sweep_row(b, (int)i);
+        r->Q[i] = b->loads->effort[i];
+    }
+    for (size_t i = 0; i < e->nJ; i++)
+        r->J[i] = e->J[i].value;
+    for (size_t i = 0; i < e->nrow; i++) {
+        r->phi[i] = e->row[i].phi;
+        r->gam[i] = e->row[i].gam;
+    }
+    for (size_t i = 0; i < e->nq; i++)
+        r->rate[i] = collect(e, e->q[i].rate);
+    find_efforts(e, r->effort);
+    ct_reduced_label(e, CT_FULL);
+    ct_reduced_share(a, e, r);
+}
+
 // ---- sharing ----------------------------------------------------------------------------------
 
 // All expressions one after the other; where = NULL: only their number.
 static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r, ct_ex **where)
 {
+    const bool is_recursive = r->is_recursive;
     const struct {
         ct_ex *at;
         size_t n;
-    } part[] = {{r->M, e->nM},     {r->Q, e->nu},     {r->J, e->nJ},
-                {r->phi, e->nrow}, {r->gam, e->nrow}, {r->effort, e->ndriver}};
+    } part[] = {{r->cutset, is_recursive ? e->nu : 0},
+                {r->M, is_recursive ? 0 : e->nM},
+                {r->Q, e->nu},
+                {r->J, e->nJ},
+                {r->phi, e->nrow},
+                {r->gam, e->nrow},
+                {r->effort, e->ndriver}};
     size_t n = 0;
     for (size_t k = 0; k < COUNT(part); k++)
         for (size_t i = 0; i < part[k].n; i++, n++)
@@ -223,26 +260,35 @@ static void replace_named(struct ct_arena *a, struct ct_equations *e,
         if (!name)
             continue;
         const uint32_t number = (uint32_t)list->n;
+        const bool is_negative = name[0] == '-';
         struct ct_reduced_definition *d = &list->at[list->n++];
-        d->full = old;
-        d->value = may_tidy ? tidy(e, map[old.id]) : map[old.id];
-        d->symbol = map[old.id] = ct_ex_sym(x, CT_SYM_LOCAL, name, number);
+        d->full = is_negative ? ct_ex_neg(x, old) : old;
+        d->value = is_negative ? ct_ex_neg(x, map[old.id]) : map[old.id];
+        d->value = may_tidy ? tidy(e, d->value) : d->value;
+        d->symbol = ct_ex_sym(x, CT_SYM_LOCAL, name + is_negative, number);
+        map[old.id] = is_negative ? ct_ex_neg(x, d->symbol) : d->symbol;
     }
 }
 
 // The order a reader meets them in: those a definition needs stand before it.
 struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equations *e,
-                                          ct_ex *const *where, size_t n, double *size)
+                                          ct_ex *const *where, size_t n, bool names_first,
+                                          double *size)
 {
-    const struct ct_share_options o = {.most = 20000, .enough = 2000};
+    const struct ct_share_options o = {
+        .most = names_first ? SIZE_MAX : 20000,
+        .enough = 2000,
+        .least = names_first ? CT_PAGE_WIDTH : 0, // a definition takes a line: it must save one
+        .names_first = names_first};
     ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
     struct ct_definitions list;
     for (size_t i = 0; i < n; i++)
         root[i] = *where[i];
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
     ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
-    // collecting clears work space of the size of the store each time
-    const bool may_tidy = (double)(n + share.n) * (double)e->x->nnode < 2e8;
+    // what nobody reads through need not be in its nicest form: collecting takes some 0.1 ms each
+    // Limit: a tenth of a second
+    const bool may_tidy = names_first || (double)(n + share.n) * (double)e->x->nnode < 2e8;
     replace_named(a, e, &list, &share, root, n, map, may_tidy);
     for (size_t i = 0; i < n; i++)
         *where[i] = may_tidy ? tidy(e, map[root[i].id]) : map[root[i].id];
@@ -255,43 +301,29 @@ void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_redu
     const size_t n = list_all(e, r, NULL);
     ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
     list_all(e, r, where);
-    r->definitions = ct_definitions_find(a, e, where, n, &r->size);
+    r->definitions = ct_definitions_find(a, e, where, n, r->is_recursive, &r->size);
 }
 
-void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_collect,
-                        struct ct_reduced *r, const ct_ex *of, const ct_ex *by, size_t n)
+bool ct_reduced_collect(struct ct_arena *a, struct ct_equations *e, ct_ex *const *where,
+                        size_t n)
 {
-    struct ct_exs *x = e->x;
-    const size_t nroot = list_all(e, r, NULL);
-    ct_ex **where = CT_NEWN(a, ct_ex *, nroot + 1), *root = CT_NEWN(a, ct_ex, nroot + 1),
-          *map = CT_NEWN(a, ct_ex, x->nnode + 1);
-    list_all(e, r, where);
-    for (size_t i = 0; i < nroot; i++)
-        root[i] = *where[i];
-    const size_t nwalk = ct_ex_walk(x, root, nroot);
-    uint32_t *id = CT_NEWN(a, uint32_t, nwalk + 1);
-    for (size_t k = 0; k < nwalk; k++)
-        id[k] = x->stack[k];
-    ct_sort(a, id, nwalk, sizeof *id, by_id, NULL);
-    for (size_t i = 0; i < n; i++) // 0 is the constant zero, which nothing replaces
-        map[of[i].id] = by[i];
-    for (size_t k = 0; k < nwalk; k++) {
-        const struct ct_exnode node = *ct_ex_node(x, (ct_ex){id[k]});
-        if (!map[id[k]].id)
-            map[id[k]]
-                = ct_op_info[node.op].narg ? ct_ex_rebuild(x, node, map) : (ct_ex){id[k]};
-    }
     double size = 0;
-    for (size_t i = 0; i < nroot; i++) {
-        *where[i] = map[root[i].id];
-        size += ct_reduced_size(x, *where[i], largest_collected - size + 1);
-    }
-    r->is_collected = may_collect && size <= largest_collected;
-    for (size_t i = 0; i < e->nu && r->is_collected; i++)
-        r->Q[i] = ct_reduced_collect_force(e, a, r->Q[i]);
-    for (size_t i = 0; i < nroot && r->is_collected; i++)
-        if (where[i] < r->Q || where[i] >= r->Q + e->nu)
-            *where[i] = collect(e, *where[i]);
+    for (size_t i = 0; i < n; i++)
+        size += ct_reduced_size(e->x, *where[i], largest_collected - size + 1);
+    for (size_t i = 0; i < e->nq; i++)
+        if (e->q[i].quaternion >= 0)
+            return false;
+    for (size_t i = 0; i < n && size <= largest_collected; i++)
+        *where[i] = ct_reduced_collect_force(e, a, *where[i]);
+    return size <= largest_collected;
+}
+
+void ct_reduced_collect_all(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r)
+{
+    const size_t n = list_all(e, r, NULL);
+    ct_ex **where = CT_NEWN(a, ct_ex *, n + 1);
+    list_all(e, r, where);
+    r->is_collected = ct_reduced_collect(a, e, where, n);
 }
 
 // ---- equations --------------------------------------------------------------------------------
@@ -300,6 +332,8 @@ void ct_reduced_replace(struct ct_arena *a, struct ct_equations *e, bool may_col
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i)
 {
     ct_ex sum = CT_EX_ZERO;
+    if (r->is_recursive)
+        return r->cutset[i];
     for (size_t k = 0; k < e->nM; k++) {
         const int row = e->M[k].row, column = e->M[k].column;
         if (row != (int)i && column != (int)i)
@@ -313,6 +347,8 @@ ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t
 ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i)
 {
     ct_ex sum = r->Q[i];
+    if (r->is_recursive)
+        return sum;
     for (size_t k = 0; k < e->nJ; k++)
         if (e->J[k].column == (int)i)
             sum = ct_ex_add(e->x, sum, ct_ex_mul(e->x, r->J[k], e->row[e->J[k].row].lam));

@@ -3,10 +3,12 @@
 
 #include "expr/collect.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
+#include "report/same_page.h"
 
 #include <string.h>
 
 // Larger beams are counted, not printed.
+// Layout: of a page
 enum { MOST_ELEMENTS = 40, MOST_COORDINATES = 120, LARGEST_ARM = 300 };
 
 // ---- what a beam is --------------------------------------------------------------------------------------
@@ -458,18 +460,42 @@ static void put_index(struct ct_derivation *d, const struct ct_flexible *f)
         ct_page_sentence(&d->page, "... and %d elements more", n - MOST_ELEMENTS);
 }
 
+static void put_whole(struct ct_derivation *d, size_t i)
+{
+    const struct ct_flexible *f = &d->e->build->flexible[i];
+    put_body(d, f);
+    if (!f->nelastic)
+        return;
+    put_element(d, f);
+    put_index(d, f);
+    ct_beam_matrices_put_element(d, f);
+    ct_beam_matrices_put(d, i);
+}
+
+// As text, what is said of a beam is not said again of one that differs by its name.
 void ct_beams_put_terminal(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;
+    uint64_t *meaning = CT_NEWN(d->a, uint64_t, b->nflexible + 1);
     for (size_t i = 0; i < b->nflexible; i++) {
-        d->page.about = b->flexible[i].name;
-        put_body(d, &b->flexible[i]);
-        if (!b->flexible[i].nelastic)
-            continue;
-        put_element(d, &b->flexible[i]);
-        put_index(d, &b->flexible[i]);
-        ct_beam_matrices_put_element(d, &b->flexible[i]);
-        ct_beam_matrices_put(d, i);
+        const char *name = b->flexible[i].name;
+        const size_t from = d->page.nblock;
+        size_t same = 0;
+        d->page.about = name;
+        put_whole(d, i);
+        if (d->page.look == CT_LOOK_TEXT && b->flexible[i].nelastic) {
+            meaning[i] = ct_page_meaning(&d->page, from, name);
+            while (same < i && meaning[same] != meaning[i])
+                same++;
+            if (same < i) {
+                d->page.nblock = from;
+                ct_page_heading(&d->page, ct_arena_printf(d->a, "beam %s", name));
+                ct_page_sentence(&d->page, "as beam %s, with %s for %s in all names",
+                                 b->flexible[same].name, name, b->flexible[same].name);
+            }
+        }
+        if (b->flexible[i].nelastic)
+            ct_beam_matrices_put_turning(d, i);
     }
 }
 

@@ -36,6 +36,8 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
 void ct_beams_put_terminal(struct ct_derivation *d);
 /// What liang2017 calls the matrices of the beam and the shape integrals of its element.  (stage_beam_matrices.c)
 void ct_beam_matrices_put(struct ct_derivation *d, size_t beam);
+/// Angular velocity of its frame, where it has a name in them.
+void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t beam);
 void ct_beam_matrices_put_element(struct ct_derivation *d, const struct ct_flexible *f);
 /// Arms to sections.
 void ct_beams_put_arms(struct ct_derivation *d);

@@ -15,13 +15,9 @@
 
 #include <string.h>
 
-// Collecting clears work space of the size of the store, 1 ms for 50000 nodes: in a larger one expressions stay as they
-// are.
 static ct_ex collect(struct ct_derivation *d, ct_ex v)
 {
-    enum { LARGEST_STORE = 50000 };
-    if (d->e->x->nnode > LARGEST_STORE || ct_ex_is_const(d->e->x, v, NULL)
-        || ct_ex_symbol(d->e->x, v))
+    if (ct_ex_is_const(d->e->x, v, NULL) || ct_ex_symbol(d->e->x, v))
         return v;
     struct ct_arena *work = ct_arena_create_under(d->a);
     const struct ct_collect_options o = {.scratch = work};
@@ -355,13 +351,12 @@ static void put_rigid(struct ct_derivation *d, const struct ct_flexible *f,
                       const struct ct_beam_parts *p)
 {
     const struct ct_inertia *I = f->inertia;
-    struct ct_exs *x = d->e->x;
     ct_ex3 s;
     ct_ex value[9];
     for (int i = 0; i < 3; i++)
-        s.e[i] = ct_beam_parts_name(p, x, I->moment.e[i]);
+        s.e[i] = ct_beam_parts_name(p, I->moment.e[i]);
     for (int i = 0; i < 9; i++)
-        value[i] = ct_beam_parts_name(p, x, I->inertia.e[i % 3 * 3 + i / 3]); // by rows
+        value[i] = ct_beam_parts_name(p, I->inertia.e[i % 3 * 3 + i / 3]); // by rows
     ct_page_equations(&d->page);
     put(d, "m_rr", "\\boldsymbol{m}_{rr}",
         ct_arena_printf(d->a, "%s*1", ct_derivation_text(d, I->mass)),
@@ -413,7 +408,9 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
     struct ct_exs *x = b->x;
     const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
     const char **name = CT_NEWN(d->a, const char *, n + 1);
-    ct_ex *M = CT_NEWN(d->a, ct_ex, nu * nu + 1), *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1),
+    struct ct_arena *work
+        = ct_arena_create_under(d->a); // as large as the system, for each beam
+    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1), *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1),
           *swept = CT_NEWN(d->a, ct_ex, 3 * n + 1), *mff = CT_NEWN(d->a, ct_ex, n * n + 1),
           *K = CT_NEWN(d->a, ct_ex, n * n + 1), *q = CT_NEWN(d->a, ct_ex, n + 1),
           *zero = CT_NEWN(d->a, ct_ex, n + 1), *force = CT_NEWN(d->a, ct_ex, n + 1);
@@ -423,8 +420,8 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
         name[k] = ct_derivation_name(d, f->elastic[k].name);
         q[k] = b->eqs->q[f->elastic[k].q].symbol;
         for (size_t i = 0; i < 3; i++) {
-            moved[3 * k + i] = ct_beam_parts_name(p, x, c.moved[k].e[i]);
-            swept[3 * k + i] = ct_beam_parts_name(p, x, c.swept[k].e[i]);
+            moved[3 * k + i] = ct_beam_parts_name(p, c.moved[k].e[i]);
+            swept[3 * k + i] = ct_beam_parts_name(p, c.swept[k].e[i]);
         }
     }
     ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
@@ -432,9 +429,10 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
         for (size_t k = 0; k <= i; k++) {
             const size_t row = (size_t)f->elastic[i].u, column = (size_t)f->elastic[k].u;
             mff[i * n + k] = ct_beam_parts_name( // column-major, the lower triangle
-                p, x, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
+                p, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
+    ct_arena_destroy(work);
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
                                    "m_rf'*A", "(A.6), (A.7)", name, xyz, n, 3, moved, false});
     put_matrix(d, &(struct matrix){"m_thetaf'", "\\boldsymbol{m}_{\\theta f}^{T}", "m_thetaf'",
@@ -447,10 +445,55 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
                                    name, name, n, n, K, true});
 }
 
+// Long ones with names for what is written more than once.
+static void put_definitions(struct ct_derivation *d, const struct ct_definitions *list)
+{
+    const bool is_long = ct_beam_parts_are_long(d->e->x, list);
+    ct_ex *value = CT_NEWN(d->a, ct_ex, list->n + 1),
+          **where = CT_NEWN(d->a, ct_ex *, list->n + 1);
+    struct ct_definitions shared = {0};
+    double size;
+    for (size_t i = 0; i < list->n; i++) {
+        value[i] = list->at[i].value;
+        where[i] = &value[i];
+    }
+    if (is_long)
+        shared = ct_definitions_find(d->a, d->e, where, list->n, false, &size);
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < shared.n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, shared.at[i].symbol),
+                         ct_derivation_text(d, shared.at[i].value), NULL);
+    for (size_t i = 0; i < list->n; i++)
+        ct_page_equation(&d->page, NULL, ct_derivation_text(d, list->at[i].symbol),
+                         is_long ? ct_derivation_text(d, value[i]) : collected(d, value[i]),
+                         NULL);
+}
+
+// of_frame: the angular velocity of the frame alone, which depends on what carries the beam; or all else.
+static struct ct_definitions some_parts(struct ct_derivation *d, const struct ct_beam_parts *p,
+                                        bool of_frame)
+{
+    const struct ct_definitions *all = &p->definitions;
+    struct ct_definitions list = {CT_NEWN(d->a, struct ct_reduced_definition, all->n + 1), 0};
+    for (size_t i = 0; i < all->n; i++)
+        if (!strncmp(ct_ex_symbol(d->e->x, all->at[i].symbol)->name, "om_", 3) == of_frame)
+            list.at[list.n++] = all->at[i];
+    return list;
+}
+
+static bool add_parts(struct ct_derivation *d, size_t i, struct ct_beam_parts *p)
+{
+    const enum ct_long_parts which
+        = d->page.look == CT_LOOK_TEXT ? CT_LONG_PARTS_TOO : CT_LONG_PARTS_NONE;
+    *p = (struct ct_beam_parts){0};
+    return ct_beam_parts_add(d->a, d->e, i, which, p);
+}
+
 static void put_parts(struct ct_derivation *d, const struct ct_flexible *f,
                       const struct ct_beam_parts *p)
 {
-    if (!p->definitions.n)
+    const struct ct_definitions list = some_parts(d, p, false);
+    if (!list.n)
         return;
     ct_page_heading(&d->page, ct_arena_printf(d->a, "entries of the matrices of %s", f->name));
     ct_page_sentence(
@@ -458,16 +501,27 @@ static void put_parts(struct ct_derivation *d, const struct ct_flexible *f,
         "Q_vf: quadratic velocity force (3.87), (3.120); F_v, T_v: its force and "
         "torque without those of s and m_thetatheta; V_q: elastic force, K_f q_f where "
         "it is linear");
-    ct_page_equations(&d->page);
-    for (size_t i = 0; i < p->definitions.n; i++)
-        ct_page_equation(&d->page, NULL, ct_derivation_text(d, p->definitions.at[i].symbol),
-                         collected(d, p->definitions.at[i].value), NULL);
+    put_definitions(d, &list);
+}
+
+void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t i)
+{
+    struct ct_beam_parts p;
+    if (!add_parts(d, i, &p))
+        return;
+    const struct ct_definitions list = some_parts(d, &p, true);
+    if (!list.n)
+        return;
+    ct_page_heading(
+        &d->page, ct_arena_printf(d->a, "angular velocity of the frame of %s, in its own axes",
+                                  d->e->build->flexible[i].name));
+    put_definitions(d, &list);
 }
 
 void ct_beam_matrices_put(struct ct_derivation *d, size_t i)
 {
     const struct ct_flexible *f = &d->e->build->flexible[i];
-    struct ct_beam_parts p = {0};
+    struct ct_beam_parts p;
     ct_page_heading(
         &d->page,
         ct_arena_printf(d->a, "matrices of %s, numbered as in Liang (2017)", f->name));
@@ -476,7 +530,7 @@ void ct_beam_matrices_put(struct ct_derivation *d, size_t i)
                      "elastic coordinates q_f; A: rotation of the frame. Q_v stands on the "
                      "right side, so it is minus (3.87)");
     put_terminal(d, f);
-    if (!ct_beam_parts_add(d->a, d->e, i, &p)) {
+    if (!add_parts(d, i, &p)) {
         ct_page_sentence(&d->page,
                          "m_rf, m_thetaf, m_ff and K_f of %d coordinates are not written out; "
                          "they are sums over the elements of the integrals above",

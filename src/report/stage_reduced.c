@@ -1,6 +1,9 @@
 // The reduced equations as equations of a page.
-#include "report/beam_parts.h"
+#include "formulate/beam/flexible_body.h"
+#include "report/beam_blocks.h"
 #include "report/provenance.h"
+
+#include <string.h>
 
 struct sides {
     ct_ex left, right;
@@ -134,21 +137,29 @@ static void put_efforts(struct ct_derivation *d, const struct group *g,
     }
 }
 
+// All that the equations and the definitions show; returns how many.
+static size_t list_shown(struct ct_derivation *d, const struct group g[NGROUP],
+                         const struct ct_reduced *r, ct_ex **e)
+{
+    size_t n = 0, cap = 0;
+    *e = NULL;
+    for (size_t k = 0; k < NGROUP; k++)
+        for (size_t i = 0; i < g[k].n; i++) {
+            CT_PUSH(d->a, *e, n, cap, g[k].at[i].left);
+            CT_PUSH(d->a, *e, n, cap, g[k].at[i].right);
+        }
+    for (size_t i = 0; i < r->definitions.n; i++)
+        CT_PUSH(d->a, *e, n, cap, r->definitions.at[i].value);
+    return n;
+}
+
 // Does a symbol stand in one of the equations, or in a definition?
 static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
                   const struct ct_reduced *r, ct_ex symbol)
 {
     struct ct_exs *x = d->e->x;
-    ct_ex *e = NULL;
-    size_t n = 0, cap = 0;
-    for (size_t k = 0; k < NGROUP; k++)
-        for (size_t i = 0; i < g[k].n; i++) {
-            CT_PUSH(d->a, e, n, cap, g[k].at[i].left);
-            CT_PUSH(d->a, e, n, cap, g[k].at[i].right);
-        }
-    for (size_t i = 0; i < r->definitions.n; i++)
-        CT_PUSH(d->a, e, n, cap, r->definitions.at[i].value);
-    const size_t nwalk = ct_ex_walk(x, e, n);
+    ct_ex *e;
+    const size_t n = list_shown(d, g, r, &e), nwalk = ct_ex_walk(x, e, n);
     for (size_t i = 0; i < nwalk; i++)
         if (x->stack[i] == symbol.id)
             return true;
@@ -214,6 +225,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 }
 
 // More rows or columns never fit a page.
+// Layout: of a page
 enum { MOST_COLUMNS = 40 };
 
 // What is larger than a page stands in the equations alone, and this is said.
@@ -254,7 +266,7 @@ static const char *count(struct ct_derivation *d, size_t n, const char *one, con
 static void share(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct ct_reduced plain;
-    ct_reduced_label(d->e);
+    ct_reduced_label(d->e, CT_BIAS);
     ct_reduced_prepare(d->a, d->e, false, &plain);
     ct_reduced_share(d->a, d->e, &plain);
     if (r->is_collected)
@@ -287,13 +299,20 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
         }
     for (size_t i = 0; i < own.n; i++)
         CT_PUSH(d->a, root, n, cap, own.at[i].value);
-    const size_t nwalk = ct_ex_walk(x, root, n);
+    size_t nwalk = ct_ex_walk(x, root, n);
+    bool *used = CT_NEWN(d->a, bool, all->n + 1);
+    for (int pass = 0; pass < 2; pass++) { // an angular velocity is used by other parts alone
+        for (size_t i = 0; i < all->n; i++)
+            if (!used[i] && (used[i] = is_used(x, nwalk, all->at[i].symbol)))
+                CT_PUSH(d->a, root, n, cap, all->at[i].value);
+        nwalk = ct_ex_walk(x, root, n);
+    }
     r->definitions.at = CT_NEWN(d->a, struct ct_reduced_definition, all->n + own.n + 1);
     r->definitions.n = 0;
     for (size_t i = 0; i < all->n; i++) {
         symbol[i] = all->at[i].symbol;
-        value[i] = all->at[i].value;
-        if (is_used(x, nwalk, symbol[i]))
+        value[i] = all->at[i].full;
+        if (used[i])
             r->definitions.at[r->definitions.n++] = all->at[i];
     }
     r->npart = r->definitions.n;
@@ -304,43 +323,72 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
     }
 }
 
-static bool has_quaternion(const struct ct_equations *e)
+// M, Q and efforts in names. false: an entry of M that the engine finds to vanish does not in names.
+static bool take_named(const struct ct_equations *e, const struct ct_named_dynamics *named,
+                       struct ct_reduced *r)
 {
-    for (size_t i = 0; i < e->nq; i++)
-        if (e->q[i].quaternion >= 0)
-            return true;
-    return false;
+    size_t taken = 0;
+    for (size_t i = 0, k = 0; i < e->nM; i++) { // both row by row
+        while (k < named->nM
+               && (named->M[k].row < e->M[i].row
+                   || (named->M[k].row == e->M[i].row && named->M[k].column < e->M[i].column)))
+            k++;
+        const bool is_there = k < named->nM && named->M[k].row == e->M[i].row
+                           && named->M[k].column == e->M[i].column;
+        r->M[i] = is_there ? named->M[k].value : CT_EX_ZERO;
+        taken += is_there;
+    }
+    for (size_t i = 0; i < e->nu; i++)
+        r->Q[i] = named->Q[i];
+    for (size_t i = 0; i < e->ndriver; i++)
+        r->effort[i] = named->effort[i];
+    return taken == named->nM;
 }
 
-// The same with the parts of beams by name. Collecting would multiply out the rotations of quaternions, which have names.
-static void name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
+// The same with the parts of beams by name.
+static bool name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
                        struct ct_reduced *r)
 {
     struct group g[NGROUP] = {0}, shared[NGROUP] = {0};
-    const bool may_collect = !has_quaternion(d->e);
-    ct_reduced_label(d->e);
+    struct ct_named_dynamics named;
+    ct_reduced_label(d->e, CT_BIAS);
+    ct_named_dynamics_derive(d->a, d->e, parts->inertia, &named);
     ct_reduced_prepare(d->a, d->e, false, r);
-    ct_reduced_replace(d->a, d->e, may_collect, r, parts->of, parts->by, parts->n);
+    if (!take_named(d->e, &named, r))
+        return false;
+    ct_reduced_collect_all(d->a, d->e, r);
     fill(d, r, g);
     if (!r->is_collected || is_long(d, g, NGROUP))
         ct_reduced_share(d->a, d->e, r);
     fill(d, r, shared);
     put_before(d, parts, shared, r);
+    return true;
+}
+
+// Expressions without names; false: they are too long to read.
+static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
+{
+    struct group g[NGROUP] = {0};
+    ct_reduced_prepare(d->a, d->e, true, r);
+    fill(d, r, g);
+    return r->is_collected && !is_long(d, g, NGROUP);
 }
 
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
 {
-    struct group g[NGROUP] = {0};
-    struct ct_beam_parts parts;
-    ct_reduced_prepare(d->a, d->e, true, r);
-    fill(d, r, g);
-    if (r->is_collected && !is_long(d, g, NGROUP))
+    struct ct_beam_parts parts = {0};
+    if (d->is_recursive) {
+        ct_reduced_recur(d->a, d->e, r);
         return;
-    ct_beam_parts_derive(d->a, d->e, &parts);
-    if (parts.n)
-        name_parts(d, &parts, r);
-    else
+    }
+    if (prepare(d, r))
+        return;
+    if (d->e->nu <= CT_MOST_MATRIX_SPEEDS)
+        ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_NONE, &parts);
+    if (!parts.definitions.n || !name_parts(d, &parts, r)) {
+        ct_reduced_prepare(d->a, d->e, true, r);
         share(d, r);
+    }
 }
 
 // Text and LaTeX have the parts of beams with their terminal equations, HTML folds them.
@@ -356,13 +404,110 @@ static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
     ct_derivation_put_definitions(d, "with", is_html ? &r->definitions : &own);
 }
 
+bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
+                          struct ct_beam_blocks *s)
+{
+    struct ct_beam_parts *parts = CT_NEW(d->a, struct ct_beam_parts);
+    if (d->is_recursive || d->e->nu > CT_MOST_MATRIX_SPEEDS || !ct_beam_parts_exist(d->e)
+        || prepare(d, r))
+        return false;
+    ct_reduced_label(d->e, CT_BIAS);
+    ct_beam_parts_derive(d->a, d->e, CT_LONG_PARTS_TOO, parts);
+    return parts->definitions.n && ct_beam_blocks_derive(d->a, d->e, parts, r, s);
+}
+
+// Before the definitions: what the names of blocks mean.
+static void explain_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
+{
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_block_row *r = &s->row[i];
+        if (r->beam < 0 || r->coordinate >= 0)
+            continue;
+        const struct ct_flexible *f = s->block[r->beam].f;
+        const char *names = "";
+        for (int k = 0; k < f->nelastic; k++)
+            names = ct_arena_printf(d->a, "%s%s%s", names, k ? ", " : "", f->elastic[k].name);
+        ct_page_sentence(&d->page, "%s = [%s]", r->label, names);
+    }
+    ct_page_sentence(
+        &d->page, "s, i, m_rf, m_thetaf, m_ff, K_f, Q_vf, F_v, T_v and V_q of a beam: its "
+                  "matrices, printed by --show terminal; m_rf_B.x: the entries along x of all "
+                  "coordinates of beam B, as a row, ' as a column; Q_B: what joints, loads and "
+                  "bodies farther out do along them, zero where it is not listed");
+}
+
+// Rows of blocks, and the lines that belong to one below it.
+static void put_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
+{
+    struct ct_exs *x = d->e->x;
+    ct_page_equations(&d->page);
+    for (size_t i = 0; i < s->n; i++) {
+        const struct ct_block_row *r = &s->row[i];
+        ct_page_equation(&d->page, r->label, ct_derivation_text(d, ct_block_left(x, r)),
+                         ct_derivation_text(d, ct_block_right(x, r)), NULL);
+    }
+}
+
+// What the names of the recursion stand for: those that there are.
+static const char *legend(struct ct_derivation *d, const struct ct_definitions *list)
+{
+    static const char *const name[][2]
+        = {{"phi_", "phi, c, s: angle of a body, its cosine and sine"},
+           {"R_", "R: rotation of a body"},
+           {"w_", "w: angular velocity"},
+           {"al_", "al: angular acceleration"},
+           {"d_", "d: vector to a point from the one before"},
+           {"v_", "v: rate of d"},
+           {"a_", "a: acceleration of a point less gravity"},
+           {"m_", "m: mass of all that hangs on a point"},
+           {"h_", "h: first moment of a body with these masses on its points"},
+           {"I_", "I: its inertia with them"},
+           {"F_", "F: force that what hangs on a point needs beyond m*a"},
+           {"T_", "T: torque that a body and what hangs on it need"}};
+    struct ct_growing_text s = {0};
+    for (size_t k = 0; k < COUNT(name); k++)
+        for (size_t i = 0; i < list->n; i++)
+            if (!strncmp(ct_ex_symbol(d->e->x, list->at[i].symbol)->name, name[k][0],
+                         strlen(name[k][0]))) {
+                ct_derivation_append(d, &s, "; ");
+                ct_derivation_append(d, &s, name[k][1]);
+                break;
+            }
+    return s.n ? s.at : "";
+}
+
+static void put_extent(struct ct_derivation *d, const struct group g[NGROUP],
+                       const struct ct_reduced *r)
+{
+    struct ct_exs *x = d->e->x;
+    ct_ex *e;
+    const size_t n = list_shown(d, g, r, &e), nwalk = ct_ex_walk(x, e, n);
+    size_t nterm = r->definitions.n + d->e->nu;
+    for (size_t i = 0; i < nwalk; i++) {
+        const unsigned char op = ct_ex_node(x, (ct_ex){x->stack[i]})->op;
+        nterm += op == CT_OP_ADD || op == CT_OP_SUB;
+    }
+    ct_page_sentence(&d->page,
+                     "recursive form, as there are more than %d speeds: %zu named expressions, "
+                     "%zu terms in all%s",
+                     CT_MOST_MATRIX_SPEEDS, r->definitions.n, nterm,
+                     legend(d, &r->definitions));
+}
+
 void ct_stage_reduced(struct ct_derivation *d)
 {
     struct ct_equations *e = d->e;
     struct ct_reduced r;
     struct group g[NGROUP] = {0};
-    struct ct_provenance origins, *p = d->page.look == CT_LOOK_HTML ? &origins : NULL;
-    ct_derivation_reduce(d, &r);
+    struct ct_provenance origins,
+        *p = d->page.look == CT_LOOK_HTML && !d->is_recursive ? &origins : NULL;
+    struct ct_beam_blocks blocks;
+    const bool has_blocks
+        = d->page.look == CT_LOOK_TEXT && ct_derivation_blocks(d, &r, &blocks);
+    if (has_blocks)
+        r.definitions = blocks.definitions;
+    else
+        ct_derivation_reduce(d, &r);
     fill(d, &r, g);
     if (p)
         ct_provenance_derive(d, &r, p);
@@ -372,12 +517,22 @@ void ct_stage_reduced(struct ct_derivation *d)
         count(d, e->nrow, "constraint", "constraints"), e->nstate ? ", " : "",
         e->nstate ? count(d, e->nstate, "state", "states") : "",
         e->nmotion ? "; each equation is the cutset of a branch, projected on its motion" : "");
+    if (has_blocks)
+        explain_blocks(d, &blocks);
+    if (r.is_recursive)
+        put_extent(d, g, &r);
     put_definitions(d, &r);
-    ct_derivation_put_matrices(d, &r);
+    if (!has_blocks && !r.is_recursive)
+        ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
-        ct_page_heading(&d->page,
-                        e->nrow ? "motion: M u' = Q + J' lambda" : "motion: M u' = Q");
-        put_group(d, &g[MOTION], p, CT_EQUATION_MOTION, 0);
+        ct_page_heading(&d->page, r.is_recursive
+                                      ? "motion: what each branch carries = its effort"
+                                  : e->nrow ? "motion: M u' = Q + J' lambda"
+                                            : "motion: M u' = Q");
+        if (has_blocks)
+            put_blocks(d, &blocks);
+        else
+            put_group(d, &g[MOTION], p, CT_EQUATION_MOTION, 0);
     }
     if (e->nstate) {
         ct_page_heading(&d->page, "rates of the states");

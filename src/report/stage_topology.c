@@ -5,10 +5,14 @@
 #include "expr/collect.h"
 #include "formulate/kinematics/kinematics.h"
 
+#include <limits.h>
 #include <string.h>
 
-// Of each kind; larger systems are counted, not printed.
-enum { MOST_EQUATIONS = 120 };
+// Of each kind; more are counted, not printed, unless all are asked for.
+static int most_equations(const struct ct_derivation *d)
+{
+    return d->page.is_full ? INT_MAX : 120;
+}
 
 // ---- matrices ------------------------------------------------------------------------------------
 
@@ -126,21 +130,29 @@ static void put_tree_matrices(struct ct_derivation *d, bool cutsets)
 
 // ---- cutsets --------------------------------------------------------------------------------------
 
+static void add_term(struct ct_derivation *d, struct ct_growing_text *sum, bool negative,
+                     const char *term)
+{
+    ct_derivation_append(d, sum, !sum->n ? negative ? "-" : "" : negative ? " - " : " + ");
+    ct_derivation_append(d, sum, term);
+}
+
 const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
                                  int i, int own, const char *letter)
 {
-    const char *s = ct_derivation_of(d, letter, d->e->edge_name[own]);
+    struct ct_growing_text s = {0};
+    ct_derivation_append(d, &s, ct_derivation_of(d, letter, d->e->edge_name[own]));
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
         if (rows->row[k] != own)
-            s = ct_arena_printf(d->a, "%s %s %s", s, rows->value[k] > 0 ? "+" : "-",
-                                ct_derivation_of(d, letter, d->e->edge_name[rows->row[k]]));
-    return s;
+            add_term(d, &s, rows->value[k] < 0,
+                     ct_derivation_of(d, letter, d->e->edge_name[rows->row[k]]));
+    return s.at;
 }
 
 static void put_more(struct ct_derivation *d, int n)
 {
-    if (n > MOST_EQUATIONS)
-        ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);
+    if (n > most_equations(d))
+        ct_page_sentence(&d->page, "... and %d more", n - most_equations(d));
 }
 
 // A particle takes no torque: no balance of torques is its own.
@@ -164,7 +176,7 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
             if ((b->topology->edge[own].kind == CT_EDGE_ARM) != (arms == 1)
                 || !has_balance(d, own, of_rotation))
                 continue;
-            if (n++ < MOST_EQUATIONS)
+            if (n++ < most_equations(d))
                 ct_page_equation(
                     &d->page, NULL,
                     ct_derivation_cutset(d, &rows, i, own, of_rotation ? "T" : "F"), "0", NULL);
@@ -178,13 +190,6 @@ static const struct ct_body *body_of(const struct ct_derivation *d, int edge)
 {
     const struct ct_edge_info *e = &d->e->build->topology->edge[edge];
     return e->kind == CT_EDGE_BODY && !d->m->body[e->index].beam ? &d->m->body[e->index] : NULL;
-}
-
-static const char *add_term(struct ct_derivation *d, const char *sum, bool negative,
-                            const char *term)
-{
-    return *sum ? ct_arena_printf(d->a, "%s %s %s", sum, negative ? "-" : "+", term)
-                : ct_arena_printf(d->a, "%s%s", negative ? "-" : "", term);
 }
 
 // The force of an edge or, of a body, its inertia less weight, of which the force is the negative; NULL: zero.
@@ -222,7 +227,8 @@ static void put_balance(struct ct_derivation *d, const struct ct_incidence *rows
                         int own, bool of_rotation)
 {
     const bool is_inertia = body_of(d, own) != NULL;
-    const char *left = of_rotation ? torque_text(d, own) : force_text(d, own), *right = "";
+    const char *left = of_rotation ? torque_text(d, own) : force_text(d, own);
+    struct ct_growing_text right = {0};
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++) {
         const int edge = rows->row[k];
         // + (W or -inertia) on the left, with the branch's own sign turned
@@ -232,9 +238,9 @@ static void put_balance(struct ct_derivation *d, const struct ct_incidence *rows
                                     of_rotation ? moment_text(d, edge, own) : NULL};
         for (int j = 0; j < 2 && edge != own; j++)
             if (term[j])
-                right = add_term(d, right, negative, term[j]);
+                add_term(d, &right, negative, term[j]);
     }
-    ct_page_equation(&d->page, NULL, left ? left : "0", *right ? right : "0", NULL);
+    ct_page_equation(&d->page, NULL, left ? left : "0", right.n ? right.at : "0", NULL);
 }
 
 static void put_balances(struct ct_derivation *d, const struct ct_tree *t, bool of_rotation)
@@ -256,7 +262,7 @@ static void put_balances(struct ct_derivation *d, const struct ct_tree *t, bool 
         const int own = t->branch[i];
         if (b->topology->edge[own].kind == CT_EDGE_ARM || !has_balance(d, own, of_rotation))
             continue;
-        if (n++ < MOST_EQUATIONS)
+        if (n++ < most_equations(d))
             put_balance(d, &rows, i, own, of_rotation);
     }
     put_more(d, n);
@@ -289,7 +295,7 @@ const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree 
     int *branch = CT_NEWN(d->a, int, t->nbranch + 1);
     signed char *sign = CT_NEWN(d->a, signed char, t->nbranch + 1);
     const int n = ct_tree_circuit(e->graph, t, chord, branch, sign);
-    const char *s = "";
+    struct ct_growing_text s = {0};
     for (int k = n - 1; k >= 0; k--) { // the circuit runs from head to tail
         const bool forward = sign[k] < 0;
         const char *name = e->edge_name[branch[k]];
@@ -298,16 +304,14 @@ const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree 
             if (e->build->topology->edge[branch[k]].kind == CT_EDGE_BODY
                 && e->build->topology->node[e->graph->edge[branch[k]].head].is_particle)
                 continue; // its axes stay parallel to ground
-            s = ct_arena_printf(d->a, "%s%s%s%s", s, *s ? latex ? " \\, " : "*" : "", S,
-                                forward ? ""
-                                : latex ? "^{T}"
-                                        : "'");
+            ct_derivation_append(d, &s, !s.n ? "" : latex ? " \\, " : "*");
+            ct_derivation_append(d, &s, S);
+            ct_derivation_append(d, &s, forward ? "" : latex ? "^{T}" : "'");
         } else {
-            s = ct_arena_printf(d->a, *s ? "%s %s %s" : "%s%s%s", s,
-                                forward ? *s ? "+" : "" : "-", ct_derivation_of(d, "d", name));
+            add_term(d, &s, !forward, ct_derivation_of(d, "d", name));
         }
     }
-    return *s ? s : of_rotation ? "1" : "0";
+    return s.n ? s.at : of_rotation ? "1" : "0";
 }
 
 static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool of_rotation)
@@ -319,17 +323,17 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
         const struct ct_edge_info *info = &e->build->topology->edge[t->chord[i]];
         if (of_rotation && !info->has_rotation)
             continue;
-        if (n++ < MOST_EQUATIONS)
+        if (n++ < most_equations(d))
             ct_page_equation(
                 &d->page, NULL,
                 ct_derivation_of(d, of_rotation ? "S" : "d", e->edge_name[t->chord[i]]),
                 ct_derivation_circuit(d, t, t->chord[i], of_rotation), NULL);
     }
-    if (n > MOST_EQUATIONS)
-        ct_page_sentence(&d->page, "... and %d more", n - MOST_EQUATIONS);
+    put_more(d, n);
 }
 
 // Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them in full.
+// Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 5000;
 
 // Collects what is small enough; false: it is not.
@@ -380,8 +384,8 @@ void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s)
     }
     double size;
     if (!collect(d, where, n) || is_long(d, where, n)) {
-        ct_reduced_label(e);
-        s->definitions = ct_definitions_find(d->a, e, where, n, &size);
+        ct_reduced_label(e, d->is_recursive ? CT_FULL : CT_BIAS);
+        s->definitions = ct_definitions_find(d->a, e, where, n, d->is_recursive, &size);
     }
 }
 

@@ -185,17 +185,26 @@ static void put_drivers(struct ct_derivation *d)
 static void put_dependent(struct ct_derivation *d)
 {
     const struct ct_equations *e = d->e;
-    const char *list = "";
+    const char **name = CT_NEWN(d->a, const char *, e->ncoordinate + 1);
+    struct ct_growing_text list = {0};
+    size_t n = 0;
     for (size_t i = 0; i < e->ncoordinate; i++) {
         const struct ct_coordinate *c = &e->coordinate[i];
         if (c->q >= 0 || c->driver >= 0
             || e->build->topology->edge[c->edge].kind != CT_EDGE_JOINT)
             continue;
-        list = ct_arena_printf(d->a, "%s%s%s", list, *list ? ", " : "", c->name);
+        name[n++] = c->name;
     }
-    if (*list)
+    for (size_t i = 0; i < n; i++) {
+        const enum ct_shown shown = ct_page_shown(&d->page, i, n);
+        if (shown == CT_LEFT_OUT)
+            continue;
+        ct_derivation_append(d, &list, i ? ", " : "");
+        ct_derivation_append(d, &list, shown == CT_SHOWN ? name[i] : "...");
+    }
+    if (n)
         ct_page_sentence(&d->page, "joint coordinates that follow from these by circuits: %s",
-                         list);
+                         list.at);
 }
 
 // ---- rows -----------------------------------------------------------------------------------------

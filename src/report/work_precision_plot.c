@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Layout: of a page
 enum { WIDTH = 8200, HEIGHT = 5400, LEFT = 900, RIGHT = 2300, TOP = 600, BOTTOM = 800 };
 enum { FONT = 130, MARK = 42 };
 
@@ -99,6 +100,7 @@ static int label_spacing(const struct axis *a, int most)
 
 static void draw_grid(const struct canvas *c)
 {
+    // Layout: of a page
     const int most_labels = 9;
     const int every_x = label_spacing(&c->x, most_labels);
     const int every_y = label_spacing(&c->y, most_labels);
@@ -143,6 +145,7 @@ static void draw_frame(const struct canvas *c, const char *title)
 // Shapes tell methods apart in black and white, too.
 static void draw_mark(FILE *out, int x, int y, size_t method)
 {
+    // Layout: of a page
     const int r = MARK, d = MARK * 5 / 4;
     switch (method % 4) {
     case 0:

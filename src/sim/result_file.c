@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+// Limit: of the time to write
 static const double seconds_between_flushes = 0.5; // what an interruption may cost at most
 
 struct ct_result_file {

@@ -15,19 +15,26 @@
 // The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
 // double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
 // steps with dopri5 and past singular configurations, by up to 1300 times with dop853 where there are no loops.
+// Derived: those measurements, of which a few cases are left to output error control.
 static const double usual_share = 2e-3, share_of_high_order = 5e-3;
 // Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
+// Derived: from those measurements.
 static const double order2_factor = 30;
 // Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
+// Derived: so that the eased estimate is a tenth of T.
 static const double radau_power = 1.5;
+// Derived: T for tolerances above 1e-4, where that power would ask for less.
 static const double radau_share = 1e-2; // for loose tolerances
 // About a hundred round-off errors. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
 // held to less, down to 1e-14, outputs come out no better past singular configurations, and a few times better, below 1e-12,
 // where there are none.
+// Derived: 90 units of round-off
 static const double least_rtol = 2e-14;
 // Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
 // then cost the same.
+// Derived: from those measurements.
 static const double high_order_up_to = 1e-2;
+// Limit: of the time to look
 static const long steps_between_looks = 32; // at the clock, for runs with a deadline
 
 // ---- options -------------------------------------------------------------------------------------------
@@ -130,6 +137,7 @@ static size_t samples_until(const struct ct_simulation *m, double until)
         spacing = m->duration / (double)(m->samples - 1);
     if (!(spacing > 0))
         return m->samples > 1 ? (size_t)m->samples : 2;
+    // Derived: some units of round-off
     return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
 }
 
@@ -432,6 +440,7 @@ static bool integrate(struct ct_sim *sim)
 static void warn_of_positions(struct ct_sim *sim)
 {
     const struct ct_rank_monitor *w = sim->report.singular;
+    // Derived: a tenth of a unit of round-off
     const double roundoff
         = 0.1 * DBL_EPSILON; // as it is felt of what is divided twice by a pivot
     const struct ct_mark mark = {.file = sim->system->model.file};

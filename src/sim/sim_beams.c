@@ -25,6 +25,7 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
 
 static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
 {
+    // Derived: as CT_VALIDITY_LIMIT, of a start that shapes cannot have
     const double worth_it = 0.01; // as the limit of the validity indicator
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];

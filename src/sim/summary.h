@@ -22,6 +22,7 @@ const char *ct_sim_solver(const struct ct_sim *sim);
 long ct_sim_freedoms(const struct ct_sim *sim);
 long ct_sim_redundant(const struct ct_sim *sim);
 
+// Layout: of a line
 enum { CT_MOST_START_TEXT = 256 }; // longer names are cut
 /// Coordinates of the start, and of number i what was asked and found, in out; NULL: not of a
 /// joint.
@@ -29,6 +30,12 @@ size_t ct_sim_start_count(const struct ct_sim *sim);
 const char *ct_sim_start_text(const struct ct_sim *sim, size_t i, char *out, size_t size);
 /// The same for programs, under the key "start".
 void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim);
+
+/// Writes keys into the object of a summary.
+typedef void (*ct_summary_more_fn)(struct ct_json *j, const void *user);
+/// As ct_sim_write_summary, with what `more` writes. Raises the guard.
+bool ct_summary_write(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path,
+                      ct_summary_more_fn more, const void *user);
 
 bool ct_is_arm(const struct ct_equations *e, int edge);
 

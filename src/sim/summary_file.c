@@ -285,9 +285,17 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
-static void write_summary(const void *object, FILE *out)
+struct work {
+    struct ct_ctx *ctx;
+    const struct ct_sim *sim;
+    const char *path;
+    ct_summary_more_fn more;
+    const void *user;
+};
+
+static void write_object(const struct work *w, FILE *out)
 {
-    const struct ct_sim *sim = object;
+    const struct ct_sim *sim = w->sim;
     const struct ct_equations *e = &sim->system->equations;
     struct ct_json j;
     ct_json_init(&j, out);
@@ -296,6 +304,8 @@ static void write_summary(const void *object, FILE *out)
     write_structure(&j, sim);
     write_work(&j, sim);
     write_open(&j, sim);
+    if (w->more)
+        w->more(&j, w->user);
     ct_json_object(&j, "final");
     for (size_t i = 0; i < e->nresult; i++)
         ct_json_number(&j, e->result[i].name, sim->report.final[i]);
@@ -303,11 +313,10 @@ static void write_summary(const void *object, FILE *out)
     ct_json_end(&j);
 }
 
-struct work {
-    struct ct_ctx *ctx;
-    const struct ct_sim *sim;
-    const char *path;
-};
+static void write_summary(const void *sim, FILE *out)
+{
+    write_object(&(struct work){.sim = sim}, out);
+}
 
 static bool write_file(void *task)
 {
@@ -317,16 +326,20 @@ static bool write_file(void *task)
     if (!ct_suffix_read(w->ctx, w->path, CT_SUFFIX_JSON, &unused)
         || !ct_outfile_open(w->ctx, &file, strcmp(w->path, "-") == 0 ? NULL : w->path))
         return false;
-    write_summary(w->sim, file.stream);
+    write_object(w, file.stream);
     return ct_outfile_close(w->ctx, &file);
+}
+
+bool ct_summary_write(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path,
+                      ct_summary_more_fn more, const void *user)
+{
+    return write_file(&(struct work){ctx, sim, path, more, user});
 }
 
 bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim, const char *path)
 {
-    if (!ctx || !sim || !path)
-        return false;
-    struct work w = {ctx, sim, path};
-    return sim && ct_enter(ctx, write_file, &w);
+    struct work w = {.ctx = ctx, .sim = sim, .path = path};
+    return ctx && sim && path && ct_enter(ctx, write_file, &w);
 }
 
 char *ct_sim_summary_json(const struct ct_sim *sim)

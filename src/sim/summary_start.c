@@ -1,11 +1,10 @@
 // What was asked of the joints' coordinates and where they start; see summary.h.
 #include "sim/summary.h"
+#include "base/pi.h"
 
 #include "formulate/build.h"
 
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
 
 enum asked { NOTHING, GUESS, DEMAND, MOTION };
 
@@ -80,18 +79,20 @@ static double moved(const struct ct_initial_state *s, size_t i)
     if (!t->is_guessed)
         return 0;
     if (!t->in_quaternion)
-        return fabs(s->q[i] - t->value) * t->weight / (ct_start_is_length(s, i) ? 0.5 : pi / 2);
+        return fabs(s->q[i] - t->value) * t->weight
+             / (ct_start_is_length(s, i) ? 0.5 : CT_PI / 2);
     const struct ct_coordinate *c = &s->e->coordinate[i];
     if (c->index != s->e->build->topology->edge[c->edge].trial->quaternion)
         return 0;
     double cosine = 0;
     for (size_t k = 0; k < 4; k++)
         cosine += t[k].value * s->q[i + k];
-    return 2 * acos(fmin(1, fabs(cosine))) / (pi / 2);
+    return 2 * acos(fmin(1, fabs(cosine))) / (CT_PI / 2);
 }
 
 void ct_sim_warn_of_start(struct ct_sim *sim)
 {
+    // Layout: of messages
     enum { MOST_WARNINGS = 4 };
     const struct ct_initial_state *s = &sim->start;
     size_t n = 0, shown = 0;

@@ -19,6 +19,7 @@ struct list {
     int column; // 0: nothing is written yet
 };
 
+// Layout: of the summary
 enum { TITLE_WIDTH = 13, LINE_WIDTH = 100 };
 
 static void add(struct list *l, const char *entry)
@@ -84,7 +85,7 @@ static void print_freedoms(FILE *out, const struct ct_sim *sim)
 // Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
 static void print_start(FILE *out, const struct ct_sim *sim)
 {
-    enum { MOST_SHOWN = 100 }; // the rest is in the summary file
+    enum { MOST_SHOWN = 100 }; // Layout: the rest is in the summary file
     struct list l = {out, "start", 0};
     size_t n = 0;
     char text[CT_MOST_START_TEXT];
@@ -153,7 +154,8 @@ static void print_open(FILE *out, const struct ct_sim *sim)
 static void print_output_errors(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
-    const size_t most_shown = 24; // the rest is in the summary file
+    const size_t most_shown = 24; // Layout: the rest is in the summary file
+    // Layout: columns
     const int width = 88;
     const char *separator = "";
     int column = 0;
@@ -234,6 +236,7 @@ static void print_method(FILE *out, const struct ct_sim *sim)
 static void print_position(FILE *out, const struct ct_sim *sim,
                            const struct ct_singular_configuration *at)
 {
+    // Layout: of the summary
     enum { MOST_NAMES = 8 };
     const struct ct_equations *e = &sim->system->equations;
     int nname = 0;
@@ -250,6 +253,7 @@ static void print_position(FILE *out, const struct ct_sim *sim,
 
 static void print_singular(FILE *out, const struct ct_sim *sim)
 {
+    // Layout: of the summary
     enum { MOST_SHOWN = 5 };
     const struct ct_rank_monitor *w = sim->report.singular;
     if (!w || !w->npassed)
@@ -428,6 +432,7 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     for (size_t i = 0; i < e->build->nflexible; i++) {
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
+        // Layout: a tenth of a stiffness is worth a line
         const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
         if (locking > worth_it)
             fprintf(out,

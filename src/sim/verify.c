@@ -22,19 +22,25 @@
 
 // The second run is held to this part of the tolerance: a tenth would often not shrink the error
 // visibly, a hundredth costs more and is not better.
+// Derived: from those measurements.
 static const double tightening = 1. / 30;
 // With less to gain than this, the second run is looser by as much: then it has the larger error.
+// Chosen: errors that differ by less are hard to tell apart by a difference.
 static const double least_gain = 5;
 // A run that is compared with may be held to this part of what double precision leaves to the steps
 // of one that is wanted: of motions with many turns errors of truncation go on falling to there. An
 // explicit step errs by round-off errors of h f alone, as those of y are carried over, and by as
 // much less as it is shorter. Not past singular configurations.
+// Derived: for steps ten times as short
 static const double beyond = 0.1;
+// Limit: one more try, and a message then.
 static const double second_try = 3; // looser, where the second run failed
 // Errors follow tolerances only roughly, and where they are round-off not at all: two runs that err
 // by as much differ by root 2 of it.
+// Derived: root 2, and a little for rough estimates.
 static const double tolerance_margin = 1.5;
 // An output holds as long as its error stays within so many tolerances.
+// Definition: what the documentation promises, docs/accuracy.md
 static const double held_tolerances = 10;
 
 struct companion {
@@ -48,6 +54,7 @@ struct companion {
 // hundred eps; without a single digit that agrees, some more.
 bool ct_is_rounding(double scale, double deviation, double largest)
 {
+    // Derived: some hundred, and some million, units of round-off
     const double with_digits = 1e-13, without_digits = 1e-9;
     return scale <= (deviation < 0.5 * scale ? with_digits : without_digits) * largest;
 }
@@ -140,7 +147,9 @@ static bool has_digits(const struct ct_output_error_estimate *o)
 // as far as can be seen: the sum of energies that cancel, the momentum of a motion that has none.
 static void find_relative(struct ct_output_error_estimate *o, size_t n)
 {
+    // Chosen: sums of up to a hundred outputs
     const double spread = 100; // sums of outputs add up their errors
+    // Chosen: three digits
     const double small = 1e-3; // against others that have lost all digits
     double largest = 0, worst = 0, largest_lost = 0;
     for (size_t i = 0; i < n; i++) {

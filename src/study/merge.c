@@ -60,6 +60,7 @@ static bool open_part(struct merge *m, struct part *p)
 // The line of the shard is taken out of the settings.
 static bool read_settings(struct merge *m, struct part *p)
 {
+    // Limit: with a message
     enum { MOST_TEXT = 1 << 20 };
     struct ct_arena *a = m->ctx->model;
     const char *path = ct_arena_printf(a, "%s.settings", p->path);
@@ -112,6 +113,7 @@ static bool compare(struct merge *m, const struct part *p)
 // All shards, each once.
 static bool find_shards(struct merge *m)
 {
+    // Layout: of a message
     enum { MOST_NAMED = 10 };
     const long n = m->part[0].nshard;
     long missing = 0;

@@ -150,6 +150,7 @@ bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *cons
 
 static bool read_sheet(struct ct_ctx *ctx, const char *path, struct ct_sheet *sheet)
 {
+    // Limit: with a message
     const size_t most = (size_t)1 << 30;
     char *text;
     size_t n;

@@ -20,6 +20,7 @@
 
 #include <stdint.h>
 
+// Limit: with a message
 enum { CT_MOST_MEMBERS = 100000000 };
 
 struct ct_axis {

@@ -23,6 +23,7 @@
 #include <unistd.h>
 
 static const struct ct_mark none = {0};
+// Limit: of a model, with a message; of threads
 enum { MOST_TEXT = 64 << 20, MOST_THREADS = 1024 };
 
 // ---- preparation --------------------------------------------------------------------------------------

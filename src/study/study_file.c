@@ -14,7 +14,8 @@
 #include <unistd.h>
 
 static const struct ct_mark none = {0};
-static const double seconds_between_flushes = 0.5; // what an interruption may cost at most
+static const double seconds_between_flushes
+    = 0.5; // Limit: what an interruption may cost at most
 
 // ---- rows ---------------------------------------------------------------------------------------------
 
@@ -310,6 +311,7 @@ static bool finish_rows(struct ct_study *s)
 // How the rows were made differs so from what is asked for now; NULL: it does not.
 static const char *find_difference(struct ct_study *s, const char *rows)
 {
+    // Limit: a file that is longer is another
     enum { MOST_TEXT = 1 << 20 };
     char *text;
     size_t n;

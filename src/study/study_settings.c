@@ -14,8 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Limit: of a file. Layout: of the names of settings
 enum { MOST_TEXT = 64 << 20, WIDTH = 12 };
 
+// Definition: of the FNV-1a hash of 64 bits
 static const uint64_t offset_basis = 0xcbf29ce484222325, prime = 0x100000001b3;
 
 static uint64_t checksum(uint64_t sum, const void *data, size_t n)

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+// Layout: the rest is in the summary file
 enum { MOST_SHOWN = 10 };
 
 // ---- summaries ----------------------------------------------------------------------------------------

@@ -160,6 +160,7 @@ static const char *values_text(const struct variation *v)
 // Why a member has no results, as a warning: the others go on.
 static void report_failure(struct variation *v, struct ct_ctx *own)
 {
+    // Layout: of messages
     enum { MOST_TOLD = 10 };
     struct ct_diagnostic d = {.message = "out of memory", .code = CT_E_MEMORY};
     for (size_t i = 0; ct_ctx_diagnostic(own, i, &d) && d.severity != CT_SEVERITY_ERROR;)

@@ -58,6 +58,22 @@ def four_bars(n):
     return HEAD + section("bodies", bodies) + section("joints", joints)
 
 
+def four_bars_that_move(n):
+    return four_bars(n) + "simulation: {duration: 0.1}\n"
+
+
+def four_bars_apart(n):
+    feet = ", ".join("g%d: [%d, 0, 0]" % (i, i) for i in range(2 * n))
+    bodies, joints = [("ground", "points: {%s}" % feet)], []
+    for i in range(0, 3 * n, 3):
+        bodies += [bar(i, "[0, 0.5, 0]", "[0, 1, 0]"), bar(i + 1), bar(i + 2, "[0, 0.5, 0]", "[0, 1, 0]")]
+        joints += [hinge("in%d" % i, "ground.g%d" % (2 * i // 3), "b%d" % i),
+                   hinge("near%d" % i, "b%d.tip" % i, "b%d" % (i + 1)),
+                   hinge("far%d" % i, "b%d.tip" % (i + 1), "b%d.tip" % (i + 2)),
+                   hinge("out%d" % i, "ground.g%d" % (2 * i // 3 + 1), "b%d" % (i + 2))]
+    return HEAD + section("bodies", bodies) + section("joints", joints)
+
+
 def beam(n):
     return HEAD + section("bodies", [(
         "b", "type: beam, elements: %d, length: 1, E: 2e11, density: 7800, area: 1e-4, Iz: 1e-9" % n
@@ -70,10 +86,15 @@ def aliases(n):
     ) + section("bodies", [bar(0)]) + section("joints", [hinge("j", "ground", "b0")])
 
 
-def table(n):
+def table(n, interpolate="cubic"):
     return HEAD + section("bodies", [bar(0), bar(1)]) + section("joints", [
-        hinge("j", "ground", "b0", ", motion: {table: table.csv, column: v, interpolate: cubic}"),
+        hinge("j", "ground", "b0",
+              ", motion: {table: table.csv, column: v, interpolate: %s}" % interpolate),
         hinge("k", "b0.tip", "b1")]) + "simulation: {duration: %r}\n" % (1e-5 * (n - 2))
+
+
+def linear_table(n):
+    return table(n, "linear")
 
 
 def write_table(folder, n):
@@ -85,17 +106,24 @@ def write_table(folder, n):
 
 ROWS = {
     "pendulums": ("check, pendulums side by side", pendulums, ["check"], (500, 1000, 2000)),
-    "four_bars": ("check, four-bars in a row", four_bars, ["check"], (30, 100, 300)),
+    "four_bars": ("check, four-bars in a row", four_bars, ["check"], (100, 300, 1000)),
+    "four_bars_apart": ("check, four-bars side by side", four_bars_apart, ["check"], (100, 300, 1000)),
+    "four_bars_equations": ("equations of four-bars in a row", four_bars, ["equations"], (100, 300, 1000)),
+    "four_bars_simulate": ("simulate, four-bars in a row", four_bars_that_move,
+                           ["simulate", "-o", "out.csv"], (100, 300, 1000)),
     "beam": ("check, one planar beam, elements", beam, ["check"], (300, 600, 1000)),
     "beam_motion": ("simulate, 1 ms of that beam with radau5", beam,
                     ["simulate", "--method", "radau5", "--until", "1e-3", "-o", "out.csv"],
                     (300, 600, 1000)),
     "chain": ("check, planar chain", chain, ["check"], (2000, 5000, 10000)),
     "free": ("check, free bodies", free_bodies, ["check"], (1000, 2000, 4000)),
-    "equations": ("equations of a planar chain", chain, ["equations"], (100, 200, 400)),
+    "equations": ("equations --full, planar chain", chain, ["equations", "--full"],
+                  (200, 400, 800)),
     "aliases": ("check, YAML with aliases", aliases, ["check"], (10000, 20000, 40000)),
     "table": ("simulate, rows of a cubic table that drives", table, ["simulate", "-o", "out.csv"],
               (75000, 150000, 300000)),
+    "linear_table": ("simulate, rows of a linear table that drives", linear_table,
+                     ["simulate", "-o", "out.csv"], (75000, 150000, 300000)),
 }
 
 
@@ -119,7 +147,7 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 with open(os.path.join(folder, "model.yaml"), "w") as file:
                     file.write(model(n))
-                if model is table:
+                if model in (table, linear_table):
                     write_table(folder, n)
                 measured.append(min(run(cotree, command, folder) for _ in range(3)))
         (t0, _), (t1, _) = measured[-2:]

@@ -86,6 +86,12 @@ export async function checkLayout(page) {
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, "wider than the window");
 }
 
+// Names of the graph can be read on a phone.
+export async function checkGraphText(page) {
+  const height = await page.evaluate(() => document.querySelector("#graph svg text").getBoundingClientRect().height);
+  assert.ok(height >= 8, `names of ${height} px`);
+}
+
 // On paper: dark on white whatever the screen is, charts no wider than the rest.
 export async function checkPrint(page) {
   await page.emulateMedia({ media: "print", colorScheme: "dark" });
@@ -112,6 +118,16 @@ const litState = (page) =>
       sections: [...new Set(all.filter((e) => e.classList.contains("lit")).map((e) => e.closest("section")?.id))],
     };
   });
+
+// What a part of the page belongs to stands in the model, except what the model does not mention.
+export async function checkOrigins(page) {
+  const missing = await page.evaluate(() => {
+    const namesIn = (root) => [...root.querySelectorAll("[data-component]")].flatMap((e) => e.dataset.component.split(" "));
+    const written = new Set(namesIn(document.getElementById("model")));
+    return [...new Set(namesIn(document))].filter((name) => !written.has(name) && name !== "gravity");
+  });
+  assert.deepEqual(missing, []);
+}
 
 // A component lights up in these sections, from any of them.
 export async function checkLights(page, name, sections) {

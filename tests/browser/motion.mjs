@@ -6,6 +6,7 @@ import { cotree, folder, launch, open, report } from "./browser.mjs";
 
 const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
 const view = (page) => page.locator(".motion-view");
+const small = { viewport: { width: 800, height: 500 } }; // pictures are drawn without a graphics card
 
 // Two frames later what was asked for is drawn.
 async function pixels(page) {
@@ -18,6 +19,17 @@ async function changes(page, action) {
   const before = await pixels(page);
   await action();
   return !before.equals(await pixels(page));
+}
+
+// Each of these, one after the other, changes the picture. act(name) does what is named.
+async function checkEach(page, names, act) {
+  let before = await pixels(page);
+  for (const name of names) {
+    await act(name);
+    const after = await pixels(page);
+    assert.ok(!before.equals(after), `nothing by ${name}`);
+    before = after;
+  }
 }
 
 async function checkSeek(page, end) {
@@ -34,8 +46,7 @@ async function checkSeek(page, end) {
 async function checkKeys(page) {
   const canvas = view(page).locator("canvas");
   await canvas.focus();
-  for (const key of ["ArrowLeft", "ArrowUp", "+", "y", "z", "i", "Shift+ArrowLeft", "0"])
-    assert.ok(await changes(page, () => page.keyboard.press(key)), `nothing by ${key}`);
+  await checkEach(page, ["ArrowLeft", "ArrowUp", "+", "y", "z", "i", "Shift+ArrowLeft", "0"], (key) => page.keyboard.press(key));
   await page.keyboard.press(" ");
   await page.waitForFunction((t) => window.cotree.time !== t, await page.evaluate(() => window.cotree.time));
   await page.keyboard.press(" ");
@@ -86,12 +97,11 @@ async function checkStandsStill(page) {
 }
 
 async function checkPanel(browser) {
-  const { page, close } = await open(browser, await report(system("slider_crank"), "motion.html"));
+  const { page, close } = await open(browser, await report(system("slider_crank"), "motion.html"), small);
   await checkSeek(page, 2);
   await checkStandsStill(page);
   await checkPicking(page);
-  for (const name of ["paths", "reactions", "names", "grid"])
-    assert.ok(await changes(page, () => page.locator(".controls label", { hasText: name }).locator("input").click()), name);
+  await checkEach(page, ["paths", "reactions", "names", "grid"], (name) => page.locator(".controls label", { hasText: name }).locator("input").click());
   await checkKeys(page);
   await checkMouse(page);
   await page.getByRole("button", { name: "fit" }).click();
@@ -115,11 +125,41 @@ async function checkNarrow(browser) {
 
 async function checkBeams(browser) {
   const file = await report(system("slider_crank_flexible"), "beams.html");
-  const { page, close } = await open(browser, file, { dark: true });
+  const { page, close } = await open(browser, file, { ...small, dark: true });
   await checkSeek(page, 1);
   const slider = page.locator(".factor", { hasText: "deflection" }).locator("input");
   assert.ok(await changes(page, () => slider.fill("2")), "beams do not bend more");
   assert.equal(await page.locator(".factor", { hasText: "deflection" }).locator("output").textContent(), "× 100");
+  await close();
+}
+
+// Red, green and blue of a picture at places in it.
+async function colorsAt(browser, png, places) {
+  const page = await browser.newPage();
+  const colors = await page.evaluate(
+    async ([data, places]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return places.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
+    },
+    [png.toString("base64"), places],
+  );
+  await page.close();
+  return colors;
+}
+
+// A shape has the colour that the model says, by its hue, as light falls on it.
+async function checkColors(browser) {
+  const { page, close } = await open(browser, await report(join(import.meta.dirname, "models", "shapes.yaml"), "shapes.html"), small);
+  const picture = await pixels(page);
+  const { width, height } = await view(page).boundingBox();
+  const places = Array.from({ length: 12 }, (_, i) => [Math.round((i * width) / 24), Math.round(height / 2 + 20)]);
+  const seen = await colorsAt(browser, picture, places);
+  const red = seen.filter(([r, g, b]) => r > 120 && g < 60 && b < 60);
+  assert.ok(red.length > 0, `no red in ${seen.join("; ")}`);
   await close();
 }
 
@@ -148,7 +188,7 @@ async function checkModes(browser) {
   await Promise.all([make("modes.html"), make("again.html")]);
   const file = join(folder, "modes.html");
   assert.ok(readFileSync(file).equals(readFileSync(join(folder, "again.html"))), "other bytes");
-  const { page, close } = await open(browser, file);
+  const { page, close } = await open(browser, file, small);
   assert.equal(await page.locator("input[name=mode]").count(), 4);
   await page.evaluate(() => window.cotree.seek(0));
   assert.ok(await changes(page, () => page.evaluate(() => window.cotree.seek(0.5))), "the mode stands still");
@@ -166,7 +206,7 @@ async function checkModes(browser) {
 }
 
 const browser = await launch();
-const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, fallback: checkFallback, modes: checkModes };
+const steps = { panel: checkPanel, narrow: checkNarrow, beams: checkBeams, colors: checkColors, fallback: checkFallback, modes: checkModes };
 let failed = 0;
 for (const [name, step] of Object.entries(steps)) {
   const start = Date.now();

@@ -4,19 +4,19 @@ import { readFileSync, rmSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { cotree, folder, launch, open, report, simulate } from "./browser.mjs";
-import { checkClock, checkEquations, checkFile, checkGraph, checkLayout, checkLights, checkManifest, checkNoScripts, checkPrint, checkSections } from "./checks.mjs";
+import { checkClock, checkEquations, checkFile, checkGraph, checkGraphText, checkLayout, checkLights, checkManifest, checkNoScripts, checkOrigins, checkPrint, checkSections } from "./checks.mjs";
 
 const models = join(dirname(fileURLToPath(import.meta.url)), "models");
 const system = (name) => join(process.env.SYSTEMS, name, "model.yaml");
 
 // size: most [MB]; light: a component, and the sections it is lit in
 const cases = [
-  { name: "slider_crank", size: 1, light: ["crank", ["model", "graph", "equations"]], more: ["main", ["model", "graph", "equations", "plots"]] },
+  { name: "slider_crank", size: 1, light: ["rod.com", ["model", "graph"]], more: ["main", ["model", "graph", "equations", "plots"]] },
   { name: "puma560", size: 2, light: ["j1", ["model", "graph", "equations"]] },
   { name: "stewart", size: 2, light: ["platform", ["model", "graph"]] },
   { name: "slider_crank_flexible", size: 2, light: ["rod", ["model", "graph"]] },
   { name: "bricard", size: 2 },
-  { name: "chain40", size: 2 },
+  { name: "chain40", size: 2, equations: 40 },
 ];
 
 const pixels = (page) => page.locator("#motion-panel").screenshot();
@@ -53,7 +53,18 @@ function ask(model, name, page = `${name}.html`) {
   };
 }
 
-async function checkModel({ size, light, more, answers }, browser) {
+// Equations that the page unpacks: one for each speed, each term with what it comes from and its value.
+async function checkUnpacked(page, equations) {
+  const found = await page.evaluate(() => {
+    const all = [...document.querySelectorAll("#equations math[data-equation]")];
+    const terms = all.flatMap((equation) => [...equation.querySelectorAll(".term")]);
+    document.querySelector("#equations details.labelled").open = true;
+    return [new Set(all.map((equation) => equation.dataset.equation)).size, terms.length > all.length, terms.every((term) => term.dataset.component)];
+  });
+  assert.deepEqual(found, [equations, true, true]);
+}
+
+async function checkModel({ size, light, more, equations, answers }, browser) {
   const { file, run, graph } = await answers();
   checkFile(file, size);
   const { page, close } = await open(browser, file);
@@ -61,12 +72,15 @@ async function checkModel({ size, light, more, answers }, browser) {
   await checkClock(page, run);
   await checkGraph(page, graph);
   await checkEquations(page, run.t[Math.floor(run.t.length / 2)]);
+  await checkOrigins(page);
+  if (equations) await checkUnpacked(page, equations);
   await checkLayout(page);
   await checkMotion(page, run.t.at(-1));
   if (light) await checkLights(page, ...light);
   if (more) await checkLights(page, ...more);
   await page.setViewportSize({ width: 390, height: 600 });
   await checkLayout(page);
+  await checkGraphText(page);
   await checkPrint(page);
   await close();
 }
@@ -81,6 +95,14 @@ async function checkControls(browser) {
   const saved = readFileSync(await download.path(), "utf8");
   assert.equal(saved.slice(0, saved.indexOf("\n")), header);
   assert.equal(saved.trim().split("\n").length, 2002);
+  // outputs that are reactions: their value, and those of their terms
+  await page.evaluate(() => window.cotree.seek(0.7));
+  const shown = await page.locator('#plots [data-component~="guide"]', { hasText: "side_force" }).locator(".value").textContent();
+  assert.deepEqual(await page.locator('#equations math[data-equation="side_force"] .value').allTextContents(), [shown, shown]);
+  await page.evaluate(() => window.cotree.seek(0));
+  // the entry of an output lights what it depends on
+  await page.locator("#model .code", { hasText: "side_force" }).hover();
+  assert.equal(await page.evaluate(() => document.body.dataset.lit), "guide");
   // the clock from the keyboard, from its slider and from a plot
   await page.locator("h1").click(); // off the button
   await page.keyboard.press(" ");
@@ -178,6 +200,7 @@ async function checkStop(browser) {
   const end = await page.evaluate(() => (window.cotree.seek(1), window.cotree.time));
   assert.ok(end > 0.4 && end < 0.5, `it ends at ${end}`);
   assert.match(await page.textContent("#summary [role=alert]"), /stopped before its end.*steps have become too short/);
+  assert.equal(await page.locator("#summary .checks a.good", { hasText: /error|energy/ }).count(), 0, "all is well after a stop");
   await close();
 }
 

@@ -31,6 +31,9 @@ cmp 2.csv whole.csv && grep -E '"(shards?|resumed)"' s.json
 
 # parts that do not fit
 say merge no.csv 1.csv 3.csv 4.csv
+cp all.csv earlier.csv
+! "$COTREE" merge earlier.csv 1.csv 3.csv 4.csv 2>failed.log && cmp earlier.csv all.csv && echo "an earlier file is as it was"
+rm earlier.csv failed.log
 say merge no.csv 1.csv
 say merge no.csv 1.csv 2.csv 3.csv 4.csv 2.csv
 say merge no.csv 1.csv 2.csv 3.csv missing.csv

@@ -12,5 +12,6 @@ awk '{ v[NR] = $NF } END { d = v[1] - v[2]; print (d < 1e-15 && d > -1e-15) ? "f
 grep -o '^  "[a-z_]*"' s.json >keys
 for command in check equations graph equilibrium modes linearize; do
   "$COTREE" $command "$SYSTEMS/cart_pole/model.yaml" --quiet --summary $command.json >text
-  grep -o '^  "[a-z_]*"' $command.json | cmp - keys && echo "$command: the same keys"
+  echo "$command: the same keys and"
+  grep -o '^  "[a-z_]*"' $command.json | diff keys - | grep '^[<>]'
 done

@@ -18,3 +18,7 @@ p="$SYSTEMS/pendulum_beam_tip_mass/model.yaml"
 "$PRINT_EQUATIONS" "$p" terminal,reduced json >pendulum_beam.json
 "$PRINT_EQUATIONS" "$p" tree,cutset,circuit,reduced text absolute >pendulum_beam_absolute.txt
 "$PRINT_EQUATIONS" "$SYSTEMS/spin_up_beam/model.yaml" terminal text >spin_up_beam.txt
+# long ones: the elastic coordinates of each beam as one vector
+for s in slider_crank_flexible two_boom_satellite; do
+  "$PRINT_EQUATIONS" "$SYSTEMS/$s/model.yaml" reduced text >"$s.txt"
+done

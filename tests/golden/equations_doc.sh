@@ -1,6 +1,6 @@
 #!/bin/sh
 # What docs/equations.md and docs/liang2017.md show is what is printed: each of their blocks stands in one of the golden
-# files, and so does each line of program text in a table of docs/liang2017.md, written `line`.
+# files or in the summary of a long chain, and so does each line of program text in a table of docs/liang2017.md, written `line`.
 #   equations_doc.sh SOURCE_ROOT
 set -eu
 cd "$1"
@@ -38,4 +38,4 @@ FILENAME == "docs/liang2017.md" && /^\| \(/ {
   nline += pieces > 1
 }
 END { exit bad || !n || !nline }
-' tests/golden/equations.files/*.txt docs/equations.md docs/liang2017.md
+' tests/golden/equations.files/*.txt tests/cli/equations_full.stdout docs/equations.md docs/liang2017.md

@@ -24,7 +24,7 @@ static bool print(struct ct_ctx *ctx, const char *path, unsigned stages,
     const struct ct_formulate_options o = {.tree = tree};
     return ct_model_read(ctx, path, NULL, 0, &m)
         && ct_formulate(ctx, ctx->model, &m, &o, &e, &report)
-        && ct_equations_print(stdout, ctx->scratch, &e, &m, stages, format);
+        && ct_equations_print(stdout, ctx->scratch, &e, &m, stages, format, false);
 }
 
 int main(int argc, char **argv)

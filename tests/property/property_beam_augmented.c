@@ -278,8 +278,8 @@ static const struct ct_pivot_order *order_of(struct variant *v)
 {
     struct ct_partition_sets p = partition_of(v);
     p.value = ct_solver_values(v->arena, v->m);
-    const struct ct_pivot_order *o
-        = ct_pivot_order_find(v->arena, &v->e, &p, v->m->motion.out, v->m->Q + v->m->nu);
+    const struct ct_pivot_order *o = ct_pivot_order_find(v->arena, &v->e, &p, v->m->motion.out,
+                                                         v->m->Q + v->m->nu, INFINITY);
     assert_non_null(o);
     return o;
 }

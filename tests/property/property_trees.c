@@ -52,7 +52,7 @@ static void solve_at(struct system *s, struct variant *v, const struct ct_initia
         ct_ctx_print(&v->ctx, stderr);
         fail();
     }
-    ct_partition_uniqueness(v->s);
+    ct_partition_uniqueness(v->s, ct_null_space_create(v->arena, v->s));
 }
 
 // ---- three choices on everything ------------------------------------------------------------------------

@@ -79,7 +79,7 @@ class Copy:
         log = os.path.join(self.build, "meson-logs", "testlog.json")
         if os.path.exists(log):
             os.remove(log)
-        subprocess.run(["meson", "test", "-C", self.build, "--no-rebuild"] + names, stdin=subprocess.DEVNULL,
+        subprocess.run(["meson", "test", "-C", self.build, "--no-rebuild", "--timeout-multiplier", "10"] + names, stdin=subprocess.DEVNULL,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         failed = []
         with open(log) as f:

@@ -1,6 +1,8 @@
 // The printed equations: equal to the engine's, equal to the textbook's, and readable again.
 #include "expr/parse.h"
+#include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/formulate.h"
+#include "report/beam_blocks.h"
 #include "report/derivation.h"
 #include "report/equations.h"
 
@@ -19,9 +21,10 @@ struct fixture {
     struct ct_model m;
     struct ct_equations e;
     struct ct_derivation d;
-    struct ct_reduced r;
-    double *symbol; // values by symbol
-    double *value;  // by node
+    struct ct_reduced r, plain; // plain: without names
+    double *symbol;             // values by symbol
+    size_t *definition;         // by symbol: number plus one of its definition, 0: none
+    double *value;              // by node
 };
 
 static void formulate(struct fixture *f, const char *system)
@@ -30,7 +33,8 @@ static void formulate(struct fixture *f, const char *system)
     struct ct_tree_report report;
     const struct ct_formulate_options o = {.tree = CT_TREE_AUTO};
     *f = (struct fixture){.ctx = {.model = ct_arena_create(), .scratch = ct_arena_create()}};
-    snprintf(path, sizeof path, "%s/../systems/%s/model.yaml", getenv("CT_TEST_DIR"), system);
+    snprintf(path, sizeof path, "%s/../systems/%s%s", getenv("CT_TEST_DIR"), system,
+             strstr(system, ".yaml") ? "" : "/model.yaml");
     if (!ct_model_read(&f->ctx, path, NULL, 0, &f->m)
         || !ct_formulate(&f->ctx, f->ctx.model, &f->m, &o, &f->e, &report)) {
         ct_ctx_print(&f->ctx, stderr);
@@ -90,16 +94,16 @@ static void evaluate(struct fixture *f)
     const struct ct_exs *x = f->e.x;
     f->value = CT_NEWN(f->ctx.scratch, double, x->nnode);
     double *v = f->value;
-    for (size_t k = 0; k < f->r.definitions.n; k++) // marks them: any number that is not a node
-        f->symbol[ct_ex_node(x, f->r.definitions.at[k].symbol)->a] = -1 - (double)k;
+    f->definition = CT_NEWN(f->ctx.scratch, size_t, x->nsym + 1);
+    for (size_t k = 0; k < f->r.definitions.n; k++)
+        f->definition[ct_ex_node(x, f->r.definitions.at[k].symbol)->a] = k + 1;
     for (uint32_t id = 0; id < x->nnode; id++) {
         const struct ct_exnode *n = &x->node[id];
         if (ct_ex_is_const(x, (ct_ex){id}, &v[id]))
             continue;
         if (n->op == CT_OP_SYM) {
-            v[id] = f->symbol[n->a];
-            if (x->sym[n->a].kind == CT_SYM_LOCAL && f->symbol[n->a] <= -1)
-                v[id] = v[f->r.definitions.at[(size_t)(-1 - f->symbol[n->a])].value.id];
+            const size_t d = f->definition[n->a];
+            v[id] = d ? v[f->r.definitions.at[d - 1].value.id] : f->symbol[n->a];
         } else if (n->op == CT_OP_TABLE) {
             v[id] = ct_table_value(&x->table[n->b], n->c, v[n->a]);
         } else {
@@ -162,18 +166,31 @@ static void check_all(struct fixture *f, const char *system)
         check_equal(f, system, "rate", i, f->r.rate[i], e->q[i].rate, 1);
 }
 
-static const char *const systems[] = {"andrews",          "bricard",
-                                      "cart_pole",        "chain40",
-                                      "double_pendulum",  "flexible_manipulator",
-                                      "four_bar",         "gimbal_top",
-                                      "governor",         "heavy_top",
-                                      "light_cart",       "n_four_bar",
-                                      "pendulum",         "pendulum_beam_tip_mass",
-                                      "puma560",          "puma560_driven",
-                                      "slider_crank",     "slider_crank_flexible",
-                                      "spatial_four_bar", "spatial_slider_crank",
-                                      "stewart",          "stiff_spring_pendulum",
-                                      "spin_up_beam",     "tapered_cantilever",
+static const char *const systems[] = {"andrews",
+                                      "bricard",
+                                      "cart_pole",
+                                      "chain40",
+                                      "double_pendulum",
+                                      "flexible_manipulator",
+                                      "four_bar",
+                                      "gimbal_top",
+                                      "governor",
+                                      "heavy_top",
+                                      "light_cart",
+                                      "n_four_bar",
+                                      "pendulum",
+                                      "pendulum_beam_tip_mass",
+                                      "puma560",
+                                      "puma560_driven",
+                                      "slider_crank",
+                                      "slider_crank_flexible",
+                                      "spatial_four_bar",
+                                      "spatial_slider_crank",
+                                      "stewart",
+                                      "stiff_spring_pendulum",
+                                      "two_boom_satellite",
+                                      "spin_up_beam",
+                                      "tapered_cantilever",
                                       "tumbling_body"};
 
 static void what_is_printed_equals_the_engine(void **state)
@@ -187,6 +204,264 @@ static void what_is_printed_equals_the_engine(void **state)
             evaluate(&f);
             check_all(&f, systems[i]);
         }
+        finish(&f);
+    }
+}
+
+// The recursive form, which long systems get: cutset - effort = M u' - Q - J' lam for any u' and lam.
+static void the_recursive_form_equals_the_matrix_form(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(systems); i++) {
+        struct fixture f;
+        formulate(&f, systems[i]);
+        const struct ct_equations *e = &f.e;
+        f.d.is_recursive = true;
+        ct_derivation_reduce(&f.d, &f.r);
+        ct_formulate_dynamics(&f.e);
+        ct_ex *residual = CT_NEWN(f.ctx.scratch, ct_ex, e->nu + 1),
+              *want = CT_NEWN(f.ctx.scratch, ct_ex, e->nu + 1);
+        for (size_t k = 0; k < e->nu; k++) {
+            residual[k] = ct_ex_sub(e->x, f.r.cutset[k], f.r.Q[k]);
+            want[k] = ct_ex_neg(e->x, e->Q[k]);
+        }
+        for (size_t k = 0; k < e->nM; k++) {
+            const int row = e->M[k].row, column = e->M[k].column;
+            const ct_ex m = e->M[k].value;
+            want[row] = ct_ex_add(e->x, want[row], ct_ex_mul(e->x, m, e->u[column].derivative));
+            if (row != column)
+                want[column]
+                    = ct_ex_add(e->x, want[column], ct_ex_mul(e->x, m, e->u[row].derivative));
+        }
+        for (size_t k = 0; k < e->nJ; k++) {
+            ct_ex *w = &want[e->J[k].column];
+            *w = ct_ex_sub(e->x, *w, ct_ex_mul(e->x, e->J[k].value, e->row[e->J[k].row].lam));
+        }
+        f.symbol = CT_NEWN(f.ctx.scratch, double, e->x->nsym);
+        for (int k = 0; k < 5; k++) {
+            choose_state(&f);
+            evaluate(&f);
+            const double scale = scale_of(&f, want, e->nu);
+            for (size_t n = 0; n < e->nu; n++)
+                check_equal(&f, systems[i], "row", n, residual[n], want[n], scale);
+        }
+        finish(&f);
+    }
+}
+
+// ---- blocks of beams --------------------------------------------------------------------------------
+
+// Entries of the matrices of a beam as the engine has them, and the lines below its block.
+struct engine_beam {
+    struct ct_columns columns;
+    ct_ex *M, *velocity, *elastic; // M: nu x nu
+    double *applied;
+};
+
+static void find_entries(struct fixture *f, const struct ct_flexible *self,
+                         struct engine_beam *s)
+{
+    struct ct_build *b = f->e.build;
+    struct ct_arena *a = f->ctx.scratch;
+    const size_t n = (size_t)self->nelastic, nu = f->e.nu;
+    ct_ex3 less[2];
+    const struct ct_base m = ct_flexible_base(b, self, CT_BIAS),
+                         felt = ct_flexible_felt(b, self, &m, &less[0], &less[1]),
+                         turned = {.w = felt.w};
+    s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
+    s->M = CT_NEWN(a, ct_ex, nu * nu + 1);
+    s->velocity = CT_NEWN(a, ct_ex, nu + 1);
+    s->elastic = CT_NEWN(a, ct_ex, nu + 1);
+    s->applied = CT_NEWN(a, double, n + 1);
+    ct_flexible_columns(b, self, &s->columns, s->M);
+    ct_flexible_inertia_rows(b, self, &turned, CT_BIAS, s->velocity);
+    ct_flexible_stiffness_rows(b, self, s->elastic);
+}
+
+static void set_symbol(struct fixture *f, ct_ex symbol, double v)
+{
+    if (!ct_ex_is_zero(symbol))
+        f->symbol[ct_ex_node(f->e.x, symbol)->a] = v;
+}
+
+// engine: values of its nodes in this state. k: the coordinate for which the vectors stand; -1: all zero.
+static void set_block(struct fixture *f, const struct ct_beam_block *s,
+                      const struct engine_beam *of, const double *engine, int k)
+{
+    const struct ct_equations *e = &f->e;
+    for (int i = 0; i < 3; i++) {
+        const double moved = k < 0 ? 0 : engine[of->columns.moved[k].e[i].id],
+                     swept = k < 0 ? 0 : engine[of->columns.swept[k].e[i].id];
+        set_symbol(f, s->moved[i], moved);
+        set_symbol(f, s->moved_t[i], moved);
+        set_symbol(f, s->swept[i], swept);
+        set_symbol(f, s->swept_t[i], swept);
+    }
+    double inertia = 0;
+    for (int l = 0; l < s->f->nelastic && k >= 0; l++) {
+        const size_t i = (size_t)s->f->elastic[k].u, j = (size_t)s->f->elastic[l].u;
+        inertia += engine[of->M[(i > j ? i : j) + e->nu * (i > j ? j : i)].id]
+                 * engine[e->u[j].derivative.id];
+    }
+    const int u = k < 0 ? 0 : s->f->elastic[k].u;
+    set_symbol(f, s->inertia, inertia);
+    set_symbol(f, s->acceleration, k < 0 ? 0 : engine[e->u[u].derivative.id]);
+    set_symbol(f, s->velocity, k < 0 ? 0 : -engine[of->velocity[u].id]);
+    set_symbol(f, s->elastic, k < 0 ? 0 : engine[of->elastic[u].id]);
+    set_symbol(f, s->applied, k < 0 ? 0 : of->applied[k]);
+}
+
+// M u' - Q - J' lam of the engine, and how large its terms are.
+static double residual(const struct fixture *f, const double *v, size_t i, double *scale)
+{
+    const struct ct_equations *e = &f->e;
+    double sum = -v[e->Q[i].id];
+    *scale = fmax(1, fabs(sum));
+    for (size_t k = 0; k < e->nM; k++) {
+        const size_t row = (size_t)e->M[k].row, column = (size_t)e->M[k].column;
+        if (row != i && column != i)
+            continue;
+        const double t = v[e->M[k].value.id] * v[e->u[row == i ? column : row].derivative.id];
+        sum += t;
+        *scale = fmax(*scale, fabs(t));
+    }
+    for (size_t k = 0; k < e->nJ; k++)
+        if ((size_t)e->J[k].column == i) {
+            const double t = v[e->J[k].value.id] * v[e->row[e->J[k].row].lam.id];
+            sum -= t;
+            *scale = fmax(*scale, fabs(t));
+        }
+    return sum;
+}
+
+// left - right of all rows, then the efforts of drivers.
+static double *row_values(struct fixture *f, const struct ct_beam_blocks *s, const ct_ex *side)
+{
+    double *v = CT_NEWN(f->ctx.scratch, double, s->n + f->e.ndriver + 1);
+    evaluate(f);
+    for (size_t i = 0; i < s->n; i++)
+        v[i] = f->value[side[2 * i].id] - f->value[side[2 * i + 1].id];
+    for (size_t i = 0; i < f->e.ndriver; i++)
+        v[s->n + i] = f->value[f->r.effort[i].id];
+    return v;
+}
+
+static void check_row(const char *system, const char *row, double got, double want,
+                      double scale)
+{
+    if (fabs(got - want) <= 1e-11 * scale)
+        return;
+    print_error("%s: equation of %s is off by %.17g, the engine's by %.17g\n", system, row, got,
+                want);
+    fail();
+}
+
+// Sums over coordinates of products with q'' are taken one by one; what is left counts once.
+static void check_blocks(struct fixture *f, const char *system, const struct ct_beam_blocks *s,
+                         const ct_ex *side, struct engine_beam *of)
+{
+    const struct ct_equations *e = &f->e;
+    const size_t nbeam = e->build->nflexible;
+    choose_state(f);
+    evaluate(f);
+    const double *engine = f->value;
+    for (size_t k = 0; k < s->parts->definitions.n; k++)
+        set_symbol(f, s->parts->definitions.at[k].symbol,
+                   engine[s->parts->definitions.at[k].full.id]);
+    for (size_t b = 0; b < nbeam; b++)
+        if (s->block[b].f)
+            set_block(f, &s->block[b], &of[b], engine, -1);
+    const double *plain = row_values(f, s, side);
+    const size_t nall = s->n + e->ndriver;
+    double *sum = CT_NEWN(f->ctx.scratch, double, nall + 1);
+    for (size_t i = 0; i < e->ndriver; i++)
+        sum[s->n + i] = plain[s->n + i];
+    for (size_t i = 0; i < s->n; i++) {
+        sum[i] = plain[i];
+        const struct ct_block_row *r = &s->row[i];
+        if (r->coordinate >= 0) // value of the line's right side
+            sum[i] = f->value[side[2 * i].id] - plain[i];
+    }
+    for (size_t b = 0; b < nbeam; b++)
+        for (int k = 0; s->block[b].f && k < s->block[b].f->nelastic; k++) {
+            set_block(f, &s->block[b], &of[b], engine, k);
+            const double *with = row_values(f, s, side);
+            set_block(f, &s->block[b], &of[b], engine, -1);
+            for (size_t i = 0; i < s->n; i++)
+                if (s->row[i].beam < 0)
+                    sum[i] += with[i] - plain[i];
+                else if (s->row[i].coordinate >= 0)
+                    sum[i] -= with[i] - plain[i];
+            for (size_t i = s->n; i < nall; i++)
+                sum[i] += with[i] - plain[i];
+        }
+    for (size_t i = 0; i < e->ndriver; i++) {
+        const double want = engine[f->plain.effort[i].id];
+        check_row(system, e->driver[i].name, sum[s->n + i], want, fmax(1, fabs(want)));
+    }
+    for (size_t i = 0; i < s->n; i++)
+        if (s->row[i].coordinate >= 0)
+            of[s->row[i].beam].applied[s->row[i].coordinate] = sum[i];
+    double scale;
+    for (size_t i = 0, speed = 0; i < s->n; i++) {
+        const struct ct_block_row *r = &s->row[i];
+        if (r->coordinate >= 0)
+            continue;
+        if (r->beam >= 0) {
+            const struct ct_flexible *self = s->block[r->beam].f;
+            for (int k = 0; k < self->nelastic; k++) {
+                set_block(f, &s->block[r->beam], &of[r->beam], engine, k);
+                const double got = row_values(f, s, side)[i];
+                const double want = residual(f, engine, (size_t)self->elastic[k].u, &scale);
+                check_row(system, self->elastic[k].name, got, want, scale);
+            }
+            set_block(f, &s->block[r->beam], &of[r->beam], engine, -1);
+            continue;
+        }
+        for (bool is_elastic = true; is_elastic; speed += is_elastic) {
+            is_elastic = false;
+            for (size_t b = 0; b < nbeam; b++)
+                for (int k = 0; s->block[b].f && k < s->block[b].f->nelastic; k++)
+                    is_elastic |= (size_t)s->block[b].f->elastic[k].u == speed;
+        }
+        const double want = residual(f, engine, speed, &scale);
+        check_row(system, r->label, sum[i], want, scale);
+        speed++;
+    }
+}
+
+// The last two: coordinates that move the frame of their own beam.
+static const char *const with_blocks[] = {"slider_crank_flexible",
+                                          "two_boom_satellite",
+                                          "two_boom_satellite/space.yaml",
+                                          "right_angle_frame",
+                                          "spin_up_welded",
+                                          "../tests/reference/B06_linear_tc.yaml",
+                                          "../tests/reference/B06_tt.yaml"};
+
+static void blocks_of_beams_equal_the_engine(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(with_blocks); i++) {
+        struct fixture f;
+        struct ct_beam_blocks s;
+        formulate(&f, with_blocks[i]);
+        ct_reduced_prepare(f.ctx.scratch, &f.e, false, &f.plain);
+        assert_true(ct_derivation_blocks(&f.d, &f.r, &s));
+        f.r.definitions = s.definitions;
+        ct_ex *side = CT_NEWN(f.ctx.scratch, ct_ex, 2 * s.n + 1);
+        struct engine_beam *of
+            = CT_NEWN(f.ctx.scratch, struct engine_beam, f.e.build->nflexible + 1);
+        for (size_t k = 0; k < s.n; k++) {
+            side[2 * k] = ct_block_left(f.e.x, &s.row[k]);
+            side[2 * k + 1] = ct_block_right(f.e.x, &s.row[k]);
+        }
+        for (size_t b = 0; b < f.e.build->nflexible; b++)
+            if (s.block[b].f)
+                find_entries(&f, s.block[b].f, &of[b]);
+        f.symbol = CT_NEWN(f.ctx.scratch, double, f.e.x->nsym);
+        for (int k = 0; k < 3; k++)
+            check_blocks(&f, with_blocks[i], &s, side, of);
         finish(&f);
     }
 }
@@ -425,7 +700,7 @@ static char *print(const char *system, unsigned stages, enum ct_equations_format
     size_t n;
     formulate(&f, system);
     FILE *out = open_memstream(&text, &n);
-    assert_true(ct_equations_print(out, f.ctx.scratch, &f.e, &f.m, stages, format));
+    assert_true(ct_equations_print(out, f.ctx.scratch, &f.e, &f.m, stages, format, false));
     fclose(out);
     finish(&f);
     return text;
@@ -465,6 +740,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_printed_equals_the_engine),
+        cmocka_unit_test(the_recursive_form_equals_the_matrix_form),
+        cmocka_unit_test(blocks_of_beams_equal_the_engine),
         cmocka_unit_test(text_for_programs_reads_back),
         cmocka_unit_test(pendulum_is_that_of_the_textbook),
         cmocka_unit_test(cart_pole_is_that_of_the_textbook),

@@ -1,4 +1,5 @@
 // Events of integration: known times, roots, both at once; what they leave to steps and samples.
+#include "integrate/event_location.h"
 #include "tests/unit/integration.h"
 
 // --- time events -----------------------------------------------------------------------------
@@ -258,6 +259,58 @@ static void a_root_at_rest_on_zero_does_not_fire(void **unused)
     end(r);
 }
 
+static enum ct_eval at_the_rate_of_time(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    (void)t;
+    (void)y;
+    dy[0] = 1;
+    return CT_EVAL_OK;
+}
+
+static enum ct_eval two_waves(void *user, double t, const double *y, double *g)
+{
+    (void)user;
+    (void)t;
+    g[0] = cos(4 * acos(-1) * y[0]);
+    return CT_EVAL_OK;
+}
+
+// The ends of the step and its middle have the same sign and are on a straight line.
+static void two_waves_in_a_step_are_seen(void **unused)
+{
+    (void)unused;
+    struct record *r = begin();
+    double y[NY] = {0};
+    check_fine(r, run(r, ct_method_find("dopri5"),
+                      (struct ct_problem){.ny = 1,
+                                          .rhs = at_the_rate_of_time,
+                                          .nroot = 1,
+                                          .root = two_waves,
+                                          .event = note_event},
+                      (struct ct_integrate_options){.t1 = 1, .atol = 1e-8, .step = 1}, y));
+    assert_int_equal(r->nevent, 4);
+    for (int i = 0; i < 4; i++)
+        check_close("zero", r->event[i], (2 * i + 1) / 8., 1e-11);
+    end(r);
+}
+
+// Three places of (x - x0)^2 (1 + k (x - x0)), which touches zero and whose curvature changes by
+// 60 per cent from place to place; and of a parabola that stays away from zero.
+static void a_parabola_tells_of_dips(void **unused)
+{
+    (void)unused;
+    for (int i = -5; i <= 5; i++) {
+        double f[3];
+        for (int j = 0; j < 3; j++) {
+            const double x = j - 1 - i / 10.;
+            f[j] = x * x * (1 + 0.2 * x) + 1e-9;
+        }
+        assert_true(ct_event_location_may_dip(f[0], f[1], f[2]));
+    }
+    assert_false(ct_event_location_may_dip(1.5, 0.5, 1.5));
+}
+
 // y'' = t: zero with its slope at the start. The root fires once, at the start.
 static enum ct_eval force_from_zero(void *user, double t, const double *y, double *dy)
 {
@@ -331,6 +384,8 @@ int main(void)
         cmocka_unit_test(roots_that_fire_together_fire_once),
         cmocka_unit_test(a_root_may_jump_at_its_event),
         cmocka_unit_test(a_root_at_rest_on_zero_does_not_fire),
+        cmocka_unit_test(two_waves_in_a_step_are_seen),
+        cmocka_unit_test(a_parabola_tells_of_dips),
         cmocka_unit_test(a_root_that_leaves_its_rest_fires_where_it_rested),
         cmocka_unit_test(a_sample_on_an_event_is_taken_after_it),
     };

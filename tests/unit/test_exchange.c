@@ -192,8 +192,11 @@ static bool *random_flags(int n, int one_in)
 static void slider_crank_has_441_pairs_8_of_least_weight(void **state)
 {
     (void)state;
-    const struct ct_search_options o
-        = {.trans = {.weight = crank_trans}, .rot = {.weight = crank_rot}};
+    const struct ct_search_options o = {.trans = {.weight = crank_trans},
+                                        .rot = {.weight = crank_rot},
+                                        .limit = 500,
+                                        .budget = 200,
+                                        .excess = 3};
     struct watch w = {.kind = COST_ONE, .o = &o, .g = &crank};
     struct ct_tree_pair best;
     struct ct_search_stats stats;
@@ -207,13 +210,16 @@ static void slider_crank_has_441_pairs_8_of_least_weight(void **state)
 static void slider_crank_descent_finds_the_best_of_all(void **state)
 {
     (void)state;
-    struct ct_search_options o
-        = {.trans = {.weight = crank_trans}, .rot = {.weight = crank_rot}};
+    struct ct_search_options o = {.trans = {.weight = crank_trans},
+                                  .rot = {.weight = crank_rot},
+                                  .limit = 500,
+                                  .budget = 200,
+                                  .excess = 3};
     struct watch all = {.kind = COST_PATHS, .o = &o, .g = &crank}, some = all;
     struct ct_tree_pair best;
     struct ct_search_stats stats, descent;
     assert_true(search(&all, &best, &stats));
-    o.limit = -1;
+    o.limit = 0;
     assert_true(search(&some, &best, &descent));
     assert_false(descent.exhaustive);
     assert_true(descent.cost == stats.cost && descent.weight == stats.weight);
@@ -257,7 +263,7 @@ static void descent_finds_the_optimum_of_a_sum(void **state)
         const struct ct_search_options o = {
             .trans = {.weight = random_weights(g.nedge, 4)},
             .rot = {.weight = random_weights(g.nedge, 4)},
-            .limit = -1,
+            .limit = 0,
             .budget = 100000,
             .excess = 1000,
         };
@@ -285,7 +291,8 @@ static void descent_keeps_the_rules(void **state)
             .trans = {.weight = random_weights(g.nedge, 4), .banned = random_flags(g.nedge, 9)},
             .rot = {.weight = random_weights(g.nedge, 4), .forced = random_flags(g.nedge, 9)},
             .tied = random_flags(g.nedge, 3),
-            .limit = -1,
+            .limit = 0,
+            .budget = 200,
             .excess = 5,
         };
         struct watch w = {.kind = COST_HASH, .o = &o, .g = &g};
@@ -379,10 +386,13 @@ static void contradicting_rules_leave_no_pair(void **state)
 static void inadmissible_everywhere_is_no_success(void **state)
 {
     (void)state;
-    for (int limit = -1; limit < 1; limit++)
+    for (int limit = 0; limit <= 500; limit += 500)
         for (enum cost_kind kind = COST_NEVER; kind <= COST_NAN; kind++) {
-            const struct ct_search_options o = {
-                .trans = {.weight = crank_trans}, .rot = {.weight = crank_rot}, .limit = limit};
+            const struct ct_search_options o = {.trans = {.weight = crank_trans},
+                                                .rot = {.weight = crank_rot},
+                                                .limit = limit,
+                                                .budget = 200,
+                                                .excess = 3};
             struct watch w = {.kind = kind, .o = &o, .g = &crank};
             struct ct_tree_pair best = {0};
             struct ct_search_stats stats;

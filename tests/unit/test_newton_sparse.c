@@ -352,27 +352,6 @@ static void unsound_pivots_are_sought_anew(void **unused)
     ct_arena_destroy(a);
 }
 
-// Pivots are kept as long as entries grow by a few hundred times what they did, and not where they grow by some thousand.
-static void pivots_are_kept_while_three_digits_are_lost(void **unused)
-{
-    (void)unused;
-    struct ct_arena *a = ct_arena_create();
-    const int row[] = {0, 1, 0, 1}, column[] = {0, 0, 1, 1};
-    int place[4], first[] = {0, 1};
-    double value[] = {1, 1, 1, 2};
-    struct ct_pattern *p = ct_pattern_create(a, 2, row, column, 4, place);
-    assert_true(ct_pattern_order(a, p, value, first));
-    struct ct_factors *f = ct_factors_create(a, p, false);
-    assert_true(ct_factors_compute(f, value));
-    value[0] = 1. / 300;
-    assert_true(ct_factors_compute(f, value));
-    assert_int_equal(ct_factors_npivoting(f), 1);
-    value[0] = 1. / 3000;
-    assert_true(ct_factors_compute(f, value));
-    assert_int_equal(ct_factors_npivoting(f), 2);
-    ct_arena_destroy(a);
-}
-
 // L L' with small pivots, a band and a border, as of a beam on a hinge that is eliminated from its free end: what lies beside the
 // diagonal is larger, and as a pivot it would fill the rest.
 static void positive_definite_matrices_do_not_fill(void **unused)
@@ -522,7 +501,6 @@ int main(void)
         cmocka_unit_test(sparse_matrices_have_the_solutions_of_full_ones),
         cmocka_unit_test(inner_values_change_nothing),
         cmocka_unit_test(unsound_pivots_are_sought_anew),
-        cmocka_unit_test(pivots_are_kept_while_three_digits_are_lost),
         cmocka_unit_test(positive_definite_matrices_do_not_fill),
         cmocka_unit_test(entries_of_the_inverse_are_those_of_solutions),
         cmocka_unit_test(steps_of_beams_cost_in_proportion_to_their_elements),

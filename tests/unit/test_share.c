@@ -4,6 +4,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -105,6 +106,26 @@ static void an_endless_tree_fits_a_screen(void **unused)
     ct_arena_destroy(f.arena);
 }
 
+// A recursion of 2000 named steps, each used twice: more paths than a double counts, and a line a step.
+static void names_come_first_where_they_are_asked_for(void **unused)
+{
+    (void)unused;
+    struct fixture f;
+    start(&f);
+    struct ct_exs *x = &f.x;
+    ct_ex e = f.q;
+    for (int k = 0; k < 2000; k++) {
+        e = ct_ex_add(x, ct_ex_fun(x, CT_OP_SIN, e), ct_ex_mul(x, f.l, e));
+        ct_ex_label(x, e, ct_arena_printf(f.arena, "a_%d", k));
+    }
+    const struct ct_share_options o = {.most = SIZE_MAX, .names_first = true};
+    const struct ct_share s = ct_ex_share(f.arena, x, &e, 1, &o);
+    assert_int_equal(s.n, 1999); // the last one is the expression itself
+    assert_string_equal(s.at[0].name, "a_0");
+    assert_true(s.size > 2000 * 20 && s.size < 2000 * 50);
+    ct_arena_destroy(f.arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -112,6 +133,7 @@ int main(void)
         cmocka_unit_test(a_label_is_the_name),
         cmocka_unit_test(small_and_trivial_stay),
         cmocka_unit_test(an_endless_tree_fits_a_screen),
+        cmocka_unit_test(names_come_first_where_they_are_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

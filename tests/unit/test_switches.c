@@ -80,6 +80,21 @@ static void ends_and_equal_places_count_once_or_not(void **unused)
     ct_arena_destroy(f.a);
 }
 
+// Up to a thousand millionth of the whole apart, and no more.
+static void places_that_are_close_are_one(void **unused)
+{
+    (void)unused;
+    struct fixture f;
+    begin(&f);
+    struct ct_exs *x = &f.x;
+    const ct_ex first = ct_ex_fun2(x, CT_OP_LT, f.s, CT_EX_ONE);
+    const ct_ex close = ct_ex_fun2(x, CT_OP_LT, f.s, ct_ex_const(x, 1 + 3 * 0.5e-9)),
+                apart = ct_ex_fun2(x, CT_OP_LT, f.s, ct_ex_const(x, 1 + 3 * 2e-9));
+    check_places(&f, ct_ex_add(x, first, close), (const double[]){1}, 1);
+    check_places(&f, ct_ex_add(x, first, apart), (const double[]){1, 1 + 3 * 2e-9}, 2);
+    ct_arena_destroy(f.a);
+}
+
 static void too_many_are_said(void **unused)
 {
     (void)unused;
@@ -101,6 +116,7 @@ int main(void)
         cmocka_unit_test(a_place_may_depend_on_parameters),
         cmocka_unit_test(all_roots_are_found_in_order),
         cmocka_unit_test(ends_and_equal_places_count_once_or_not),
+        cmocka_unit_test(places_that_are_close_are_one),
         cmocka_unit_test(too_many_are_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

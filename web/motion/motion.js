@@ -156,7 +156,7 @@ export async function createMotion(element, data, clock, lights, { track = undef
     factors: factors ?? [
       beams.length && {
         text: "deflection",
-        title: "how much larger than computed beams bend in the picture",
+        title: "how much larger than computed beams bend in the picture; a beam held at both ends bends about the line between them",
         most: 100,
         set(factor) {
           bend = factor;

@@ -32,7 +32,7 @@ async function geometryOf(solid) {
   return geometry;
 }
 
-// Large surfaces are lighter than bars of the same colour.
+// A surface without a colour of its own is lighter than bars of its body's.
 const tint = (color) => new Color(color).lerp(new Color("#ffffff"), 0.3).getStyle();
 
 // An object in axes of the body.
@@ -41,7 +41,7 @@ export async function createSolid(parts, solid, color, component) {
   const object =
     solid.kind === "lines"
       ? parts.own(new Line(geometry, new LineBasicMaterial({ color: solid.color ?? color })), component)
-      : parts.solid(geometry, parts.surface(tint(solid.color ?? color)), component, solid.kind !== "sphere");
+      : parts.solid(geometry, parts.surface(solid.color ?? tint(color)), component, solid.kind !== "sphere");
   for (const [angle, ...axis] of solid.turns)
     object.quaternion.multiply(new Quaternion().setFromAxisAngle(new Vector3(...axis), angle));
   object.position.set(...solid.at);

@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-static const double roundoff = 1e-12; // of components of unit vectors
-
 static ct_ex3 normal_at(struct ct_build *b, const ct_ex33 *U)
 {
     return ct_ex33_apply_t(b->x, U, b->topology->plane[2]);
@@ -22,7 +20,7 @@ static bool is_across(struct ct_build *b, ct_ex3 v, ct_ex3 n)
     for (int i = 0; i < 3; i++)
         if (!(ct_ex_kinds(b->x, v.e[i]) & ~still))
             size = fmax(size, fabs(ct_ex_value(b->x, v.e[i], b->value)));
-    return fabs(ct_ex_value(b->x, along, b->value)) <= roundoff * size;
+    return fabs(ct_ex_value(b->x, along, b->value)) <= CT_DATA_ROUNDOFF * size;
 }
 
 static bool is_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
@@ -31,7 +29,7 @@ static bool is_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(ct_ex_value(b->x, n.e[i], b->value)));
     if (most
-        < 1 - roundoff) { // along an axis its own component is all; else look at the cross product
+        < 1 - CT_DATA_ROUNDOFF) { // along an axis its own component is all; else look at the cross product
         const ct_ex3 c = ct_ex3_cross(b->x, v, n);
         for (int i = 0; i < 3; i++)
             if (ct_ex_kinds(b->x, c.e[i]) & ~(1u << CT_SYM_PARAM)
@@ -52,7 +50,7 @@ static bool is_axis(struct ct_build *b, ct_ex3 n)
     double most = 0;
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(ct_ex_value(b->x, n.e[i], b->value)));
-    return most > 1 - roundoff;
+    return most > 1 - CT_DATA_ROUNDOFF;
 }
 
 static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
@@ -106,8 +104,8 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
         const ct_ex3 n = normal_at(b, U[f->base]);
-        const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 1 - roundoff;
-        const bool about_y = fabs(ct_ex_value(b->x, n.e[1], b->value)) > 1 - roundoff;
+        const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 1 - CT_DATA_ROUNDOFF;
+        const bool about_y = fabs(ct_ex_value(b->x, n.e[1], b->value)) > 1 - CT_DATA_ROUNDOFF;
         const unsigned within
             = CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
         const bool leaves = f->beam->deformation_given && f->beam->deformation & ~within;
@@ -117,9 +115,10 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_
         longest = fmax(longest, ct_ex_value(b->x, f->beam->length, b->value));
         asked = asked || !f->beam->deformation_given;
     }
-    const bool keeps = !asked
-                    || (is_across(b, b->model->gravity, b->topology->plane[2])
-                        && loads_keep_plane(b, U) && masses_keep_plane(b, U, 1e-9 * longest));
+    const bool keeps
+        = !asked
+       || (is_across(b, b->model->gravity, b->topology->plane[2]) && loads_keep_plane(b, U)
+           && masses_keep_plane(b, U, CT_SAME_PLACE * longest));
     *is_spatial = *is_spatial || (keeps && frees && b->options->keeps_all_deformations);
     return keeps && !*is_spatial;
 }

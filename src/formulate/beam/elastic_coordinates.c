@@ -234,8 +234,9 @@ static double dot(const double *a, const double *c, size_t n)
 static bool check_shapes(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_mark *marks)
 {
-    const double least
-        = 1e-8; // of its length: what round-off of well chosen shapes leaves is far below
+    // Part of its length that is its own. Derived: the square root of the unit round-off, to which
+    // the length of what is left is known.
+    const double least = 1e-8;
     const size_t n = (size_t)NKIND * ((size_t)f->beam->nelement + 1);
     double *Q = CT_NEWN(b->ctx->scratch, double, n *(size_t)f->nelastic + 1);
     for (int k = 0; k < f->nelastic; k++) {

@@ -27,6 +27,7 @@
 
 #include "formulate/beam/flexible_body.h"
 
+/// Definition: polynomials of the slope, the deflection and the axial displacement.
 enum { CT_LEGENDRE_SLOPES = 3, CT_LEGENDRE_DEFLECTIONS = 4, CT_LEGENDRE_AXIAL = 6 };
 
 /// One plane of bending: displacements, rates or accelerations, or forces that do work on them.

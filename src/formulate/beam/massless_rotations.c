@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { RX = CT_FREEDOM_RX, RZ = CT_FREEDOM_RZ, NKIND = CT_NODE_FREEDOM, NAXIS = 3 };
-enum { ALL = 7 }; // about each axis of the beam: bits
+enum { RX = CT_FREEDOM_RX, RZ = CT_FREEDOM_RZ, NKIND = CT_NODE_FREEDOM };
+enum { NAXIS = 3, ALL = 7 }; // Definition: axes of the beam, and a bit for each
 
 struct node_moments {
     struct ct_build *b;
@@ -29,9 +29,8 @@ static int axis_along(struct ct_build *b, const struct ct_frame *frame, ct_ex3 v
         const ct_ex33 R = ct_ex33_axis_angle(b->x, frame->turn[i].axis, frame->turn[i].angle);
         v = ct_ex33_apply(b->x, &R, v);
     }
-    const double roundoff = 1e-12; // of components of a unit vector
     for (int i = 0; i < NAXIS; i++)
-        if (fabs(ct_ex_value(b->x, v.e[i], b->value)) > 1 - roundoff)
+        if (fabs(ct_ex_value(b->x, v.e[i], b->value)) > 1 - CT_DATA_ROUNDOFF)
             return i;
     return -1;
 }

@@ -156,10 +156,9 @@ static bool static_shapes(struct reduction *r)
 // its largest component, 1.
 static void drop_rounding(const struct reduction *r, double *v)
 {
-    const double roundoff = 1e-12; // n eps of the eigenvectors, n up to some thousand
     unsigned moves = 0;
     for (int i = 0; i < r->n; i++)
-        if (fabs(v[i]) > roundoff)
+        if (fabs(v[i]) > CT_DATA_ROUNDOFF) // n eps of the eigenvectors, n up to some thousand
             moves |= ct_freedom_family(r->freedom[i] % NKIND);
     for (int i = 0; i < r->n; i++)
         if (!(moves & ct_freedom_family(r->freedom[i] % NKIND)))
@@ -185,7 +184,7 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
 }
 
 // Entries of a shape that symmetry makes as large as each other: the first one is the largest, not
-// which one round-off says.
+// which one round-off says. Derived: far above n eps, and far below what differs by design.
 static const double alike = 1e-6;
 
 // Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be

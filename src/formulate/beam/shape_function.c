@@ -42,7 +42,7 @@ bool ct_shape_is_zero(const struct ct_shape *a)
     return true;
 }
 
-static const double common = 360360; // least common multiple of 1 ... 13
+static const double common = 360360; // Definition: least common multiple of 1 ... 13
 
 double ct_shape_end(const struct ct_shape *a)
 {

@@ -79,8 +79,6 @@ static int element_at(const struct ct_build *b, const struct ct_flexible *f, dou
     return e;
 }
 
-static const double at_node = 1e-9; // of the element's length: the place is that of the node
-
 void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex place,
                          enum ct_axial axial, struct ct_station *s)
 {
@@ -90,7 +88,9 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     const struct ct_element *self = &f->element[e];
     const ct_ex xi = ct_ex_div(x, ct_ex_sub(x, place, self->span.start), self->span.length);
     const double where = ct_ex_value(x, xi, b->value);
-    s->xi = fabs(where) < at_node ? CT_EX_ZERO : fabs(where - 1) < at_node ? CT_EX_ONE : xi;
+    s->xi = fabs(where) < CT_SAME_PLACE     ? CT_EX_ZERO
+          : fabs(where - 1) < CT_SAME_PLACE ? CT_EX_ONE
+                                            : xi;
     struct ct_axial_field a;
     s->axial = axial;
     ct_axial_field(b, f, e, s->xi, axial, &a);

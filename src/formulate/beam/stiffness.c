@@ -278,7 +278,7 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
 }
 
 // Squares of curvatures that are taken at n points and interpolated in between: with constant
-// sections at Gauss points, where all that is linear in an element is exact.
+// sections at Gauss points, where all that is linear in an element is exact. Definition: two.
 enum { MOST_POINTS = 2 };
 
 struct squares {
@@ -408,7 +408,7 @@ static void couple_shear(struct ct_build *b, const struct ct_flexible *f, int e,
 static void couple_element(struct ct_build *b, const struct ct_flexible *f, int e,
                            struct ct_element_force *out)
 {
-    enum { SHEAR_POINTS = 2 }; // exact where sections are constant and twist is linear
+    enum { SHEAR_POINTS = 2 }; // Derived: exact where sections are constant and twist is linear
     struct ct_exs *x = b->x;
     const struct ct_profile shear
         = {f->beam->x, ct_ex_sub(x, ct_flexible_shear(b, f, 0), ct_flexible_shear(b, f, 1))};

@@ -59,9 +59,32 @@ static ct_ex *forces_of_inertia(struct ct_build *b, const struct ct_flexible *f,
     return force;
 }
 
+// Rows in the named integrals: m_rf' a + m_thetaf' al - Q_vf + V_q, and m_ff q_f''.
+static void named_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
+                       enum ct_level level, ct_ex *row)
+{
+    struct ct_exs *x = b->x;
+    const struct ct_named_inertia *n = f->inertia->named;
+    for (int k = 0; k < f->nelastic; k++) {
+        ct_ex *r = &row[f->elastic[k].u];
+        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.moved[k], m->a));
+        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.swept[k], m->al));
+        for (int l = 0; l < f->nelastic && level == CT_FULL; l++)
+            *r = ct_ex_add(
+                x, *r,
+                ct_ex_mul(x, n->M[k * f->nelastic + l], b->eqs->u[f->elastic[l].u].derivative));
+        *r = ct_ex_sub(x, *r, n->velocity[k]);
+        *r = ct_ex_add(x, *r, n->elastic[k]);
+    }
+}
+
 void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                       enum ct_level level, ct_ex *row)
 {
+    if (f->inertia->named) {
+        named_rows(b, f, m, level, row);
+        return;
+    }
     ct_ex *force = forces_of_inertia(b, f, m, level);
     ct_stiffness_rows(b, f, force);
     hand_over(b, f, force, row);
@@ -80,6 +103,25 @@ void ct_flexible_stiffness_rows(struct ct_build *b, const struct ct_flexible *f,
     hand_over(b, f, force, row);
 }
 
+void ct_flexible_relative_wrench(struct ct_build *b, const struct ct_flexible *f,
+                                 const struct ct_base *m, enum ct_level level, ct_ex3 *force,
+                                 ct_ex3 *torque)
+{
+    const struct ct_named_inertia *n = f->inertia->named;
+    if (!n) {
+        f->inertia->method->wrench(b, f, m, level, force, torque);
+        return;
+    }
+    *force = n->force;
+    *torque = n->torque;
+    const bool is_vector = !ct_ex_is_zero(n->acceleration);
+    for (int k = 0; k < (is_vector ? 1 : f->nelastic) && level == CT_FULL; k++) {
+        const ct_ex u = is_vector ? n->acceleration : b->eqs->u[f->elastic[k].u].derivative;
+        *force = ct_ex3_add(b->x, *force, ct_ex3_scale(b->x, u, n->columns.moved[k]));
+        *torque = ct_ex3_add(b->x, *torque, ct_ex3_scale(b->x, u, n->columns.swept[k]));
+    }
+}
+
 // ---- sweep --------------------------------------------------------------------------------------------------
 
 void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
@@ -92,7 +134,7 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
         const struct ct_base m = ct_base_motion(b, f, level, apparent[p->anchor]);
         ct_ex3 F, T, lessF, lessT;
         const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
-        f->inertia->method->wrench(b, f, &felt, level, &F, &T);
+        ct_flexible_relative_wrench(b, f, &felt, level, &F, &T);
         F = ct_ex3_sub(x, F, lessF);
         T = ct_ex3_sub(x, T, lessT);
         rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], ct_base_out_of(b, f, F));
@@ -111,7 +153,7 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     const struct ct_base moved = ct_base_motion(b, f, CT_FULL, a);
     ct_ex3 F, T;
     const struct ct_base m = ct_flexible_felt(b, f, &moved, &F, &T);
-    f->inertia->method->wrench(b, f, &m, CT_FULL, &F, &T);
+    ct_flexible_relative_wrench(b, f, &m, CT_FULL, &F, &T);
     F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
     F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));
     F = ct_ex3_add(x, F, ct_ex3_cross(x, m.w, ct_ex3_cross(x, m.w, I->moment)));
@@ -311,6 +353,27 @@ static bool has_unknown(const struct ct_term *p, int np)
     return false;
 }
 
+// s x r in axes of the beam, of an axis s that is fixed in the cluster of the beam and of links r that all lie in it: for
+// readers, who would have to see that R'(R s x R r) = s x r.
+static bool local_lever(struct ct_build *b, const struct ct_flexible *f,
+                        const struct ct_rotation_axis *spin, ct_ex3 *lever)
+{
+    const struct ct_node_placement *at = &b->kinematics->placement[f->base];
+    ct_ex3 reach = zero3;
+    if (b->topology->is_planar || spin->cluster != at->frame || ct_ex3_is_zero(spin->local))
+        return false;
+    for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent) {
+        const struct ct_anchor *link = &b->kinematics->anchor[a];
+        if (!ct_cluster_is_outboard(b, spin->cluster, link->cluster))
+            continue;
+        if (link->cluster != at->frame)
+            return false;
+        reach = ct_ex3_add(b->x, reach, link->local);
+    }
+    *lever = ct_ex33_apply_t(b->x, &at->S, ct_ex3_cross(b->x, spin->local, reach));
+    return true;
+}
+
 static void base_columns(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_columns *c, ct_ex *M)
 {
@@ -324,10 +387,10 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         for (int a = at->anchor; a > 0; a = b->kinematics->anchor[a].parent)
             if (ct_cluster_is_outboard(b, spin->cluster, b->kinematics->anchor[a].cluster))
                 reach = ct_ex3_add(x, reach, ct_link_vector(b, a));
-        const ct_ex3 p
-            = ct_ex3_is_zero(reach)
-                ? zero3
-                : ct_base_into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
+        ct_ex3 p = zero3;
+        const bool is_local = f->inertia->named && local_lever(b, f, spin, &p);
+        if (!is_local && !ct_ex3_is_zero(reach))
+            p = ct_base_into(b, f, ct_ex3_cross(x, spin->axis, ct_build_in_plane(b, reach)));
         if (ct_cluster_is_outboard(b, spin->cluster, at->frame)) {
             if (spin->cluster == at->frame && !ct_ex3_is_zero(spin->local))
                 s = ct_ex33_apply_t(x, &at->S, spin->local);
@@ -361,11 +424,26 @@ static bool draws_by_shapes(const struct ct_flexible *f)
         && (f->beam->theory == CT_BEAM_EULER_BERNOULLI || f->beam->higher_order);
 }
 
+static void named_columns(struct ct_build *b, const struct ct_flexible *f,
+                          struct ct_columns *out, ct_ex *M)
+{
+    const struct ct_named_inertia *n = f->inertia->named;
+    for (int k = 0; k < f->nelastic; k++) {
+        out->moved[k] = n->columns.moved[k];
+        out->swept[k] = n->columns.swept[k];
+        for (int l = 0; l <= k; l++)
+            ct_mass_add_entry(b, M, f->elastic[k].u, f->elastic[l].u,
+                              n->M[k * f->nelastic + l]);
+    }
+}
+
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
     const struct ct_inertia_method *form = f->inertia->method;
-    if (form->mass)
+    if (f->inertia->named)
+        named_columns(b, f, out, M);
+    else if (form->mass)
         form->mass(b, f, out, M);
     else if (ct_flexible_is_small(b, f) && ct_flexible_is_nodal(f))
         small_mass(b, f, out, M);

@@ -44,8 +44,20 @@ struct ct_inertia_method {
                  ct_ex *M);
 };
 
+/// Integrals that stand as symbols in equations for a reader (report/beam_parts.h).
+struct ct_named_inertia {
+    struct ct_columns columns; // of the base's motion, by elastic coordinate
+    ct_ex *M;                  // between elastic coordinates (nelastic x nelastic)
+    ct_ex *velocity,
+        *elastic; // by elastic coordinate: quadratic velocity force; stiffness and damping
+    ct_ex3 force, torque; // of the motion relative to the base with u' = 0
+    ct_ex
+        acceleration; // of all elastic coordinates, where their columns are all the same row vector; else zero
+};
+
 struct ct_inertia {
     const struct ct_inertia_method *method;
+    const struct ct_named_inertia *named; // taken instead of what the method gives; NULL: none
     ct_ex mass;
     ct_ex3 moment;
     ct_ex33 inertia;        // about the base
@@ -109,6 +121,10 @@ ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 /// elastic coordinates.
 void ct_flexible_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                       enum ct_level level, ct_ex *row);
+/// Force and torque of the motion relative to the base, in its axes.
+void ct_flexible_relative_wrench(struct ct_build *b, const struct ct_flexible *f,
+                                 const struct ct_base *m, enum ct_level level, ct_ex3 *force,
+                                 ct_ex3 *torque);
 /// The same of inertia and weight alone; of stiffness and damping alone.
 void ct_flexible_inertia_rows(struct ct_build *b, const struct ct_flexible *f,
                               const struct ct_base *m, enum ct_level level, ct_ex *row);

@@ -9,7 +9,8 @@
 #include "formulate/mass_sums.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
-enum { FEW_POINTS = 6, MANY_POINTS = 8 }; // sections that are constant (exact), that vary
+// Points of an element: of constant sections. Derived: exact for products of two shapes of degree 5.
+enum { FEW_POINTS = 6 };
 
 // A point of mass m with the section there.
 struct ct_point {
@@ -87,7 +88,7 @@ static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, s
     unsigned kinds = ct_ex_kinds(b->x, mass.value);
     for (int i = 0; i < 3; i++)
         kinds |= ct_ex_kinds(b->x, ct_flexible_rotary(f, i).value);
-    const int wanted = kinds & 1u << CT_SYM_LOCAL ? MANY_POINTS : FEW_POINTS;
+    const int wanted = kinds & 1u << CT_SYM_LOCAL ? CT_ELEMENT_POINTS : FEW_POINTS;
     const enum ct_rule rule = ct_flexible_mass_rule(f->beam);
     const int n = ct_shape_points(b->x, &mass, s, rule, wanted, xi, m);
     for (int i = 0; i < 3; i++) {

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-// A pivot is large enough from this part of the largest entries of its rows.
-static const double threshold = 0.1;
-
 struct ct_blocks ct_blocks_create(struct ct_arena *a, struct ct_exs *x, size_t rank, size_t nu)
 {
     struct ct_blocks s = {.a = a, .x = x, .rank = rank, .nu = nu};
@@ -65,7 +62,7 @@ static void try_single(const struct ct_blocks *s, int row, double size, struct c
     for (size_t i = 0; i < l->n; i++) {
         const struct ct_probed_entry *e = &l->e[i];
         const double strength = fabs(e->number) / size;
-        if (!is_open(s, e) || !(strength >= threshold))
+        if (!is_open(s, e) || !(strength >= CT_TIGHT_PIVOT))
             continue;
         const struct choice c = {.size = 1,
                                  .row = {row},
@@ -99,7 +96,7 @@ static void try_columns(const struct ct_blocks *s, struct choice c, double size,
     }
     c.strength = fabs(a[0] * b[1] - a[1] * b[0]) / size;
     c.cost = (s->count[c.column[0]] + s->count[c.column[1]] - inside) * (width - 1) / 2;
-    if (c.strength >= threshold && is_better(&c, best))
+    if (c.strength >= CT_TIGHT_PIVOT && is_better(&c, best))
         *best = c;
 }
 

@@ -30,7 +30,11 @@ struct ct_block_step {
 };
 
 /// What block_of says of a column without a block.
-enum { CT_BLOCK_NEVER = -1, CT_BLOCK_OPEN = -2 };
+/// Part of the largest entries of its rows from which a pivot is large enough. Definition: as of
+/// sparse solvers (numeric/klu_include.h), with sums of large forces along beams in the rows.
+#define CT_TIGHT_PIVOT 0.1
+
+enum { CT_BLOCK_NEVER = -1, CT_BLOCK_OPEN = -2 }; // Definition: no index of a block
 
 struct ct_blocks {
     struct ct_arena *a;

@@ -5,6 +5,7 @@
 #include "formulate/closed_form/beam_augmented.h"
 #include "formulate/closed_form/projection_step.h"
 #include "formulate/closed_form/kkt.h"
+#include "formulate/operation_count.h"
 
 #include <limits.h>
 #include <math.h>
@@ -13,12 +14,8 @@
 
 // With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound
 // whatever their multipliers; what is left of the equations is measured in the run.
+// Chosen: fewer operations against digits.
 static const double loose = 0.001;
-// Sums of large forces along beams are neither: multipliers are held as small as those of J_d.
-static const double tight = 0.1;
-
-// What is another order among equals worth: patterns do not tell programs of the same length apart.
-static const double worth = 0.9;
 
 struct elimination {
     struct ct_arena *a;
@@ -33,6 +30,8 @@ struct elimination {
     struct ct_kkt_system system; // that whole is of
     bool is_carried;             // that is of beam_augmented.h
     ct_ex *B;                    // (nu x nfree), unit rows in the independent places
+    size_t *first;               // its entries by column: rows B_row[first[j] ...]
+    int *B_row;
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
     size_t *order; // (nfree) of the pivots of S, the first one last
 };
@@ -80,7 +79,8 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
 {
     const struct ct_beam_augmented *c = s->e->augmented;
     const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
-    struct ct_kkt_system k = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = tight};
+    struct ct_kkt_system k
+        = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = CT_TIGHT_PIVOT};
     int *place = CT_NEWN(s->a, int, k.n + k.m + 1);
     ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
     double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
@@ -135,8 +135,9 @@ static void apply(struct elimination *s, const struct ct_probed_row *A, size_t n
 static ct_ex dot_column(struct elimination *s, size_t j, const ct_ex *v, ct_ex *term)
 {
     size_t n = 0;
-    for (size_t i = 0; i < s->e->nu; i++) {
-        term[n] = ct_ex_mul(s->x, s->B[i + s->e->nu * j], v[i]);
+    for (size_t k = s->first[j]; k < s->first[j + 1]; k++) {
+        const int i = s->B_row[k];
+        term[n] = ct_ex_mul(s->x, s->B[(size_t)i + s->e->nu * j], v[i]);
         n += !ct_ex_is_zero(term[n]);
     }
     return sum(s->x, term, n);
@@ -145,12 +146,18 @@ static ct_ex dot_column(struct elimination *s, size_t j, const ct_ex *v, ct_ex *
 static void derive_B(struct elimination *s)
 {
     const size_t nu = s->e->nu;
+    size_t n = 0, cap = 0;
     s->B = CT_NEWN(s->a, ct_ex, nu * (s->p->nfree + 1));
+    s->first = CT_NEWN(s->a, size_t, s->p->nfree + 1);
     for (size_t j = 0; j < s->p->nfree; j++) {
         ct_ex *x = s->B + nu * j;
         const int column = s->p->independent[j];
         ct_blocks_solve_column(&s->d, column, x);
         x[column] = CT_EX_ONE;
+        for (size_t i = 0; i < nu; i++)
+            if (!ct_ex_is_zero(x[i]))
+                CT_PUSH(s->a, s->B_row, n, cap, (int)i);
+        s->first[j + 1] = n;
     }
 }
 
@@ -416,7 +423,7 @@ static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_are
         const double below = least ? least->operations : most;
         const struct ct_kkt *found
             = ct_kkt_factor(scratch, NULL, k, (enum ct_kkt_order)order,
-                            order == CT_KKT_POSITIONS ? worth * below : below);
+                            order == CT_KKT_POSITIONS ? CT_CLEARLY_CHEAPER * below : below);
         if (!found)
             continue;
         least = found;
@@ -499,7 +506,7 @@ static void list_order(struct ct_pivot_order *found, const struct ct_kkt *k)
 
 struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_equations *e,
                                            const struct ct_partition_sets *p, const double *M,
-                                           const double *J)
+                                           const double *J, double most)
 {
     struct ct_arena *scratch = ct_arena_create_under(a);
     struct ct_exs *x = ct_exs_clone(scratch, e->x);
@@ -508,15 +515,21 @@ struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_e
     struct ct_pivot_order *found = NULL;
     read_matrices(&s, M, J);
     const struct ct_kkt_system plain = {s.M, s.J, e->nu, p->rank, loose, NULL};
-    const struct ct_kkt *k = predict(&plain, scratch, INFINITY, &order);
-    if (k && ct_blocks_factor(&s.d, SIZE_MAX)) {
+    const struct ct_kkt *k = predict(&plain, scratch, most, &order);
+    struct ct_pivot_order t = {.operations = most};
+    if (k) {
+        t.row = CT_NEWN(a, int, k->n + 1);
+        t.column = CT_NEWN(a, int, k->n + 1);
+        t.way = order;
+        t.operations = k->operations;
+        list_order(&t, k);
+    }
+    const bool is_regular = ct_blocks_factor(&s.d, SIZE_MAX);
+    if (is_regular)
+        try_augmented(&s, scratch, &t);
+    if (is_regular && (k || t.is_augmented)) {
         found = CT_NEW(a, struct ct_pivot_order);
-        found->row = CT_NEWN(a, int, k->n + 1);
-        found->column = CT_NEWN(a, int, k->n + 1);
-        found->way = order;
-        found->operations = k->operations;
-        list_order(found, k);
-        try_augmented(&s, scratch, found);
+        *found = t;
         found->operations += count_pivots(&s, scratch, e->x->nnode);
     }
     ct_arena_destroy(scratch);
@@ -535,7 +548,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         return NULL;
     if (way == CT_CLOSED_KKT) {
         const struct ct_pivot_order *found
-            = p->pivots ? p->pivots : ct_pivot_order_find(a, e, p, M, J);
+            = p->pivots ? p->pivots : ct_pivot_order_find(a, e, p, M, J, (double)most_nodes);
         if (!found)
             return NULL;
         s.is_carried = found->is_augmented;
@@ -545,7 +558,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         if (!s.whole)
             return NULL;
     } else {
-        // refinement and projections make several times the nodes of the factors
+        // Limit: refinement and projections make several times the nodes of the factors
         const size_t enough = 20000, third = most_nodes / 3;
         derive_B(&s);
         if (!reduce(&s, third > enough ? x->nnode + third : most))

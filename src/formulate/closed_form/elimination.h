@@ -21,14 +21,15 @@
 struct ct_partition_sets {
     const int *row, *dependent, *independent;
     size_t rank, nfree;
-    const struct ct_pivot_order *pivots; // may be NULL: it is made where it is needed
+    const struct ct_pivot_order *pivots; // NULL: it is made where it is needed, unless
+    bool has_no_pivots;                  // there is none
     const double *value; // by symbol, at the state of the probe; NULL: beams are not carried
 };
 
 /// How all equations would be eliminated as one system, (nu + rank) rows and columns in the order
 /// of its pivots, so that these are on the diagonal or next to it. NULL: it is singular.
 struct ct_pivot_order {
-    int *row, *column;
+    int *row, *column; // NULL: only the system with more unknowns takes few enough operations
     bool
         is_augmented; // with the starts of elements as unknowns (beam_augmented.h): way and operations are of that
     enum ct_kkt_order way;
@@ -63,9 +64,9 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
                                    const struct ct_equations *e,
                                    const struct ct_partition_sets *p, const double *M,
                                    const double *J, enum ct_closed_way way, size_t most_nodes);
-/// By patterns and numbers at the state of the probe; in a. NULL if the system is singular.
+/// By patterns and numbers at the state of the probe; in a. NULL if the system is singular or takes more than `most` operations.
 struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_equations *e,
                                            const struct ct_partition_sets *p, const double *M,
-                                           const double *J);
+                                           const double *J, double most);
 
 #endif

@@ -11,6 +11,13 @@ struct choice {
     double strength;
 };
 
+// The largest numbers of a row, descending, and their columns.
+enum { LARGEST = 3 }; // Derived: without the two of a pivot one is left
+struct largest {
+    double size[LARGEST];
+    int column[LARGEST];
+};
+
 struct work {
     struct ct_arena *a;
     struct ct_exs *x; // NULL: patterns and numbers only
@@ -19,6 +26,7 @@ struct work {
     const int *place;          // that decides among equals; NULL: what few others come before
     double threshold;          // multipliers of a pivot that is sound are at most 1 over this
     struct ct_probed_row *row; // both triangles of what is left; numbers scaled
+    struct largest *largest;   // of each row
     bool *is_done;
     int *level;          // pivots that come before
     int *position;       // along the system, or NULL: by degree
@@ -91,14 +99,33 @@ static void read_matrix(struct work *w, const struct ct_probed_row *M, size_t nu
 
 // ---- choice of pivots ---------------------------------------------------------------------------
 
-// The largest number of a row beside columns i and j.
-static double size_beside(const struct ct_probed_row *l, int i, int j)
+static struct largest largest_of(const struct ct_probed_row *l)
 {
-    double most = 0;
-    for (size_t k = 0; k < l->n; k++)
-        if (l->e[k].column != i && l->e[k].column != j)
-            most = fmax(most, fabs(l->e[k].number));
-    return most;
+    struct largest t = {{0}, {-1, -1, -1}};
+    for (size_t k = 0; k < l->n; k++) {
+        const double size = fabs(l->e[k].number);
+        int at = LARGEST;
+        for (; at > 0 && size > t.size[at - 1]; at--)
+            if (at < LARGEST) {
+                t.size[at] = t.size[at - 1];
+                t.column[at] = t.column[at - 1];
+            }
+        if (at < LARGEST) {
+            t.size[at] = size;
+            t.column[at] = l->e[k].column;
+        }
+    }
+    return t;
+}
+
+// The largest number of row r beside columns i and j.
+static double size_beside(const struct work *w, int r, int i, int j)
+{
+    const struct largest *t = &w->largest[r];
+    int at = 0;
+    while (at < LARGEST - 1 && (t->column[at] == i || t->column[at] == j))
+        at++;
+    return t->size[at];
 }
 
 static double number_at(const struct ct_probed_row *l, int column)
@@ -158,8 +185,8 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
 {
     const struct ct_probed_row *l = &w->row[i], *k = &w->row[j];
     const double a = number_at(l, i), b = number_at(l, j), c = number_at(k, j);
-    const double det = fabs(a * c - b * b), mi = size_beside(l, i, j),
-                 mj = size_beside(k, i, j);
+    const double det = fabs(a * c - b * b), mi = size_beside(w, i, i, j),
+                 mj = size_beside(w, j, i, j);
     const double growth = fmax(fabs(c) * mi + fabs(b) * mj, fabs(b) * mi + fabs(a) * mj);
     struct choice t = {.size = 2, .at = {i, j}, .strength = at_most_one(det / growth)};
     t.tie = later(w->place ? w->place : w->level, i, j);
@@ -180,7 +207,7 @@ static struct choice best_of_row(const struct work *w, int i)
                                .at = {i, i},
                                .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
                                .tie = (w->place ? w->place : w->level)[i],
-                               .strength = at_most_one(d / size_beside(l, i, i))};
+                               .strength = at_most_one(d / size_beside(w, i, i, i))};
     if (d > 0 && is_better(w, &one, &best))
         best = one;
     for (size_t k = 0; k < l->n && !(one.strength >= w->threshold && d > 0); k++)
@@ -381,6 +408,7 @@ static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnea
     }
     w->spare = *old;
     w->row[r] = sum;
+    w->largest[r] = largest_of(&sum);
 }
 
 // The pivot's own values, and its reciprocal where it divides more than two numbers.
@@ -467,6 +495,9 @@ struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
     w.k->n = n;
     w.k->pivot = CT_NEWN(a, struct ct_kkt_pivot, n + 1);
     read_matrix(&w, system->M, system->n, system->J, system->m);
+    w.largest = CT_NEWN(a, struct largest, n + 1);
+    for (size_t i = 0; i < n; i++)
+        w.largest[i] = largest_of(&w.row[i]);
     w.place = order == CT_KKT_POSITIONS ? system->position_along : NULL;
     if (order == CT_KKT_ALONG)
         w.position = place_along(&w);

@@ -11,8 +11,10 @@
 
 /// Forces along the tree, accumulated from the leaves: cutset sums.
 struct ct_sweep {
-    ct_ex3 *force;  // by anchor: what the link must carry, [N]
-    ct_ex3 *torque; // by cluster: about its spins, clusters outboard included [N m]
+    ct_ex3 *force;    // by anchor: what the link must carry, [N]
+    ct_ex3 *rest;     // of that, what all outboard needs beyond mass * apparent
+    ct_ex3 *apparent; // by anchor: acceleration less gravity [m/s^2]
+    ct_ex3 *torque;   // by cluster: about its spins, clusters outboard included [N m]
     ct_ex3 *
         local; // by cluster: what is missing there, in axes of the cluster; zero but for the innermost
     ct_ex *row; // by speed: what the deformation of beams adds
@@ -32,7 +34,10 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level);
 void ct_forces_derive(struct ct_build *b);
 /// M and Q, once. After ct_loads_derive.
 void ct_dynamics_derive(struct ct_build *b);
-/// Row of the full sweep less the efforts of the joints: M u' - Q - J' lam. After ct_forces_derive.
+/// Row of the full sweep, what the effort along a speed must supply: M u' - J' lam - (Q - effort). After
+/// ct_loads_derive.
+ct_ex ct_sweep_row(struct ct_build *b, int speed);
+/// The same less that effort: M u' - Q - J' lam.
 ct_ex ct_sweep_residual(struct ct_build *b, int speed);
 
 // ---- loads --------------------------------------------------------------------------------------

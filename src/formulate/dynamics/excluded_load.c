@@ -45,10 +45,9 @@ static void warn_of_load(struct ct_ctx *ctx, struct ct_build *b, const struct ct
         const char *axis, *name;
     } bending[]
         = {{CT_BEAM_BENDING_Z, "y", "bending-z"}, {CT_BEAM_BENDING_Y, "z", "bending-y"}};
-    const double roundoff = 1e-12; // of components of a rotated vector
     for (int i = 0; i < 2; i++)
         if (!(f->beam->deformation & bending[i].family)
-            && constant_part(b, f, load->force, 1 + i) > roundoff)
+            && constant_part(b, f, load->force, 1 + i) > CT_DATA_ROUNDOFF)
             ct_warning(ctx, load->self->mark, 0,
                        "force '%s' pushes beam '%s' along its %s axis, in which 'deformation' "
                        "does not let "

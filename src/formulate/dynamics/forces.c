@@ -178,10 +178,10 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     struct work w = {.b = b, .level = level};
     ct_augmented_bodies_lump(b);
     struct ct_sweep *s = CT_NEW(b->arena, struct ct_sweep);
-    w.rest = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
+    w.rest = s->rest = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
     w.torque = s->torque = CT_NEWN(b->arena, ct_ex3, b->kinematics->ncluster);
     s->local = CT_NEWN(b->arena, ct_ex3, b->kinematics->ncluster);
-    w.apparent = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
+    w.apparent = s->apparent = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
     s->force = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor);
     s->row = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     find_apparent(&w);
@@ -311,12 +311,16 @@ void ct_dynamics_derive(struct ct_build *b)
     b->eqs->has_dynamics = true;
 }
 
+ct_ex ct_sweep_row(struct ct_build *b, int speed)
+{
+    return ct_speed_is_state(b->eqs, (size_t)speed)
+             ? b->eqs->u[speed].derivative
+             : sweep_row(b, ct_sweep_run(b, CT_FULL), speed);
+}
+
 ct_ex ct_sweep_residual(struct ct_build *b, int speed)
 {
-    if (ct_speed_is_state(b->eqs, (size_t)speed))
-        return ct_ex_sub(b->x, b->eqs->u[speed].derivative, b->loads->effort[speed]);
-    return ct_ex_sub(b->x, sweep_row(b, ct_sweep_run(b, CT_FULL), speed),
-                     b->loads->effort[speed]);
+    return ct_ex_sub(b->x, ct_sweep_row(b, speed), b->loads->effort[speed]);
 }
 
 // ---- efforts of joints ------------------------------------------------------------------------------

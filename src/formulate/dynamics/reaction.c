@@ -184,10 +184,9 @@ static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *
 // Does component i of a force lie in the plane, or that of a torque along its normal?
 static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
 {
-    const double roundoff = 1e-12; // of components of unit vectors
     const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[node], b->topology->plane[2]);
     const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
-    return is_force ? along < roundoff : along > 1 - roundoff;
+    return is_force ? along < CT_DATA_ROUNDOFF : along > 1 - CT_DATA_ROUNDOFF;
 }
 
 // Nodes that branch e cuts off from ground.

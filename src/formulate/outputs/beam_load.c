@@ -24,15 +24,13 @@ struct cut {
     ct_ex3 force, torque;
 };
 
-static const double same_place = 1e-9; // of the beam's length
-
 static struct cut cut_at(struct ct_build *b, const struct ct_flexible *f, ct_ex x)
 {
     struct cut c = {.f = f};
     const int frame = b->kinematics->placement[f->base].frame;
     ct_flexible_station(b, f, x, f->kinematics, &c.s);
     c.x = ct_ex_value(b->x, x, b->value);
-    c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
+    c.tolerance = CT_SAME_PLACE * ct_ex_value(b->x, f->beam->length, b->value);
     c.is_start = c.x < c.tolerance;
     c.a = ct_ex3_sub(b->x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
     c.a = ct_node_unturn(b, f->base, c.a);
@@ -198,7 +196,7 @@ bool ct_beam_load_is_known(const struct ct_build *b, int frame, bool is_force, i
     const struct ct_flexible *f = ct_beam_signal_beam(b, frame);
     struct cut c
         = {.f = f, .x = ct_ex_value(b->x, ct_beam_signal_place(b, frame).e[0], b->value)};
-    c.tolerance = same_place * ct_ex_value(b->x, f->beam->length, b->value);
+    c.tolerance = CT_SAME_PLACE * ct_ex_value(b->x, f->beam->length, b->value);
     c.is_start = c.x < c.tolerance;
     for (size_t e = 0; e < b->topology->nedge; e++)
         if (is_beyond(b, &c, (int)e) && !ct_reaction_of_edge_is_known(b, (int)e, is_force, i))

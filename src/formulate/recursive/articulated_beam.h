@@ -18,7 +18,7 @@
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/recursive/member.h"
 
-enum { CT_SPATIAL_SIZE = 6 }; // al, a or n, f
+enum { CT_SPATIAL_SIZE = 6 }; // Definition: al, a or n, f
 
 /// A wrench n, f or a motion al, a.
 struct ct_spatial_vector {

@@ -11,9 +11,10 @@
 #include <math.h>
 
 // A call of a solver for dense matrices, in operations of straight-line code.
+// Default: by the time of a call. Test: open_chain.
 static const double call_cost = 300;
-// What is made of more operations takes too much memory; below, repeats are rolled up
-// (codegen/reroll.h).
+// Limit: operations of a program, which take memory; below, repeats are rolled up
+// (codegen/reroll.h), beyond, a solver for sparse matrices is called.
 static const double longest_program = 1e7;
 
 static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
@@ -186,15 +187,14 @@ static struct trial try_articulated(struct ct_build *b, const struct ct_members 
     return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 
-// The mass matrix is what people look at, and its pivots lose least: another form must be cheaper
-// by this.
-static const double worth = 0.9;
+// The mass matrix is what people look at, and its pivots lose least: another form must be clearly
+// cheaper.
 
 double ct_open_cost(struct ct_build *b, double by_matrix)
 {
     const struct ct_members *s = b->eqs->nrow ? NULL : ct_members_derive(b);
     const double articulated = s ? try_articulated(b, s).cost : INFINITY;
-    return articulated < worth * by_matrix ? articulated : by_matrix;
+    return articulated < CT_CLEARLY_CHEAPER * by_matrix ? articulated : by_matrix;
 }
 
 static enum ct_formulation cheapest(const struct trial *t, enum ct_formulation wanted)
@@ -203,7 +203,8 @@ static enum ct_formulation cheapest(const struct trial *t, enum ct_formulation w
     if (wanted != CT_FORMULATION_AUTO && isfinite(t[wanted].cost))
         return wanted;
     for (int k = CT_FORMULATION_CUTSETS; k < CT_NFORMULATION; k++)
-        if (t[k].cost < (best == CT_FORMULATION_CUTSETS ? worth : 1) * t[best].cost)
+        if (t[k].cost
+            < (best == CT_FORMULATION_CUTSETS ? CT_CLEARLY_CHEAPER : 1) * t[best].cost)
             best = (enum ct_formulation)k;
     return best;
 }

@@ -40,6 +40,7 @@ static void add_entry(struct places *p, int row, int column)
 // terms in three parts.
 static double work_of(double nz, double factorization, double fill)
 {
+    // Chosen: corrections of a step with one factorisation, terms of an entry
     const double solutions = 8, assembly = 8;
     return assembly * nz + factorization + solutions * 2 * fill;
 }
@@ -111,7 +112,8 @@ static double thinned_work(const struct search *s, const struct ct_scarcity *g, 
 // The best of several degrees of thinning, if it takes less than `work`.
 static size_t thin_out(const struct search *s, double work, ct_ex **inner)
 {
-    const long first = 4, last = 256; // edges that a node may add; behind, little is left of it
+    // Edges that a node may add. Limit: of a search by doubling
+    const long first = 4, last = 256;
     struct ct_scarcity *g
         = ct_scarcity_create(s->b->x, s->a, s->r, s->nu, s->seed, s->nseed, (uint32_t)s->nu);
     size_t nbest = 0;
@@ -133,6 +135,7 @@ static size_t thin_out(const struct search *s, double work, ct_ex **inner)
 // unknown is not worth one, and none has been seen to find anything there.
 static bool is_worth_a_search(const struct search *s, double work)
 {
+    // Limit: of the time of the search
     const double few = 40;
     return work > full_work(few) / few * (double)(s->nu + s->nrow);
 }

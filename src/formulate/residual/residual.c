@@ -108,8 +108,8 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 
 // Predicted use: so many evaluations in a run. Making an operation (nodes, listing, machine code)
 // costs as much as executing it so often; side by side in lanes it costs a quarter and something
-// for the loads.
-static const double expected_evaluations = 300, making = 1500, per_lane = 0.3;
+// for the loads. Default: time to make a program against its use. Test: jacobian.
+static const double expected_evaluations = 300, making = 1500;
 
 // What both ways start from: r with inner values behind it, v, and the motions they vary along.
 struct slopes {
@@ -250,7 +250,7 @@ static double cost_along(struct ct_build *b, const struct ct_directional *along,
 {
     const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, along->rate, nrate);
     return ct_counted_cost(&c)
-         * (making + expected_evaluations * per_lane * (double)along->ncolour);
+         * (making + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
 }
 
 // Along directions, if that is asked for or costs less than entry by entry. True: done.

@@ -450,7 +450,8 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
 // ---- expressions of the model
 // ------------------------------------------------------------------------------------------
 
-static const int deepest_signal = 64; // a force that measures a force that measures ... itself
+static const int deepest_signal
+    = 64; // Limit: with a message; a force that measures a force that measures ... itself
 
 // The error of a force, or the rate of a state, that depends on what follows from forces.
 static void refuse(struct ct_build *b, const struct ct_signal *s)

@@ -45,7 +45,7 @@ bool ct_signal_is_number(struct ct_build *b, const struct ct_signal *s);
 /// The error of a signal that does not exist; always false.
 bool ct_signal_unknown(struct ct_build *b, const struct ct_signal *s, const char *why);
 
-enum { CT_MOST_SIGNALS = 32 }; // replaced at a time
+enum { CT_MOST_SIGNALS = 32 }; // Limit: replaced at a time; more take another pass
 
 /// Signals in an expression of the model, no more than CT_MOST_SIGNALS. Returns their number.
 size_t ct_signals_list(struct ct_build *b, ct_ex e, ct_ex signal[CT_MOST_SIGNALS]);

@@ -13,15 +13,13 @@ static void value3(const struct ct_build *b, ct_ex3 v, double out[3])
         out[i] = ct_ex_value(b->x, v.e[i], b->value);
 }
 
-static const double parallel_tolerance = 1e-12; // unit vectors from a dozen round-off errors
-
 static bool is_parallel(const double a[3], const double n[3])
 {
     const double c = a[0] * n[0] + a[1] * n[1] + a[2] * n[2];
     double d = 0;
     for (int i = 0; i < 3; i++)
         d = fmax(d, fabs(a[i] - c * n[i]));
-    return d < parallel_tolerance;
+    return d < CT_DATA_ROUNDOFF;
 }
 
 static bool is_same(const double a[3], const double n[3])
@@ -31,7 +29,7 @@ static bool is_same(const double a[3], const double n[3])
 
 static bool is_across(const double a[3], const double n[3])
 {
-    return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < parallel_tolerance;
+    return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < CT_DATA_ROUNDOFF;
 }
 
 // The motion of joint e keeps to the plane with normal n (in axes of `from`).
@@ -117,13 +115,10 @@ static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
     const ct_ex zero[CT_MAX_COORD] = {{0}};
     ct_ex3 d = e->at;
     for (int i = 0; i < 3 && e->kind != CT_EDGE_ARM; i++)
-        d.e[i]
-            = ct_ex_subst(b->x, e->trial->d.e[i], e->trial->coord, zero, (size_t)e->ncoordinate);
+        d.e[i] = ct_ex_subst(b->x, e->trial->d.e[i], e->trial->coord, zero,
+                             (size_t)e->ncoordinate);
     return ct_ex3_dot(b->x, ct_ex33_apply_t(b->x, U, b->topology->plane[2]), d);
 }
-
-static const double layer_tolerance
-    = 1e-9; // of places out of the plane, against the longest arm
 
 static double longest_arm(const struct ct_build *b)
 {
@@ -163,7 +158,7 @@ static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *cons
 static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
     double(*n)[3] = ct_arena_calloc(b->arena, t->nnode, sizeof *n);
-    const double allowed = layer_tolerance * longest_arm(b);
+    const double allowed = CT_SAME_PLACE * longest_arm(b);
     for (size_t i = 0; i < t->nnode; i++) {
         if (!U[i])
             return false;

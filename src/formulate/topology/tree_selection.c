@@ -2,6 +2,7 @@
 #include "formulate/topology/tree_selection.h"
 
 #include "formulate/beam/flexible_body.h"
+#include "formulate/operation_count.h"
 #include "graph/exchange.h"
 
 #include <math.h>
@@ -69,9 +70,15 @@ static bool least_weight(struct ct_build *b, const struct ct_pair_rules *r,
 }
 
 // Work of the search is bounded by nodes generated, not by time: same model, same tree.
+// Limit: about a second.
 static const double search_nodes = 600000;
 // Fewer pairs than these are not worth their time: exchanges seldom find a cheaper one among so few.
+// Limit: of the time to make large systems.
 static const double fewest_pairs = 16;
+// All pairs are tried up to so many, else a descent takes so many, of weights up to so much above
+// the least. Limit: of the time of the search; the pairs found differ by some operations.
+static const double most_pairs = 2000, descent_pairs = 400;
+static const int excess = 2;
 
 static void improve(struct ct_build *b, const struct ct_pair_rules *r,
                     const struct ct_pair_trials *trials, struct ct_tree_pair *p,
@@ -87,9 +94,9 @@ static void improve(struct ct_build *b, const struct ct_pair_rules *r,
         = {.trans = {r->weight_t, r->rank, r->forced_t, r->banned_t},
            .rot = {r->weight_r, r->rank, r->forced_r, r->banned_r},
            .tied = r->tied,
-           .limit = pairs < 1 ? -1 : fmin(pairs, 2000),
-           .budget = (int)fmax(1, fmin(pairs, 400)),
-           .excess = 2};
+           .limit = fmin(pairs, most_pairs),
+           .budget = (int)fmin(pairs, descent_pairs),
+           .excess = excess};
     if (pairs < fewest_pairs
         || !ct_tree_search(b->arena, &b->topology->graph, &o, trials->cost, trials->stage, p,
                            &stats)) {
@@ -182,7 +189,8 @@ static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
                                                const struct ct_formulate_options *o,
                                                const struct ct_tree_pair *p)
 {
-    const double most = 400; // for each unknown
+    // Entries for each unknown. Chosen: sparse rows are worth more unknowns.
+    const double most = 400;
     double n = 0;
     for (size_t i = 1; i < b->model->nbody; i++)
         n += own_unknowns(b, i);
@@ -219,7 +227,6 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
                               const struct ct_pair_trials *trials, struct ct_tree_pair *p,
                               struct ct_tree_report *report)
 {
-    const double clearly = 0.9;
     struct ct_tree_pair q;
     struct ct_tree T, R;
     if (!has_loops_of_beams(b) || !absolute_trees(b, o, &q))
@@ -227,7 +234,7 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
     ct_tree_from_branches(b->arena, &b->topology->graph, q.trans, &T);
     ct_tree_from_branches(b->arena, &b->topology->graph, q.rot, &R);
     const double cost = trials->cost(trials->stage, &T, &R);
-    if (!(cost < clearly * report->cost))
+    if (!(cost < CT_CLEARLY_CHEAPER * report->cost))
         return;
     *p = q;
     report->cost = cost;

@@ -73,6 +73,7 @@ struct ct_radau {
     struct ct_lost_vibration {
         double all, rate; // of vibrations, what there is, and what steps take, over h^5
     } lost;               // by outputs at looks so far
+    double largest_work;  // at looks so far
     struct {
         double h,
             // a step, and what such ones take of vibrations, as an error of order 3; 0: not looked

@@ -103,21 +103,34 @@ static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
     }
 }
 
-// What the step takes from vibrations, as an error of order 3: 1 where as much in every step would
-// be felt at the end of the run. A rate of h^5.
+// What is lost of vibrations, as an error of order 3. The share of a step that is taken in every
+// step, `rate`, is one of h^5. All there is does not grow with the step, so that holds steps up less
+// before it counts.  (8.13), (8.22)
+static double as_error(double rate, double all)
+{
+    const double order = 4. / 5;
+    return ct_smaller(pow(rate, order), pow(all, 1 / order));
+}
+
+// What the step takes from vibrations, as an error of order 3: 1 where as much in every step up to
+// the end of the run, or all there is if that is less, would be felt. The work put in errs by what
+// dampers would have had of it, and may be much less than the energy of the motion.
 static double find_loss(struct ct_radau *s, const struct ct_problem *p,
-                        const struct ct_vibration *v, const double *u, const double *u_dot)
+                        const struct ct_vibration *v, const double *y, const double *u_dot)
 {
     struct ct_newton_iteration *it = s->it;
-    const double order = 4. / 5;
     const double small = s->step_tolerance.atol / s->step_tolerance.rtol,
-                 felt = promised * p->accuracy;
-    ct_newton_iteration_note_energy(it, small, u);
+                 felt = promised * p->accuracy, pace = v->lost / s->now.h * p->duration;
+    ct_newton_iteration_note_energy(it, small, y + s->dae->nq);
     if (v->present > felt * it->energy)
         ct_newton_iteration_predict_energy(it, small, p->duration, u_dot);
     const bool counts = p->keeps_energy || v->present > felt * it->energy;
-    const double pace = v->lost / s->now.h * p->duration;
-    return counts ? pow(pace / (p->accuracy * it->energy), order) : 0;
+    const double may = counts ? p->accuracy * it->energy : INFINITY;
+    s->largest_work = ct_larger(s->largest_work, fabs(y[p->ny - 1]));
+    const double of_work
+        = p->keeps_work ? 2 * unmissed * felt * (s->largest_work + small) : INFINITY;
+    const double least = ct_smaller(may, of_work);
+    return as_error(pace / least, v->present / least);
 }
 
 // Less of the error where it is one of vibrations: of speeds, and of places where outputs would not
@@ -137,7 +150,7 @@ static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
         const struct ct_vibration v
             = ct_newton_iteration_vibration(s->it, GAMMA, s->now.h, d, u);
         if (loss)
-            *loss = find_loss(s, p, &v, y + nq, dy + nq);
+            *loss = find_loss(s, p, &v, y, dy + nq);
         if (slow < worth_it * eased
             && ct_newton_iteration_output_change(s->it, p, &v, t, y, d, u)
                    < unfelt * promised * p->accuracy)
@@ -204,30 +217,23 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
     return m;
 }
 
-// As an error of order 3: a rate of h^5. All there is does not grow with the step, so that holds
-// steps up less before it counts.  (8.22)
-static double lost_error(const struct ct_lost_vibration *m, double h)
-{
-    const double order = 4. / 5, h5 = h * h * h * h * h;
-    return ct_smaller(pow(m->rate * h5, order), pow(m->all, 1 / order));
-}
-
-// It is looked at where steps have become longer, and every so many steps, and follows their length
-// in between.
+// It is looked at where steps have become longer or one was refused, and every so many steps, and
+// follows their length in between. Of a refused step, which may be far longer, vibrations that it
+// does not resolve have no such law.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
     const double h = s->now.h;
     if (!p->requested_speeds || !(p->accuracy > 0) || !(p->duration > 0))
         return 0;
-    if (h <= s->vibration_check.h && s->vibration_check.left-- > 0) {
+    if (h <= s->vibration_check.h && !s->was_tried && s->vibration_check.left-- > 0) {
         const double part = h / s->vibration_check.h;
         return s->vibration_check.error * part * part * part * part;
     }
     note_sizes(s, y);
     ct_newton_iteration_predict_motion(s->it, p, t, y, dy + s->dae->nq, s->expected);
     const struct ct_lost_vibration m = find_lost(s, p, t, y);
-    const double error = lost_error(&m, h);
+    const double error = as_error(m.rate * h * h * h * h * h, m.all);
     const bool is_told = isfinite(error), is_doubtful = error > 1 && !s->it->is_new;
     s->vibration_check.h = h;
     s->vibration_check.error = is_told ? error : 0;

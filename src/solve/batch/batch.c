@@ -195,6 +195,7 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 // Large systems have very many choices, and take long to get a form: only that of the start has one.
 static bool is_allowed(const struct ct_batch *s)
 {
+    // Default: time to compile against time to run. Test: batch.
     enum { LARGE = 20000 }; // operations
     return s->origin
         && (!s->nsolver
@@ -362,6 +363,7 @@ static bool first_step(struct ct_batch *s, int l, const double *y)
 void ct_lane_limit_turn(struct ct_batch *s, int l, double t, const double *y)
 {
     struct ct_lane *lane = &s->lane[l];
+    // Derived: the root of the unit round-off, and more
     const double glance = 1e-6; // of the run, or [s]
     const double turning = ct_memory_turning(s->m, ct_time_just_before(t, lane->events.pending),
                                              y, glance * fmin(1, lane->t1));
@@ -419,6 +421,7 @@ static void fill(struct ct_batch *s, int l, const double *y)
 // Are there rows that depend on others at the start and not elsewhere? Such a start is left alone.
 static bool is_singular_start(const struct ct_batch *s)
 {
+    // Derived: half the digits
     const double changed
         = 1e-6; // rows that see speeds by round-off alone make a projection change them
     const struct ct_partition *embed = ct_run_partition(s->run);

@@ -18,6 +18,7 @@
 
 #include "solve/run/run.h"
 
+// Definition: doubles of a vector. Derived: two groups hide the latency of each other
 enum { CT_LANES = 4, CT_BATCH_GROUPS = 2 }; // a worker has up to so many groups of lanes
 
 enum ct_lane_state { CT_LANE_IDLE, CT_LANE_RUNNING, CT_LANE_ARRIVED, CT_LANE_GIVEN_UP };

@@ -30,7 +30,9 @@ static inline mask may_dip(vec a, vec b, vec c)
 // looks; those with values that are not finite are taken out of it.
 static inline set suspects(struct ct_batch *s, vec end, set *wanted)
 {
+    // Limit: of the search within a step
     enum { PROBES = 4 };
+    // Derived: half the digits of g
     const double ahead
         = 1e-6; // of the way from one to the next: what is about to vanish is searched for, too
     vec odd = {0};

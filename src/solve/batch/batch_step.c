@@ -3,16 +3,18 @@
 #include "integrate/stepper.h"
 #include "solve/batch/batch_event_location.h"
 #include "solve/batch/batch_take.h"
+#include "solve/singular/singular.h"
 
 #include <limits.h>
 #include <math.h>
 #include <string.h>
-
-static const double singular_pivot = 0.25, singular_steps = 4; // see foresee_singular
 // Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer than so many others
 // between, the run is stiff; values of the program DOPRI5 for the stage before the last.
+// Definition: boundary of stability of DOPRI5 on the negative real axis, key hairer1996
 static const double stiff_step = 3.25;
+// Definition: of that test, key hairer1996
 enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
+// Limit: the member is left to a single run then
 enum { MOST_STEPS = 100000000 };
 
 // ---- projection, as in projection.c ----------------------------------------------------------------
@@ -136,6 +138,7 @@ static set derive(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 static inline void combine_few(const struct ct_batch *s, vec *out, const vec *y,
                                const struct ct_lane_sum *b, int i, int few)
 {
+    // Definition: stages of DOPRI5
     enum { MOST = 6 };
     const double *k = (const double *)(s->k + i);
     const vec h = s->h;
@@ -553,7 +556,7 @@ static void predict_singular(struct ct_batch *s, vec t, const vec *y, set wanted
     if (s->rank == 1)
         pivot = s->strength * larger(all_lanes(1), s->kappa);
     s->pivot_most = choose(mask_of(wanted), larger(s->pivot_most, pivot), s->pivot_most);
-    s->near_singular = set_of(pivot < singular_pivot * s->pivot_most);
+    s->near_singular = set_of(pivot < CT_SINGULAR_PIVOT * s->pivot_most);
     for (int l = 0; l < W; l++) {
         struct ct_lane *lane = &s->lane[l];
         if (!ct_has_lane(wanted, l))
@@ -564,7 +567,7 @@ static void predict_singular(struct ct_batch *s, vec t, const vec *y, set wanted
         lane->pivot_last = now;
         lane->pivot_time = t[l];
         if (isfinite(before) && before > now && dt > 0
-            && dt * now / (before - now) <= singular_steps * lane->control.h)
+            && dt * now / (before - now) <= CT_SINGULAR_STEPS * lane->control.h)
             ct_lane_give_up(s, l);
     }
 }

@@ -1,6 +1,7 @@
 // Accelerations, minimum-norm multipliers and impulses on the constraints; see partition.h.
 #include "solve/constraint/partition_internal.h"
 
+#include "numeric/damped.h"
 #include "numeric/dense.h"
 
 #include <math.h>
@@ -97,21 +98,29 @@ bool ct_partition_factor_only(struct ct_partition *s)
 
 void ct_partition_reduce_mass(struct ct_partition *s, const double *M)
 {
-    const int n = (int)s->m->nu, r = s->rank, f = n - r;
-    for (int j = 0; j < f; j++) // MB = M [B; 1], n x f
-        for (int i = 0; i < n; i++) {
-            double sum = M[i + n * s->independent[j]];
-            for (int k = 0; k < r; k++)
-                sum += M[i + n * s->dependent[k]] * s->B[k + r * j];
-            s->MB[i + n * j] = sum;
-        }
-    for (int j = 0; j < f; j++)
-        for (int i = j; i < f; i++) {
-            double sum = s->MB[s->independent[i] + n * j];
-            for (int k = 0; k < r; k++)
-                sum += s->B[k + r * i] * s->MB[s->dependent[k] + n * j];
+    const size_t n = s->m->nu;
+    const int r = s->rank, f = (int)n - r;
+    for (int j = 0; j < f;
+         j++) { // MB = M [B; 1], n x f; of independent loops B has few entries
+        double *MB = s->MB + n * (size_t)j;
+        memcpy(MB, M + n * (size_t)s->independent[j], n * sizeof *MB);
+        for (int k = 0; k < r; k++)
+            if (s->B[k + r * j] != 0)
+                ct_vector_add(MB, s->B[k + r * j], M + n * (size_t)s->dependent[k], n);
+    }
+    for (int i = 0; i < f; i++) {
+        int nk = 0;
+        for (int k = 0; k < r; k++)
+            if (s->B[k + r * i] != 0)
+                s->iwork[nk++] = k;
+        for (int j = 0; j <= i; j++) {
+            const double *MB = s->MB + n * (size_t)j;
+            double sum = MB[s->independent[i]];
+            for (int l = 0; l < nk; l++)
+                sum += s->B[s->iwork[l] + r * i] * MB[s->dependent[s->iwork[l]]];
             s->S[i + f * j] = sum;
         }
+    }
 }
 
 // b (free) = B' v for v (nu).
@@ -213,26 +222,54 @@ void ct_partition_retained_multipliers(struct ct_partition *s, double *lam)
         ct_lu_solve(lam, s->Jd, s->pivot, r, r, 1, r, true);
 }
 
-void ct_partition_null_vector(struct ct_partition *s, int row, double *z)
+struct ct_null_space {
+    struct ct_partition *s;
+    struct ct_sparse_rows A; // J'
+    struct ct_damped *factors;
+};
+
+struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partition *s)
 {
-    // the least-squares solution of J' x = J' e_row is e_row without its part in null(J')
-    const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < n; j++)
-            s->A[j + n * i] = *ct_partition_J(s, i, j);
-    memset(s->d, 0, (size_t)ld * sizeof *s->d);
-    for (int j = 0; j < n; j++)
-        s->d[j] = *ct_partition_J(s, row, j);
-    ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
-    for (int i = 0; i < m; i++)
-        z[i] = (i == row) - s->d[i];
+    const size_t nu = s->m->nu, nrow = s->m->nrow;
+    struct ct_null_space *v = CT_NEW(a, struct ct_null_space);
+    int *column = CT_NEWN(a, int, nrow + 1);
+    double *value = CT_NEWN(a, double, nrow + 1);
+    *v = (struct ct_null_space){.s = s, .A = {.arena = a}, .factors = ct_damped_create(a)};
+    for (size_t k = 0; k < nu; k++) {
+        size_t n = 0;
+        for (size_t i = 0; i < nrow; i++)
+            if (s->m->J[i + nrow * k] != 0) {
+                column[n] = (int)i;
+                value[n++] = s->m->J[i + nrow * k];
+            }
+        ct_sparse_rows_add(&v->A, column, value, n, 1);
+    }
+    // singular values below the tolerance of ranks have no part in solutions
+    const double least = s->m->is_inexact ? ct_data_tolerance : ct_rank_tolerance;
+    const double size = ct_sparse_rows_largest_column(&v->A, nu, nrow, value);
+    ct_damped_factor(v->factors, &v->A, nu, nrow, least * (size > 0 ? size : 1));
+    return v;
 }
 
-void ct_partition_uniqueness(struct ct_partition *s)
+void ct_null_space_vector(struct ct_null_space *v, int row, double *z)
+{
+    // less the least-squares solution x of J' x = J' z; the second time takes off what the damping has left
+    struct ct_partition *s = v->s;
+    const size_t nu = s->m->nu, nrow = s->m->nrow;
+    memset(z, 0, nrow * sizeof *z);
+    z[row] = 1;
+    for (int i = 0; i < 2; i++) {
+        ct_sparse_rows_times(s->d, &v->A, nu, z);
+        ct_damped_solve(v->factors, s->d, s->d);
+        ct_vector_add(z, -1, s->d, nrow);
+    }
+}
+
+void ct_partition_uniqueness(struct ct_partition *s, struct ct_null_space *v)
 {
     const double unique_tolerance = 1e-6; // the entry is 0 to round-off or of order one
     for (int k = 0; k < (int)s->m->nrow; k++) {
-        ct_partition_null_vector(s, k, s->r);
+        ct_null_space_vector(v, k, s->r);
         s->is_unique[k] = fabs(s->r[k]) < unique_tolerance;
     }
 }

@@ -146,11 +146,13 @@ bool ct_singularity_test_sign_changed(struct ct_partition *s,
 /// At the last ct_evaluator_constraint, beside a place where J loses rank: x (rank, out) = (J_d J_d')^-1 v for a v without
 /// meaning, which has come into null(J') of that place, and log |det J_d|, or with redundant rows of the product of the singular values. False where that costs too much.
 bool ct_partition_dependence(struct ct_partition *s, double *x, double *log_det);
-/// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (section 6.5)
-void ct_partition_uniqueness(struct ct_partition *s);
+/// null(J') at the last ct_evaluator_constraint, which must be the last until vectors are found; in a.  (section 6.5)
+struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partition *s);
 /// z (nrow, out) = the unit vector of `row` less its part in the range of J: a vector of null(J'), so that
 /// lam + z holds as well as lam. Zero (to round-off) where the multiplier is unique.
-void ct_partition_null_vector(struct ct_partition *s, int row, double *z);
+void ct_null_space_vector(struct ct_null_space *v, int row, double *z);
+/// Which multipliers are unique, into s->is_unique: rows of null(J') that vanish.  (section 6.5)
+void ct_partition_uniqueness(struct ct_partition *s, struct ct_null_space *v);
 /// Speeds after a jump: u (nu, out) of W u = w + J' Lam, J u + Phi_t = 0 where the evaluator is. W (nu x nu)  (8.5)
 enum ct_eval ct_partition_impulse(struct ct_partition *s, const double *W, const double *w,
                                   double *u);

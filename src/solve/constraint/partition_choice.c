@@ -36,6 +36,13 @@ static void weigh_columns(struct ct_partition *s, double *w)
         w[j] *= s->prefers_independent[j] ? little : 1;
 }
 
+static void take_columns(struct ct_partition *s)
+{
+    const int n = (int)s->m->nu, r = s->rank;
+    for (int j = 0; j < n; j++)
+        *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
+}
+
 static void choose_columns(struct ct_partition *s)
 {
     const int n = (int)s->m->nu, r = s->rank;
@@ -45,8 +52,26 @@ static void choose_columns(struct ct_partition *s)
         for (int j = 0; j < n; j++)
             s->A[i + r * j] = s->d[j] * *ct_partition_J(s, s->row[i], j);
     ct_qr_pivot(s->A, s->column, s->b, r, n, r, 0, s->work);
-    for (int j = 0; j < n; j++)
-        *(j < r ? &s->dependent[j] : &s->independent[j - r]) = s->column[j];
+    take_columns(s);
+}
+
+// The same of a large system, factored: rows and columns in an order in which factors of J_d fill little. False where J_d
+// comes out badly conditioned.
+static bool choose_sparse_columns(struct ct_partition *s)
+{
+    struct ct_arena *own = ct_arena_create_under(s->arena);
+    double *is_kept = CT_NEWN(own, double, s->m->nrow + 1);
+    bool is_clear;
+    ct_evaluator_dynamics(s->m);
+    weigh_columns(s, s->d);
+    for (int i = 0; i < s->rank; i++)
+        is_kept[s->row[i]] = 1;
+    const struct ct_sparse_entries A = ct_evaluator_sparse_J(s->m, own, s->m->J, is_kept, s->d);
+    const bool is_full
+        = ct_sparse_pivots_find(own, &A, 0, s->row, s->column, &is_clear) == (size_t)s->rank;
+    ct_arena_destroy(own);
+    take_columns(s);
+    return is_full && ct_partition_factor(s) && s->kappa <= ct_kappa_largest;
 }
 
 // The speed with the smallest diagonal entry of M; the first one where nothing has asked for M.
@@ -493,6 +518,8 @@ static bool choose_here(struct ct_partition *s)
 {
     s->rank = order_rows(s);
     ct_evaluator_leave_out(s->m, s->row, s->rank);
+    if (ct_partition_is_large(s) && choose_sparse_columns(s))
+        return true;
     choose_columns(s);
     return ct_partition_factor(s);
 }

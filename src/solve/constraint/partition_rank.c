@@ -9,8 +9,7 @@
 
 bool ct_partition_is_large(const struct ct_partition *s)
 {
-    enum { LARGE = 200 };
-    return s->rank >= LARGE;
+    return s->rank >= CT_LARGE_SYSTEM;
 }
 
 static bool find_strength(struct ct_partition *s)

@@ -56,6 +56,22 @@ void ct_evaluator_measure_rows(struct ct_evaluator *m)
     }
 }
 
+// The same of a large system by sparse elimination; -1: what is left of a row is too near `least` to be judged by that.
+static int order_sparse(const struct ct_evaluator *m, const double *J, double least, int most,
+                        int *row)
+{
+    struct ct_arena *own = ct_arena_create_under(m->arena);
+    double *inverse = CT_NEWN(own, double, m->nrow);
+    bool is_clear;
+    for (size_t i = 0; i < m->nrow; i++)
+        inverse[i] = 1 / m->row_size[i];
+    const struct ct_sparse_entries A = ct_evaluator_sparse_J(m, own, J, inverse, m->speed_size);
+    const size_t rank
+        = ct_sparse_pivots_find(own, &A, least, row, CT_NEWN(own, int, m->nu + 1), &is_clear);
+    ct_arena_destroy(own);
+    return is_clear && rank <= (size_t)most ? (int)rank : -1;
+}
+
 int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, double least,
                             int *row, double *A, double *tau, double *work)
 {
@@ -63,6 +79,9 @@ int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, doubl
     int rank = 0, most = n < nrow ? n : nrow;
     if (most > (int)m->most_rank)
         most = (int)m->most_rank;
+    if (nrow >= CT_LARGE_SYSTEM && (rank = order_sparse(m, J, least, most, row)) >= 0)
+        return rank;
+    rank = 0;
     for (int i = 0; i < nrow; i++)
         for (int k = 0; k < n; k++)
             A[k + n * i] = J[i + nrow * k] * m->speed_size[k] / m->row_size[i];
@@ -70,6 +89,25 @@ int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, doubl
     while (rank < most && fabs(A[rank + n * rank]) > least)
         rank++;
     return rank;
+}
+
+struct ct_sparse_entries ct_evaluator_sparse_J(const struct ct_evaluator *m,
+                                               struct ct_arena *scratch, const double *J,
+                                               const double *scale_row,
+                                               const double *scale_column)
+{
+    const struct ct_entry *e = m->e->J;
+    const size_t n = m->e->nJ;
+    int *row = CT_NEWN(scratch, int, n + 1), *column = CT_NEWN(scratch, int, n + 1);
+    double *value = CT_NEWN(scratch, double, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        row[k] = e[k].row;
+        column[k] = e[k].column;
+        value[k] = J[(size_t)row[k] + m->nrow * (size_t)column[k]];
+        value[k] *= scale_row ? scale_row[row[k]] : 1;
+        value[k] *= scale_column ? scale_column[column[k]] : 1;
+    }
+    return (struct ct_sparse_entries){m->nrow, m->nu, n, row, column, value};
 }
 
 void ct_evaluator_set_inexact(struct ct_evaluator *m, size_t freedoms)

@@ -16,8 +16,6 @@ static const double most_asked_nodes = 8e6;
 static const double programs = 4;
 // Solving all equations as one system must promise so much to be tried.
 static const double worth = 0.9;
-// Beyond so many unknowns finding its order takes too long.
-enum { MOST_WHOLE = 3000 };
 
 const double ct_solver_least_strength = 1e-3;
 
@@ -102,10 +100,11 @@ static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
     struct ct_arena *own = ct_arena_create_under(a);
     struct ct_partition_sets p = *partition;
     struct ct_solver *f = NULL;
-    const bool is_small = m->nu + p.rank <= MOST_WHOLE;
     p.value = ct_solver_values(own, m);
-    if (p.nfree && is_small)
-        p.pivots = ct_pivot_order_find(own, m->e, &p, m->motion.out, m->Q + m->nu);
+    if (p.nfree) {
+        p.pivots = ct_pivot_order_find(own, m->e, &p, m->motion.out, m->Q + m->nu, most_nodes);
+        p.has_no_pivots = !p.pivots;
+    }
     if (p.pivots) {
         const double operations = ct_solver_operations(&m->motion) + p.pivots->operations;
         c->symbolic_kkt = ct_solver_straight_cost(operations, ct_solver_code_size(operations));

@@ -163,11 +163,12 @@ static struct ct_sparse *analyse_along(struct sparse_solver *f, struct ct_evalua
                                        const int *column, size_t nentry)
 {
     struct ct_arena *a = f->form.arena;
-    const struct ct_pivot_order *found
-        = p->pivots ? p->pivots : ct_pivot_order_find(a, m->e, p, m->motion.out, m->Q + m->nu);
-    return found ? ct_sparse_create_along(a, (int)(m->nu + p->rank), row, column, nentry,
-                                          found->row, found->column)
-                 : NULL;
+    const struct ct_pivot_order *found = p->pivots;
+    if (!found && !p->has_no_pivots)
+        found = ct_pivot_order_find(a, m->e, p, m->motion.out, m->Q + m->nu, INFINITY);
+    return found && found->row ? ct_sparse_create_along(a, (int)(m->nu + p->rank), row, column,
+                                                        nentry, found->row, found->column)
+                               : NULL;
 }
 
 // By the library's order or the one of expressions, whichever is cheaper; factored.

@@ -78,7 +78,7 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
 {
     struct ct_evaluator *m = CT_NEW(a, struct ct_evaluator);
     *m = (struct ct_evaluator){
-        .e = e, .model = model, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
+        .e = e, .model = model, .arena = a, .nq = e->nq, .nu = e->nu, .nrow = e->nrow};
     m->at_q = 1 + model->nparameter;
     m->at_u = m->at_q + e->nq;
     m->at_a = m->at_u + e->nu;
@@ -120,6 +120,7 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
     return m;
 }
 
+// Definition: of the list below
 enum { NPROGRAM = 18 };
 
 static void list_programs(struct ct_evaluator *m, struct ct_program *list[NPROGRAM])

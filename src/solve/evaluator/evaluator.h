@@ -11,6 +11,7 @@
 #include "component/model.h"
 #include "expr/tape.h"
 #include "formulate/equations.h"
+#include "numeric/sparse_pivots.h"
 
 /// Which form of the programs is run. All give the same bits, but for the accelerations in closed form of larger systems:
 /// native code fuses their products and sums, which rounds less often.
@@ -22,14 +23,20 @@ enum ct_backend {
 
 /// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms, of places known to 1e-13, is
 /// below 1e-12: a row with less than the first left is dependent.
+// Derived: between both, three digits from either.
 static const double ct_rank_tolerance = 1e-9;
 /// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
 /// only, a row with less left than this depends on others as the data are meant, if it stays so along the motion.
+// Derived: six times 5e-6.
 static const double ct_data_tolerance = 3e-5;
+
+/// Limit: of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
+enum { CT_LARGE_SYSTEM = 200 };
 
 struct ct_evaluator {
     const struct ct_equations *e;
     const struct ct_model *model;
+    struct ct_arena *arena; // it lives in
     size_t nq, nu, nrow;
 
     double *input;
@@ -149,10 +156,15 @@ void ct_evaluator_measure_rows(struct ct_evaluator *m);
 void ct_evaluator_set_inexact(struct ct_evaluator *m, size_t freedoms);
 /// Of such data: the rows behind the first `rank` of row (nrow) take no part.
 void ct_evaluator_leave_out(struct ct_evaluator *m, const int *row, int rank);
-/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the largest first. A (nu x nrow,
-/// out): the factor R. tau (nrow), work (ct_qr_pivot_work(nu, nrow)).
+/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the independent ones
+/// first. A (nu x nrow), tau (nrow), work (ct_qr_pivot_work(nu, nrow)): workspace.
 int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, double least,
                             int *row, double *A, double *tau, double *work);
+/// Entries of J, each times scale_row of its row and scale_column of its column (NULL: 1). In scratch.
+struct ct_sparse_entries ct_evaluator_sparse_J(const struct ct_evaluator *m,
+                                               struct ct_arena *scratch, const double *J,
+                                               const double *scale_row,
+                                               const double *scale_column);
 /// Derivatives of the residual at the input, into slopes.
 void ct_evaluator_tangent(struct ct_evaluator *m);
 /// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.  (8.19)

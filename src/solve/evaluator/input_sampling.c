@@ -10,8 +10,10 @@
 static const double seen_at[] = {1, 0.25, 0.65, 0.85};
 // Between these a smooth change that they follow is hardly larger than at one of them; a pulse that
 // they miss is.
+// Chosen: pulses that are seen against steps that are shortened in vain.
 static const double missed = 2;
 // Steps of fewer pieces are as fine as what is known.
+// Chosen: four
 static const double fine = 4;
 
 static void find_range(struct ct_input_sampling *c, size_t i)

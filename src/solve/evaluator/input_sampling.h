@@ -6,6 +6,7 @@
 #include "integrate/problem.h"
 #include "solve/evaluator/evaluator.h"
 
+// Limit: of memory and time; docs/format.md says that shorter pulses may be missed
 enum { CT_INPUT_SAMPLES = 1024 };
 
 /// Functions of time at even times from 0 on. None: zero.

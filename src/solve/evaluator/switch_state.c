@@ -26,18 +26,22 @@ static void evaluate(struct ct_evaluator *m, double t, const double *y, const do
 }
 
 // Switches may stand inside the g of others; so many levels are settled.
+// Limit: as docs/format.md says
 enum { MOST_LEVELS = 4 };
 
 // g is zero when it is round-off beside its change in a second.
+// Derived: 4500 units of round-off.
 static const double zero = 1e-12;
 
 // A g at rest counts as zero up to this part of the largest state: what round-off makes of a g that
-// is zero by symmetry. Default; rest_at_zero.sh moves it both ways.
+// is zero by symmetry.
+// Default: forces that round-off makes against small ones that are meant. Test: rest_at_zero.
 static const double roundoff = 64 * DBL_EPSILON;
 
 // How far to look ahead for the later side, [s].
 static double ahead_of(double t)
 {
+    // Derived: half the digits of t, and some more
     return 1e-7 * fmax(1, fabs(t));
 }
 
@@ -122,7 +126,8 @@ int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double
                                   const double *dy)
 {
     const double *mode = m->input + m->at_switch;
-    const double ahead = ahead_of(t), near = 1e-3; // of the way that g goes meanwhile
+    // near: of the way that g goes meanwhile. Derived: events are located to a thousandth of ahead
+    const double ahead = ahead_of(t), near = 1e-3;
     evaluate(m, t, y, dy, 0, m->g[0]);
     evaluate(m, t, y, dy, ahead, m->g[1]);
     for (size_t i = 0; i < m->e->nswitch; i++) {
@@ -201,6 +206,7 @@ static double bisect(struct ct_evaluator *m, size_t i, double a, double b)
 static void find_changes(struct ct_evaluator *m, size_t i, double t0, double t1,
                          struct times *list)
 {
+    // Limit: of the time of a search; shorter changes are missed
     enum { PIECES = 4096 };
     double g, a = t0;
     bool side = outcome(m, i, a, &g);
@@ -225,8 +231,8 @@ static int ascending(const void *a, const void *b)
 
 bool ct_table_has_kinks(const struct ct_table *table, int order)
 {
-    const int unfelt
-        = 5; // methods of this order see the error of a jump of the third derivative
+    // Derived: methods of this order see the error of a jump of the third derivative
+    const int unfelt = 5;
     return !table->m || order > unfelt;
 }
 

@@ -2,6 +2,7 @@
 //
 //     r'(e_1 + e_5 + ...) = column 1 + column 5 + ...      no two of them with an entry in one row
 #include "solve/evaluator/tangent.h"
+#include "formulate/operation_count.h"
 
 #include "codegen/native.h"
 #include "expr/tape.h"
@@ -160,8 +161,7 @@ void ct_tangent_lanes_run(struct ct_tangent_lanes *t, const double *input, doubl
 double ct_tangent_lanes_operations(const struct ct_tangent_lanes *t)
 {
     const struct ct_tape_counts c = t->l->counts;
-    const double per_lane = 0.3;
-    return per_lane * (double)t->ncolour
+    return CT_LANE_COST * (double)t->ncolour
          * (double)(c.multiplications + c.additions + c.divisions + c.functions);
 }
 

@@ -5,6 +5,7 @@
 #include "expr/listing.h"
 #include "formulate/equations.h"
 
+// Definition: doubles of a vector
 enum { CT_TANGENT_LANES = 4 };
 
 struct ct_tangent_lanes;

@@ -209,7 +209,8 @@ static void closing_step(struct ct_assembler *s, double damping)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    s->work_done += ct_damped_solve(s->closing, s->b, &s->A, s->nhard, s->m->nu, s->b, damping);
+    s->work_done += ct_damped_factor(s->closing, &s->A, s->nhard, s->m->nu, damping);
+    ct_damped_solve(s->closing, s->b, s->b);
 }
 
 // Step into s->b that leaves the constraints alone and takes what is wanted nearest to its
@@ -227,8 +228,8 @@ static void wishing_step(struct ct_assembler *s)
                            i < s->nhard ? hard : 1);
         s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
     }
-    s->work_done
-        += ct_damped_solve(s->wishing, s->b, &s->weighted, A->n, s->m->nu, s->b, damping);
+    s->work_done += ct_damped_factor(s->wishing, &s->weighted, A->n, s->m->nu, damping);
+    ct_damped_solve(s->wishing, s->b, s->b);
     ct_sparse_rows_times(s->work, A, s->nhard, s->b);
     for (size_t i = 0; i < s->nhard; i++)
         s->shift[i] += s->r[i] + s->work[i];
@@ -246,8 +247,8 @@ static double size_along_constraints(struct ct_assembler *s)
     if (!(size > 0))
         return ct_vector_largest(s->b, nu);
     ct_sparse_rows_times(s->work, &s->A, s->nhard, s->b);
-    s->work_done
-        += ct_damped_solve(s->closing, s->work, &s->A, s->nhard, nu, s->work, dependent * size);
+    s->work_done += ct_damped_factor(s->closing, &s->A, s->nhard, nu, dependent * size);
+    ct_damped_solve(s->closing, s->work, s->work);
     ct_vector_add(s->work, -1, s->b, nu);
     return ct_vector_largest(s->work, nu);
 }

@@ -188,8 +188,8 @@ static void shortest_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    ct_damped_solve(s->closing, s->b, &s->A, s->nhard, s->m->nu, s->b,
-                    ct_assembly_least_damping);
+    ct_damped_factor(s->closing, &s->A, s->nhard, s->m->nu, ct_assembly_least_damping);
+    ct_damped_solve(s->closing, s->b, s->b);
 }
 
 // From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto

@@ -58,9 +58,9 @@ bool ct_output_error_is_check(const struct ct_equations *e, size_t i)
 bool ct_output_error_needs_accelerations(const struct ct_equations *e, size_t i)
 {
     const ct_ex v = e->result[i].value;
-    const unsigned known
-        = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q | 1u << CT_SYM_U;
-    return !ct_output_error_is_check(e, i) && ct_ex_kinds(e->x, v) & ~known;
+    const unsigned known = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q
+                         | 1u << CT_SYM_U | 1u << CT_SYM_WORK;
+    return ct_ex_kinds(e->x, v) & ~known;
 }
 
 bool ct_output_error_find_requested(struct ct_arena *a, const struct ct_equations *e,

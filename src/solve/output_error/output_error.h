@@ -23,7 +23,7 @@ struct ct_output_error *ct_output_error_create(struct ct_arena *a, struct ct_par
                                                const double *shown, long *evaluations);
 /// Is output i the total energy, a check of the run?
 bool ct_output_error_is_check(const struct ct_equations *e, size_t i);
-/// Is it another one that is made of more than time and states?
+/// Is output i made of more than time, states and the work put in?
 bool ct_output_error_needs_accelerations(const struct ct_equations *e, size_t i);
 /// Per speed (nu, arena a): is it an output, and is the coordinate that moves with it? False, all
 /// count, where an output is demanding: accelerations and reactions feel every vibration.

@@ -1,4 +1,5 @@
-// Events of a run: switches, jumps of driven rates, and the impulses that these mean. See run_internal.h.
+// Events of a run: switches, jumps of driven rates, and the impulses that these mean. See
+// run_internal.h.
 #include "solve/run/run_internal.h"
 
 #include "expr/print.h"
@@ -161,7 +162,8 @@ static enum ct_eval report_held(struct ct_run *r, double t, int i)
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed)
 {
-    // other switches at the same place may have changed between two visits: a third one decides
+    // Derived: one visit goes to the other side, the second comes back, and between these two other
+    // switches at the same place may have changed
     enum { VISITS = 3 };
     if (!r->nroot)
         return CT_EVAL_OK;
@@ -198,7 +200,8 @@ static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
     return CT_EVAL_OK;
 }
 
-// Sides at y, whose derivative is dy: a crossed root tells its own; the rest follow from where the motion leads.
+// Sides at y, whose derivative is dy: a crossed root tells its own; the rest follow from where the
+// motion leads.
 static void set_sides(struct ct_run *r, double t, const double *y, const double *dy,
                       const signed char *crossed)
 {
@@ -208,7 +211,8 @@ static void set_sides(struct ct_run *r, double t, const double *y, const double 
     ct_switches_start(r->m, t, y, dy, r->crossed);
 }
 
-// In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no speed jumps.
+// In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no
+// speed jumps.
 static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, const double *dy,
                                   const signed char *crossed)
 {

@@ -1,5 +1,6 @@
-// Kinematic analysis, runs in which everything is driven: positions, speeds and accelerations follow from the rows, sample by sample, and
-// only the work is integrated. See ct_run_kinematic in run.h.
+// Kinematic analysis, runs in which everything is driven: positions, speeds and accelerations
+// follow from the rows, sample by sample, and only the work is integrated. See ct_run_kinematic in
+// run.h.
 #include "solve/run/run_internal.h"
 
 #include <string.h>
@@ -29,7 +30,8 @@ static bool check_driven(struct ct_run *r)
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
 }
 
-// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that leads too far.
+// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that
+// leads too far.
 static bool advance_step(struct ct_run *r, double t, double t1, const double *y, double *out)
 {
     const double longest = 0.3; // [rad or m]: more could lead to another assembly
@@ -112,7 +114,8 @@ static bool advance_with_work(struct ct_run *r, double t, double t1, double *y)
     return true;
 }
 
-// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is booked.
+// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is
+// booked.
 static bool pass_event(struct ct_run *r, double t, double *y)
 {
     struct ct_evaluator *m = r->m;

@@ -73,7 +73,8 @@ bool ct_run_suspects_stiffness(struct ct_run *r, double t, const double *y)
     const bool may_stop = t > r->last_event && !(r->singular->time_to_singular < INFINITY);
     struct ct_stiffness *s = r->stiffness;
     if (r->method->is_implicit) {
-        const bool has_lost = ct_trial_has_lost(&r->implicit, t, r->explicit_pace);
+        const bool has_lost
+            = ct_trial_has_lost(&r->implicit, t, r->last_event, r->explicit_pace);
         return (has_lost || r->has_jumped) && may_stop;
     }
     s->excited = r->last_event;
@@ -189,7 +190,8 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     io->first_step = 0;
     io->rtol = r->o->stiff_rtol;
     io->atol = r->o->stiff_atol;
-    r->implicit = (struct ct_trial){.cost = r->implicit.cost, .stats = &r->stats, .t0 = io->t0};
+    r->implicit = (struct ct_trial){
+        .cost = r->implicit.cost, .stats = &r->stats, .t0 = io->t0, .window.t = io->t0};
     if (isnan(report->changed_at)) {
         report->changed_at = io->t0;
         report->fast = r->stiffness->fast;
@@ -242,6 +244,8 @@ static void consider_explicit(struct ct_run *r, struct ct_problem *p,
     if (was_implicit || !switch_to_implicit(r, p, io)) {
         if (was_implicit)
             r->report->returned_at = io->t0;
+        // what the implicit method, or its trial, left open of the constraints is closed now
+        ct_rank_monitor_forget_motion(r->singular);
         r->method = r->o->method;
         io->rtol = r->o->rtol;
         io->atol = r->o->atol;

@@ -83,7 +83,8 @@ static double sensitive_output_error(void *user, double t, const double *y, cons
                                         tolerance, states);
 }
 
-// A followed angle that turns faster at the end of a step than at its start must still stay within half a turn.
+// A followed angle that turns faster at the end of a step than at its start must still stay within
+// half a turn. Derived: steps aim at two thirds of what is accepted, and that is below pi.
 static const double aimed_turn = 2, most_turn = 3; // [rad]
 
 static double turning(struct ct_run *r, double t, const double *y)
@@ -194,7 +195,8 @@ static double find_scale(const struct ct_model *model)
     return largest > 0 ? fmin(1, largest / small_length) : 1;
 }
 
-// A run that starts in a singular configuration begins with the assembled speeds, which rows chosen there need not keep (singular_initial_step.c).
+// A run that starts in a singular configuration begins with the assembled speeds, which rows chosen
+// there need not keep (singular_initial_step.c).
 static bool keeps_demands(struct ct_run *r, const struct ct_initial_state *start)
 {
     if (!ct_start_has_moved(r->e, start, r->assembled, r->y))
@@ -527,15 +529,18 @@ void ct_run_find_undetermined(struct ct_run *r, double t, const double *y, bool 
         return;
     ct_run_find_multipliers(r);
     ct_evaluator_constraint(r->m);
-    ct_partition_uniqueness(r->s);
-    double *z = CT_NEWN(r->arena, double, r->m->nrow);
+    struct ct_arena *own = ct_arena_create_under(r->arena);
+    struct ct_null_space *null_space = ct_null_space_create(own, r->s);
+    ct_partition_uniqueness(r->s, null_space);
+    double *z = CT_NEWN(own, double, r->m->nrow);
     for (size_t i = 0; i < r->m->nrow; i++) {
         if (r->s->is_unique[i])
             continue;
         row[i] = true;
-        ct_partition_null_vector(r->s, (int)i, z);
+        ct_null_space_vector(null_space, (int)i, z);
         compare_results(r, z, r->value, result);
     }
+    ct_arena_destroy(own);
 }
 
 double ct_run_sample_time(const struct ct_run_options *o, size_t i)
@@ -546,8 +551,9 @@ double ct_run_sample_time(const struct ct_run_options *o, size_t i)
                                : o->duration * (double)i / (double)(o->nsample - 1);
 }
 
-// Displacements of a beam along its axis, those across, rotations and the rates of each are measured by the largest of
-// their kind. Those along are much smaller than those across, but forces come from them.
+// Displacements of a beam along its axis, those across, rotations and the rates of each are
+// measured by the largest of their kind. Those along are much smaller than those across, but forces
+// come from them.
 const struct ct_groups *ct_run_groups(struct ct_run *r)
 {
     struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
@@ -576,16 +582,21 @@ static bool looks_at_steps(const struct ct_run *r)
     return r->o->progress || r->o->stiff_method || r->m->base_motion.nout;
 }
 
-// Speeds and places that are followed for themselves; where nothing is told all are. States of the model are no speeds of
-// vibrations and may be of any size, so that energies of errors would tell nothing.
+// Speeds and places that are followed for themselves; where nothing is told all are. States of the
+// model are no speeds of vibrations and may be of any size, so that energies of errors would tell
+// nothing.
 static void find_requested(struct ct_run *r, struct ct_problem *p)
 {
     ct_evaluator_set(r->m, 0, r->y);
     if (!r->nroot && !r->e->nstate)
         ct_output_error_find_requested(r->arena, r->e, &p->requested_speeds,
                                        &p->requested_positions);
-    for (size_t i = 0; i < r->e->nresult; i++)
-        p->keeps_energy |= ct_output_error_is_check(r->e, i);
+    for (size_t i = 0; i < r->e->nresult; i++) {
+        const bool is_total = ct_output_error_is_check(r->e, i);
+        const unsigned kinds = ct_ex_kinds(r->e->x, r->e->result[i].value);
+        p->keeps_energy |= is_total;
+        p->keeps_work |= !is_total && kinds & 1u << CT_SYM_WORK && !ct_ex_is_zero(r->e->power);
+    }
 }
 
 // Steps in double precision are held to no less than this.
@@ -643,7 +654,8 @@ bool ct_run_start_steps(struct ct_run *r)
     return ok;
 }
 
-// Accelerations of a single freedom whose inertia is what next to nothing is left of others err by eps over that part.  (8.39)
+// Accelerations of a single freedom whose inertia is what next to nothing is left of others err by
+// eps over that part.  (8.39)
 static void warn_of_cancellation(struct ct_run *r)
 {
     if (r->s->left < r->s->least_cancellation)

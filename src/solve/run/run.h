@@ -25,7 +25,8 @@ struct ct_run_options {
     double duration, rtol, atol, step;
     double
         least_rtol; // motions with many turns may be held to as little; 0: all are held to rtol
-    /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL: never.
+    /// Taken over where the run of an explicit method turns out stiff, with these tolerances; NULL:
+    /// never.
     const struct ct_method *stiff_method;
     double output_rtol; // of outputs, relative: for the choice of the method
     double stiff_rtol, stiff_atol;
@@ -52,9 +53,10 @@ void ct_slope_monitor(struct ct_slope_report *report, const struct ct_evaluator 
 
 struct ct_run_report {
     const struct ct_method *method; // that came to the end
-    /// Where the implicit method first took over as the motion was stiff: rates of the fastest motion possible and of
-    /// the one there was [1/s], and how many times as far it got for the same work (NaN: it began). changed_at is NaN if it
-    /// did not, returned_at if it was not last left as not faster any more.
+    /// Where the implicit method first took over as the motion was stiff: rates of the fastest
+    /// motion possible and of the one there was [1/s], and how many times as far it got for the
+    /// same work (NaN: it began). changed_at is NaN if it did not, returned_at if it was not last
+    /// left as not faster any more.
     double changed_at, fast, slow, gain, returned_at;
     struct ct_integrate_stats stats;
     struct ct_validity_report {
@@ -86,7 +88,8 @@ struct ct_run_report {
     double *y; // last state: q, u, work
 };
 
-/// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a diagnostic on failure.
+/// Machine, embedding and state at t = 0, assembled; choices made and modes set. NULL with a
+/// diagnostic on failure.
 struct ct_run *ct_run_create(struct ct_ctx *ctx, struct ct_arena *a,
                              const struct ct_model *model, const struct ct_equations *e,
                              const struct ct_initial_state *start);
@@ -95,42 +98,49 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
                               const struct ct_model *model, const struct ct_equations *e);
 /// To the start; choices made and modes set. False with a diagnostic.
 bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start);
-/// The run as new from another start, with the values that the model's parameters have now. False with a diagnostic.
+/// The run as new from another start, with the values that the model's parameters have now. False
+/// with a diagnostic.
 bool ct_run_restart(struct ct_run *r, const struct ct_initial_state *start);
 struct ct_evaluator *ct_run_evaluator(struct ct_run *r);
 struct ct_partition *ct_run_partition(struct ct_run *r);
-/// Is the start near a singular configuration, so that steps begin before it or are told of it? After begin or restart.
+/// Is the start near a singular configuration, so that steps begin before it or are told of it?
+/// After begin or restart.
 bool ct_run_starts_near_singular(struct ct_run *r);
-/// The start is in a singular configuration: constraints of these joints, quoted names that stay, depend on others there alone.
+/// The start is in a singular configuration: constraints of these joints, quoted names that stay,
+/// depend on others there alone.
 void ct_run_note_singular_start(struct ct_run *r, const char *joints);
 const char *ct_run_singular_joints(const struct ct_run *r);
 /// State at the start: q, u, work.
 const double *ct_run_state(const struct ct_run *r);
-/// The same as it was assembled, before rows took off what they see of it: in a singular configuration they see it by round-off alone.
+/// The same as it was assembled, before rows took off what they see of it: in a singular
+/// configuration they see it by round-off alone.
 const double *ct_run_assembled(const struct ct_run *r);
-/// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew at each call.
+/// Which states are measured together for the error of steps; NULL: none. In the run's arena, anew
+/// at each call.
 const struct ct_groups *ct_run_groups(struct ct_run *r);
 /// The control of outputs; NULL: none is controlled.
 const struct ct_output_error *ct_run_output_error(const struct ct_run *r);
-/// Does a run with these options, from the state at the start, begin with the implicit method because of its outputs?
+/// Does a run with these options, from the state at the start, begin with the implicit method
+/// because of its outputs?
 bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o);
 /// dy (out) = f(t, y), for y as ct_run_state has it.
 enum ct_eval ct_run_rhs(struct ct_run *r, double t, const double *y, double *dy);
 /// Accelerations, multipliers and results at t, y; out has nresult entries.
 enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double *out);
 
-/// What redundant constraints leave open at t, y: row[i] becomes true if the multiplier of row i is not unique,
-/// result[i] if the result changes with such multipliers. What is true already stays.
+/// What redundant constraints leave open at t, y: row[i] becomes true if the multiplier of row i is
+/// not unique, result[i] if the result changes with such multipliers. What is true already stays.
 void ct_run_find_undetermined(struct ct_run *r, double t, const double *y, bool *row,
                               bool *result);
 
-/// Follow the motions of a run that has no freedom left, sample by sample: places by Newton's method, speeds and
-/// accelerations from the rows. Nothing is integrated but the work.
-/// Errors: CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
+/// Follow the motions of a run that has no freedom left, sample by sample: places by Newton's
+/// method, speeds and accelerations from the rows. Nothing is integrated but the work. Errors:
+/// CT_E_NOT_DRIVEN, CT_E_DRIVER_JUMP, CT_E_SAMPLE_REFUSED, CT_E_SINGULAR.
 bool ct_run_kinematic(struct ct_run *r, const struct ct_run_options *o,
                       struct ct_run_report *report);
 
-/// A scan for these options, with the functions that it is given behind all results. All in a; NULL: nothing is taken.
+/// A scan for these options, with the functions that it is given behind all results. All in a;
+/// NULL: nothing is taken.
 struct ct_take_scan *ct_run_take_create(struct ct_arena *a, const struct ct_run_options *o);
 void ct_run_take_begin(struct ct_take_scan *s, const struct ct_run_options *o);
 

@@ -81,7 +81,8 @@ struct ct_run {
     double t_sample;             // the last one
 };
 
-/// The problem of a run whose options are set. watched: by state (ny), what error control looks at; lives as long.
+/// The problem of a run whose options are set. watched: by state (ny), what error control looks at;
+/// lives as long.
 void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched);
 
 /// The time to evaluate at for t.
@@ -94,30 +95,32 @@ static inline double ct_run_time_before_event(const struct ct_run *r, double t)
 void ct_run_find_multipliers(struct ct_run *r);
 double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y);
 
-/// Angles and rotations that are followed from step to step may make less than half a turn in each: note how fast they
-/// turn at t, y.
+/// Angles and rotations that are followed from step to step may make less than half a turn in each:
+/// note how fast they turn at t, y.
 void ct_run_note_turning(struct ct_run *r, double t, const double *y);
 /// The longest step from there.
 double ct_run_longest_step(void *user);
 /// False where a step from there to t, y is too long, else noted.
 bool ct_run_turns_are_followed(struct ct_run *r, double t, const double *y);
 
-/// A sample, results and ledger; false to stop, with a diagnostic if that is an error. user is the run.
+/// A sample, results and ledger; false to stop, with a diagnostic if that is an error. user is the
+/// run.
 bool ct_run_at_sample(void *user, double t, const double *y);
 bool ct_run_at_step(void *user, double t, const double *y);
 
 /// Beams, into the report: of the results just found; from the start of a run on.
 void ct_run_monitor_sample(struct ct_run *r, double t);
 void ct_run_monitor_start(struct ct_run *r, double t, const double *y);
-/// How their bases move at t, y: at the start; after a step, which may be passed over; before an event and after an impulse
-/// there; after a jump that beams do not feel.
+/// How their bases move at t, y: at the start; after a step, which may be passed over; before an
+/// event and after an impulse there; after a jump that beams do not feel.
 enum ct_monitor_when { CT_MONITOR_START, CT_MONITOR_STEP, CT_MONITOR_EVENT, CT_MONITOR_SMOOTH };
 void ct_run_monitor_base(struct ct_run *r, double t, const double *y, enum ct_monitor_when how);
 void ct_run_monitor_impulse(struct ct_run *r, double t, const double *y);
 double ct_run_sample_time(const struct ct_run_options *o, size_t i);
 
 struct ct_impulse *ct_impulse_create(struct ct_arena *a, const struct ct_evaluator *m);
-/// Speeds u (nu, in and out) after driven rates have jumped to those the evaluator has now; before: its `momentum` program then.
+/// Speeds u (nu, in and out) after driven rates have jumped to those the evaluator has now; before:
+/// its `momentum` program then.
 enum ct_eval ct_impulse_apply(struct ct_run *r, const double *before, double *u);
 
 // Events of ct_problem, user being the run.
@@ -133,8 +136,8 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
 enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double *dy);
 /// Notes that name the drivers that move at t, y, and where they are.
 void ct_run_note_drivers(struct ct_run *r, double t, const double *y);
-/// With the sides of switches set for an earlier derivative: makes those consistent whose g is zero.
-/// CT_EVAL_FATAL with CT_E_STUCK where the forces on both sides of a switch lead back to it.
+/// With the sides of switches set for an earlier derivative: makes those consistent whose g is
+/// zero. CT_EVAL_FATAL with CT_E_STUCK where the forces on both sides of a switch lead back to it.
 /// crossed (nswitch): those that have just crossed; NULL: none, or forces and speeds jump as well.
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed);
@@ -146,7 +149,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
 /// At the last ct_evaluator_constraint. False with CT_E_DRIVER_JUMP.
 bool ct_run_chords_are_closed(struct ct_run *r, double t);
 
-/// Brings the first state to where steps begin: in or near a singular configuration a little before it. False with a diagnostic.
+/// Brings the first state to where steps begin: in or near a singular configuration a little before
+/// it. False with a diagnostic.
 bool ct_run_start_steps(struct ct_run *r);
 
 /// For ct_integrate: tells that the end is many steps away, once.
@@ -160,8 +164,9 @@ struct ct_roundoff_limit {
     double one,
         sum; // what one round-off of states is of its largest value, and those of all steps; NAN: they do not add up
 };
-/// At the end of a run, which may change `value`: the result with the fewest digits, if one round-off is more than half of `held`, what steps are
-/// held to, or those of all steps more than `wanted`, of its largest value at samples.
+/// At the end of a run, which may change `value`: the result with the fewest digits, if one
+/// round-off is more than half of `held`, what steps are held to, or those of all steps more than
+/// `wanted`, of its largest value at samples.
 struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double held,
                                                     double wanted);
 /// Notes on why steps have ended, after its error.

@@ -57,11 +57,13 @@ static double find_slope(const struct search *s)
 // of the sum of squares. False if that is not found.
 static bool find_least(struct search *s, double *size)
 {
+    // Limit: of the search, after which the end is not told
     enum { MOST = 100 };
     // the root of round-off: what a misfit tells of where it is least
     const double flat = sqrt(DBL_EPSILON);
     const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
+    // Limit: damping at first, which is adapted at each step
     double mu = 1e-3, now = find_misfit(s, s->y);
     for (int i = 0; i < MOST && isfinite(now); i++) {
         *size = sqrt(2 * now);
@@ -106,6 +108,7 @@ bool ct_singular_ends_motion(void *user, double t, const double *y, double in)
     struct ct_rank_monitor *w = user;
     struct ct_arena *a = w->s->arena;
     const size_t nu = w->m->nu, ny = w->m->nq + nu + 1;
+    // Derived: the tolerance of assembly;
     const double closed = 1e-9; // what steps leave open is less by far
     double once, twice;
     if (t + 3 * in >= *w->pending || ct_partition_is_large(w->s))

@@ -78,23 +78,24 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
     return ct_rank_monitor_pivot(w, ct_time_just_before(a->t + s, a->pending), w->y);
 }
 
-// A position counts as singular ahead when the smallest pivot has fallen to the first part of its
-// largest value so far and goes on falling; where it has fallen to the second part pivots are
-// sought at every evaluation, at the third f is better not computed; at the second already where
-// steps keep their rows and could have kept others.
-static const double foreseen_pivot = 0.8, near_pivot = 0.5, singular_pivot = 0.25;
-// At so little round-off, which is divided by its square, leaves no digit of which motion goes on:
-// no step ends there.
+// A singular configuration is predicted when the smallest pivot has fallen to the first part of its
+// largest value so far and goes on falling. Below the second part pivots are chosen at every
+// evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
+// their rows avoid it below the second part.
+// Chosen: shorter steps near small pivots against the accuracy of accelerations.
+static const double foreseen_pivot = 0.8, near_pivot = 0.5;
+// No step ends where the pivot is less than this part. Derived: round-off is divided by its square,
+// and eps / 1e-14 leaves one digit to tell which motion goes on.
 static const double lost_pivot = 1e-7;
 
-// Round-off of accelerations is eps over the square of the pivot, against its largest. Where that
-// would be more than this part of what is wanted they have too few digits.
+// Round-off of accelerations is eps over the square of the pivot, against its largest. They have
+// too few digits if that is more than this part of the tolerance. Derived: two digits of it.
 static const double felt_rounding = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
 {
     const double part = pivot / w->farthest;
-    return w->wanted > 0 && part < singular_pivot / 2
+    return w->wanted > 0 && part < CT_SINGULAR_PIVOT / 2
         && part * part * felt_rounding * w->wanted < DBL_EPSILON;
 }
 
@@ -108,9 +109,11 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
-    enum { SECANTS = 3 };
-    const double glance = 1e-3, part = 0.8; // of the last step; of the way, not to step across
-    const double far = 4 * dt;
+    enum { SECANTS = 3 }; // Limit: of the time of a prediction, which each look repeats
+    // Derived: of the last step, for a difference with ten digits; and of the way there, so that it
+    // is not stepped over where the pivot falls faster by a quarter
+    const double glance = 1e-3, part = 0.8;
+    const double far = CT_SINGULAR_STEPS * dt;
     double s = glance * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
            slope = (pivot - now) / s;
     if (!(slope < 0))
@@ -150,7 +153,7 @@ static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahea
 {
     const double part = now / fmax(w->most, now);
     w->time_to_singular = time_to_singular(w, ahead, now, w->dt);
-    w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : singular_pivot) / part;
+    w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : CT_SINGULAR_PIVOT) / part;
 }
 
 // Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what
@@ -161,7 +164,8 @@ static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahea
 // largest pivot nor of the first sight of a position.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
-    const double hardly = 1.05, steps_away = 8;
+    // Chosen: changes on a step; steps
+    const double hardly = 1.05, steps_away = 2 * CT_SINGULAR_STEPS;
     const struct ct_partition *s = w->s;
     if (!s->has_solver || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
         return false;
@@ -182,7 +186,9 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
 static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
                        const double *a)
 {
-    const double part = 0.2; // of the largest speed so far: far more than steps err by
+    // Of the largest speed so far. Chosen: far more than steps err by, and less than the speeds of
+    // two motions that meet differ by
+    const double part = 0.2;
     const size_t nu = w->m->nu;
     const double least = part * fmax(w->swiftest, ct_vector_largest(u, nu));
     for (size_t i = 0; i < nu; i++)
@@ -270,7 +276,7 @@ static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look 
     const bool was_unforeseen
         = w->s->switches == w->switches && isinf(w->time_to_singular) && w->part > near_pivot;
     return l->is_another || l->part < lost_pivot
-        || (was_unforeseen && l->part < (w->solver_unchanged ? singular_pivot : near_pivot));
+        || (was_unforeseen && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
 }
 
 // Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where
@@ -342,6 +348,13 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     return true;
 }
 
+void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w)
+{
+    w->there->rank = 0;
+    w->pivot = 0;
+    w->solver_unchanged = false;
+}
+
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy)
 {
@@ -368,7 +381,7 @@ void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const doubl
     w->part = w->s->nearness = 1 / times;
     w->farthest = fmax(w->farthest, w->most);
     w->s->is_near_singular = w->part < near_pivot;
-    w->reach = in * fmin(1, singular_pivot * times);
+    w->reach = in * fmin(1, CT_SINGULAR_PIVOT * times);
 }
 
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)

@@ -10,10 +10,12 @@
 
 // A way that is searched is looked at in PARTS; from the best of them the search is narrowed
 // NARROWED times to an eighth. Positions are then known to `resolved` of the way.
+// Limit: of the time of a search. Derived: resolved to 1e-4 of the way, where rank is measured
 enum { PARTS = 16, NARROWED = 3 };
 static const double narrower = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
 
 // Part of the way, to either side of a position, where its dependence is looked at.
+// Derived: a quarter of the spacing of looks
 static const double distance = 1.0 / (4 * PARTS);
 
 // Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
@@ -21,6 +23,7 @@ static const double distance = 1.0 / (4 * PARTS);
 // distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out (tests/cli/singular.sh).
 static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 {
+    // Derived: between distance^2 and 1.
     const double involved = 1e-3; // of the largest entry
     const int n = w->s->rank;
     double most = 0;
@@ -109,7 +112,7 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
 static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                         double *theta)
 {
-    const double part = 1.0 / PARTS;
+    const double part = 1.0 / PARTS; // Definition: of the way
     struct ct_tangent_basis *last = w->along, *next = w->here;
     int n = 0;
     double before = pivot_on(w, p, 0);
@@ -251,6 +254,7 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
 
 // Steps came across a position, or close by, where on their way the pivot falls below this part of
 // what it is at both ends.
+// Chosen: configurations that are passed near by against those that are crossed.
 static const double nearly_zero = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
@@ -274,6 +278,7 @@ static bool is_within(struct ct_rank_monitor *w, double t, const double *y, doub
 bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
                                       double step, bool *row)
 {
+    // Derived: a hundredth, where round-off takes four digits
     const double beside = 1e-2; // of the largest pivot
     double log_det;
     memset(row, 0, w->m->nrow * sizeof *row);

@@ -15,8 +15,14 @@
 #include "integrate/stepper.h"
 #include "solve/constraint/partition.h"
 
-enum { CT_MOST_SINGULAR = 100 }; // kept for the report
-enum { CT_MOST_POLES = 4 };      // of multipliers, on one crossing
+enum { CT_MOST_SINGULAR = 100 }; // Limit: kept for the report, which counts the rest
+enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
+
+/// Part of its largest value so far that the smallest pivot must have for accelerations to be
+/// computed without a crossing. Derived: they lose 1/part^2 = 16 of accuracy there, a digit.
+#define CT_SINGULAR_PIVOT 0.25
+/// Steps within which a singular configuration is near. Chosen: four.
+#define CT_SINGULAR_STEPS 4
 
 /// What was passed.
 struct ct_singular_configuration {
@@ -80,6 +86,9 @@ struct ct_rank_monitor_step {
 /// they have come past it.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
                              const double *dy, const struct ct_rank_monitor_step *step);
+/// The next state is compared with nothing before it: the speeds have changed by more than their
+/// accelerations, as by a projection.
+void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w);
 /// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or
 /// later, or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,

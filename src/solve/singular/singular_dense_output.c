@@ -20,6 +20,7 @@
 #include <math.h>
 #include <string.h>
 
+// Definition: stages on both sides of the gap, one of each
 enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
 // With poles at the positions, or without: weights of the stages for t, and for what the two beside
@@ -152,6 +153,7 @@ static void find_model(const struct ct_singular_dense_output *s,
 static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
     const struct ct_rank_monitor *w = s->w;
+    // Chosen: far below the distance of stages
     const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
@@ -177,6 +179,7 @@ static double error_of(const struct model *m, const double *at)
 // gap ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
+    // Chosen: as above
     const double clearly = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;

@@ -21,15 +21,19 @@
 
 // Largest change of a coordinate from where the motion is slowest to either end of the step [rad,
 // m], at first; halved where the step errs.
+// Chosen: longer steps have more digits, and err more.
 static const double longest_way = 0.4;
-enum { LOOKS = 12 }; // a motion that lingers leaves faster than accelerations of now tell
+// Limit: halvings of the step; a motion that lingers leaves faster than accelerations of now tell
+enum { LOOKS = 12 };
 
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
 // way; up to there from it a start tells nothing of how the smallest pivot falls.
+// Chosen: starts that are refused for lack of digits against steps that err.
 static const double beside = 0.2, near = 0.5;
 
 // The step may err by so much of the largest state, or by so much of what is asked if that is more.
 // (8.35)
+// Derived: 4500 units of round-off; a fiftieth is not seen in the digits that are asked for.
 static const double exact = 1e-12, unfelt = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
@@ -99,6 +103,7 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
 
 // How far y may be from the start to be on the motion that is meant, of the largest state: speeds
 // beside a position are known no better, other motions are as far as speeds are large.
+// Chosen: between both.
 static const double meant = 1e-4;
 
 // How far y (ny) is from it, the work aside.
@@ -235,6 +240,7 @@ static void find_step(struct ct_singular_start *r, const struct initial_step *l,
 
 // Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them
 // leaves is far below.
+// Chosen: between both.
 static const double belongs = 1e-7;
 
 static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)
@@ -337,6 +343,7 @@ static bool begin_in_position(struct ct_singular_start *r, struct initial_step *
 static double find_way(struct ct_rank_monitor *w, const double *y, const double *dy,
                        struct initial_step *l)
 {
+    // Derived: a difference with ten digits
     const double glance = 1e-3; // of the time to a position beside
     const size_t nq = w->m->nq, nu = w->m->nu;
     const double *a = dy + nq, *u = y + nq;

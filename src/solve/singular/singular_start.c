@@ -5,6 +5,8 @@
 // the null space of J, projected onto the constraints by Gauss-Newton steps of least norm.
 #include "solve/singular/singular.h"
 
+#include "solve/constraint/partition_internal.h"
+
 #include "numeric/dense.h"
 
 #include <float.h>
@@ -13,11 +15,13 @@
 
 // Loops that close to 1e-13 meet a singular configuration to about the root of that: what is less
 // of J is left out.
+// Derived: three times that root.
 static const double unmet = 1e-6;
 
 // Rows take part in what is lost where they have this part of the most that one has. Which of them
 // a choice of pivots leaves out is a matter of round-off where they are alike; what is always lost
 // turns by as much as the way there.
+// Chosen: between both.
 static const double part_taken = 0.3;
 
 struct probe {
@@ -74,9 +78,10 @@ static void move(struct probe *p, struct ct_arena *scratch, double way)
 // Back onto the constraints; false if that does not succeed, or leads far away.
 static bool close(struct probe *p, double way)
 {
+    // Limit: of the iterations; they converge in five where it is well
     enum { MOST = 20 };
     const double closed
-        = sqrt(DBL_EPSILON); // [m, rad]: J errs by as much, what is lost by 1e-5
+        = sqrt(DBL_EPSILON); // [m, rad]. Derived: J errs by as much, what is lost by 1e-5
     for (int i = 0; i < MOST; i++) {
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
@@ -164,6 +169,7 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
 // what round-off leaves. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
+    // Chosen: far enough for J to change, near enough to be alike
     const double way = 0.1;
     const size_t ny = p->m->nq + p->m->nu + 1;
     move(p, scratch, way);
@@ -183,6 +189,7 @@ static int find_rank_nearby(struct probe *p, struct ct_arena *scratch, const dou
                             int here)
 {
     const double ways[] = {0.1, 0.02};
+    // Derived: two digits above what is closed
     const double part = 1e-3; // of J's change along the way, which is about as large as the way
     const size_t ny = p->m->nq + p->m->nu + 1;
     int there = 0;
@@ -198,9 +205,8 @@ static int find_rank_nearby(struct probe *p, struct ct_arena *scratch, const dou
 bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition *s, double t,
                             const double *y, bool *row)
 {
-    enum { LARGE = 200 }; // where factors cost more than steps
     struct ct_evaluator *m = s->m;
-    if (!m->nrow || s->rank >= LARGE)
+    if (!m->nrow || ct_partition_is_large(s))
         return false;
     struct probe p = make_probe(scratch, m, t, y);
     const int n = (int)m->nrow, here = find_rank_here(&p, scratch, y);
