@@ -235,9 +235,6 @@ struct ct_equations {
     size_t ndriver, driver_cap;
     struct ct_result *result; // outputs, one per column
     size_t nresult, result_cap;
-    // with measure_all: coefficients of the speeds u in the measured speed of coordinate `row`, row by row
-    struct ct_entry *measured_speed;
-    size_t nmeasured_speed;
     enum ct_more_outputs more; // among them
     ct_ex work_symbol;
     ct_ex power; // d(work)/dt, in terms of u' and lam where drivers push; 0 when nothing works
