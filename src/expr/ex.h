@@ -183,9 +183,11 @@ unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
 /// Nodes below the n roots (each once, children before parents) written to x->stack; returns their
 /// number. The list holds until the next walk. Cost: the nodes below.
 size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
+/// The same, of those nodes alone that have symbols of some of these kinds (ct_ex_kinds) below them.
+size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned kinds);
 
 /// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
-/// Cost: nodes below a, each once.
+/// Cost: nodes below a that have symbols of the kind of s below them, each once.
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
@@ -230,7 +232,7 @@ size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_a
                          const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                          const double *value, double *fvalue, struct ct_number **out);
 
-/// a with each symbol from[i] replaced by to[i].
+/// a with each symbol from[i] replaced by to[i]. Cost: nodes below a that have symbols of their kinds below them.
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,

@@ -11,7 +11,8 @@
 #include <string.h>
 
 struct sharing {
-    struct ct_arena *arena;
+    struct ct_arena *arena; // of the list
+    struct ct_arena *work;  // of tables as large as the store
     struct ct_exs *x;
     struct ct_share_options o;
     const ct_ex *root;
@@ -200,7 +201,7 @@ static struct ct_share list_definitions(struct sharing *s)
     struct ct_names taken = {0};
     size_t cap = 0, number = 0;
     for (size_t k = 0; k < s->x->nsym; k++)
-        ct_names_put(s->arena, &taken, s->x->sym[k].name, 0);
+        ct_names_put(s->work, &taken, s->x->sym[k].name, 0);
     for (size_t k = 0; k < s->n; k++) {
         const uint32_t id = s->id[k];
         if (!(s->saving[id] > 0))
@@ -208,7 +209,7 @@ static struct ct_share list_definitions(struct sharing *s)
         struct ct_definition d = {{id}, s->meaning[id], s->saving[id]};
         if (!d.name || is_taken(&taken, d.name))
             d.name = free_name(s, &taken, &number);
-        ct_names_put(s->arena, &taken, d.name + (d.name[0] == '-'), 0);
+        ct_names_put(s->work, &taken, d.name + (d.name[0] == '-'), 0);
         CT_PUSH(s->arena, list.at, list.n, cap, d);
     }
     return list;
@@ -228,15 +229,15 @@ static void list_nodes(struct sharing *s)
     const char *(*name)(void *, const struct ct_exs *, ct_ex)
         = s->o.name ? s->o.name : label_of;
     s->n = ct_ex_walk(s->x, s->root, s->nroot);
-    s->id = CT_NEWN(s->arena, uint32_t, s->n);
+    s->id = CT_NEWN(s->work, uint32_t, s->n);
     if (s->n)
         memcpy(s->id, s->x->stack, s->n * sizeof *s->id);
     // children have smaller ids, so this is an order for both sweeps, and the list can be searched
-    ct_sort(s->arena, s->id, s->n, sizeof *s->id, by_id, NULL);
-    s->size = CT_NEWN(s->arena, double, s->x->nnode);
-    s->times = CT_NEWN(s->arena, double, s->x->nnode);
-    s->saving = CT_NEWN(s->arena, double, s->x->nnode);
-    s->meaning = CT_NEWN(s->arena, const char *, s->x->nnode);
+    ct_sort(s->work, s->id, s->n, sizeof *s->id, by_id, NULL);
+    s->size = CT_NEWN(s->work, double, s->x->nnode);
+    s->times = CT_NEWN(s->work, double, s->x->nnode);
+    s->saving = CT_NEWN(s->work, double, s->x->nnode);
+    s->meaning = CT_NEWN(s->work, const char *, s->x->nnode);
     for (size_t k = 0; k < s->n; k++)
         s->meaning[s->id[k]] = name(s->o.data, s->x, (ct_ex){s->id[k]});
 }
@@ -245,7 +246,7 @@ static void list_nodes(struct sharing *s)
 // numbers count.
 static void choose_names(struct sharing *s)
 {
-    unsigned char *users = CT_NEWN(s->arena, unsigned char, s->x->nnode);
+    unsigned char *users = CT_NEWN(s->work, unsigned char, s->x->nnode);
     uint32_t arg[3];
     for (size_t k = 0; k < s->nroot; k++)
         users[s->root[k].id] += users[s->root[k].id] < 2;
@@ -260,7 +261,8 @@ static void choose_names(struct sharing *s)
 struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e, size_t n,
                             const struct ct_share_options *options)
 {
-    struct sharing s = {.arena = a, .x = x, .root = e, .nroot = n};
+    struct sharing s
+        = {.arena = a, .work = ct_arena_create_under(a), .x = x, .root = e, .nroot = n};
     if (options)
         s.o = *options;
     s.o.most = s.o.most ? s.o.most : 40;
@@ -278,7 +280,9 @@ struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e
     }
     while (drop_useless(&s))
         measure(&s);
-    return list_definitions(&s);
+    const struct ct_share list = list_definitions(&s);
+    ct_arena_destroy(s.work);
+    return list;
 }
 
 const char *ct_share_name(void *data, ct_ex e)

@@ -134,7 +134,8 @@ static bool find_symbols(struct ct_exs *x, ct_ex v, const ct_ex symbol[NSYMBOL],
                          bool found[NSYMBOL])
 {
     bool any = false;
-    const size_t n = ct_ex_walk(x, &v, 1);
+    const unsigned kinds = 1u << CT_SYM_LOCAL; // Definition: of the symbols in own[]
+    const size_t n = ct_ex_walk_kinds(x, &v, 1, kinds);
     for (size_t k = 0; k < n; k++)
         for (int i = 0; i < NSYMBOL; i++)
             if (x->stack[k] == symbol[i].id && !ct_ex_is_zero(symbol[i]))
