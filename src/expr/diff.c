@@ -277,16 +277,11 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to,
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t ns)
 {
-    const unsigned kinds = kinds_of(x, from, ns);
-    const size_t n = ct_ex_walk_kinds(x, a, na, kinds);
+    const size_t n = ct_ex_walk(x, a, na);
     const uint32_t *list = x->stack;
     ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
-        const uint32_t arg[3] = {node.a, node.b, node.c};
-        for (int i = 0; i < ct_op_info[node.op].narg; i++)
-            if (!is_walked(x, arg[i], kinds))
-                image[arg[i]] = (ct_ex){arg[i]};
         image[list[k]] = (ct_ex){list[k]};
         if (node.op == CT_OP_SYM) {
             for (size_t i = 0; i < ns; i++)
@@ -297,8 +292,7 @@ void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, 
         }
     }
     for (size_t k = 0; k < na; k++)
-        if (is_walked(x, a[k].id, kinds))
-            a[k] = image[a[k].id];
+        a[k] = image[a[k].id];
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -232,7 +232,7 @@ size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_a
                          const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                          const double *value, double *fvalue, struct ct_number **out);
 
-/// a with each symbol from[i] replaced by to[i]. Cost: nodes below a that have symbols of their kinds below them.
+/// a with each symbol from[i] replaced by to[i].
 ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to, size_t n);
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
