@@ -268,20 +268,19 @@ ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image)
     return rebuild(x, &n, m[0], m[1], m[2]);
 }
 
-ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
+// What has none of the kinds stays as it is.
+static void subst(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                  size_t ns, unsigned kinds)
 {
-    ct_ex_subst_list(x, &e, 1, from, to, ns);
-    return e;
-}
-
-void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
-                      size_t ns)
-{
-    const size_t n = ct_ex_walk(x, a, na);
+    const size_t n = ct_ex_walk_kinds(x, a, na, kinds);
     const uint32_t *list = x->stack;
     ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
+        const uint32_t arg[3] = {node.a, node.b, node.c};
+        for (int i = 0; i < ct_op_info[node.op].narg; i++)
+            if (!is_walked(x, arg[i], kinds))
+                image[arg[i]] = (ct_ex){arg[i]};
         image[list[k]] = (ct_ex){list[k]};
         if (node.op == CT_OP_SYM) {
             for (size_t i = 0; i < ns; i++)
@@ -292,7 +291,27 @@ void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, 
         }
     }
     for (size_t k = 0; k < na; k++)
-        a[k] = image[a[k].id];
+        if (is_walked(x, a[k].id, kinds))
+            a[k] = image[a[k].id];
+}
+
+ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
+{
+    subst(x, &e, 1, from, to, ns, all_nodes);
+    return e;
+}
+
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t ns)
+{
+    subst(x, a, na, from, to, ns, all_nodes);
+}
+
+ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to,
+                         size_t ns)
+{
+    subst(x, &e, 1, from, to, ns, kinds_of(x, from, ns));
+    return e;
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -163,7 +163,7 @@ static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool
         *own = ct_ex_add_product(x, *own, ct_ex_diff(x, v, symbol[i]),
                                  transposed ? as_column[i] : symbol[i]);
     }
-    *rest = ct_ex_subst(x, v, from, to, n);
+    *rest = ct_ex_subst_within(x, v, from, to, n);
 }
 
 // ---- rows ---------------------------------------------------------------------------------------
