@@ -174,10 +174,11 @@ static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d)
     return sum;
 }
 
-ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
+// Over the n nodes of the last walk, which went below e by the kinds of s.
+static ct_ex sweep(struct ct_exs *x, size_t n, ct_ex e, const ct_ex *s, const ct_ex *ds,
+                   size_t ns)
 {
     const unsigned kinds = kinds_of(x, s, ns);
-    const size_t n = ct_ex_walk_kinds(x, &e, 1, kinds);
     const uint32_t *list = x->stack;
     ct_ex *d = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
@@ -196,6 +197,17 @@ ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *d
         }
     }
     return n ? d[e.id] : CT_EX_ZERO;
+}
+
+ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
+{
+    return sweep(x, ct_ex_walk_kinds(x, &e, 1, kinds_of(x, s, ns)), e, s, ds, ns);
+}
+
+ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s)
+{
+    const ct_ex one = CT_EX_ONE;
+    return sweep(x, n, a, &s, &one, 1);
 }
 
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)

@@ -189,6 +189,8 @@ size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned 
 /// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
 /// Cost: nodes below a that have symbols of the kind of s below them, each once.
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
+/// The same where the last walk was ct_ex_walk_kinds(x, &a, 1, kind of s) = n: one walk for all symbols of a kind.
+ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
 /// Gradient out[i] = da/ds[i] by n symbols in reverse mode. Cost: nodes below a, whatever n.

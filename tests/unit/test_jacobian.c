@@ -55,6 +55,11 @@ static void entries_are_single_derivatives(void **unused)
         for (uint32_t row = 0; row < NF; row++)
             for (uint32_t k = 0; k < NSYM; k++) {
                 const ct_ex want = ct_ex_diff(&f.x, out[row], f.sym[k]);
+                const size_t nwalk
+                    = ct_ex_walk_kinds(&f.x, &out[row], 1, ct_ex_kinds(&f.x, f.sym[k]));
+                for (int i = 0; i < 2; i++) // the walk stays
+                    assert_true(
+                        ct_ex_same(ct_ex_diff_walked(&f.x, nwalk, out[row], f.sym[k]), want));
                 if (ct_ex_is_zero(want))
                     continue;
                 if (next == n || s[next].row != row || s[next].direction != k) {
