@@ -22,7 +22,15 @@ static void reserve_walk(struct ct_exs *x)
     x->walk_cap = cap;
 }
 
-size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
+static const unsigned all_nodes = ~0u; // constants have no kinds
+
+static bool is_walked(const struct ct_exs *x, uint32_t id, unsigned kinds)
+{
+    return kinds == all_nodes || x->kinds[id] & kinds;
+}
+
+// A node without symbols of these kinds has none below it either.
+size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned kinds)
 {
     reserve_walk(x);
     x->generation++;
@@ -31,7 +39,7 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
     size_t nlist = 0;
     for (size_t r = 0; r < n; r++) {
         size_t npending = 0;
-        if (x->stamp[root[r].id] == x->generation)
+        if (x->stamp[root[r].id] == x->generation || !is_walked(x, root[r].id, kinds))
             continue;
         pending[npending++] = root[r].id;
         while (npending) {
@@ -40,7 +48,7 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
             const uint32_t arg[3] = {e->a, e->b, e->c};
             bool ready = true;
             for (int i = 0; ready && i < ct_op_info[e->op].narg; i++)
-                if (x->stamp[arg[i]] != x->generation) {
+                if (x->stamp[arg[i]] != x->generation && is_walked(x, arg[i], kinds)) {
                     pending[npending++] = arg[i]; // a path: never longer than the walk
                     ready = false;
                 }
@@ -52,6 +60,19 @@ size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
         }
     }
     return nlist;
+}
+
+size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n)
+{
+    return ct_ex_walk_kinds(x, root, n, all_nodes);
+}
+
+static unsigned kinds_of(const struct ct_exs *x, const ct_ex *s, size_t n)
+{
+    unsigned kinds = 0;
+    for (size_t i = 0; i < n; i++)
+        kinds |= ct_ex_kinds(x, s[i]);
+    return kinds;
 }
 
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
@@ -153,13 +174,20 @@ static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d)
     return sum;
 }
 
-ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
+// Over the n nodes of the last walk, which went below e by the kinds of s.
+static ct_ex sweep(struct ct_exs *x, size_t n, ct_ex e, const ct_ex *s, const ct_ex *ds,
+                   size_t ns)
 {
-    const size_t n = ct_ex_walk(x, &e, 1);
+    const unsigned kinds = kinds_of(x, s, ns);
     const uint32_t *list = x->stack;
     ct_ex *d = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
-        if (x->node[list[k]].op == CT_OP_SYM) {
+        const struct ct_exnode node = x->node[list[k]];
+        const uint32_t arg[3] = {node.a, node.b, node.c};
+        for (int i = 0; i < ct_op_info[node.op].narg; i++)
+            if (!is_walked(x, arg[i], kinds))
+                d[arg[i]] = CT_EX_ZERO;
+        if (node.op == CT_OP_SYM) {
             d[list[k]] = CT_EX_ZERO;
             for (size_t i = 0; i < ns; i++)
                 if (s[i].id == list[k])
@@ -168,7 +196,18 @@ ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *d
             d[list[k]] = chain(x, list[k], d);
         }
     }
-    return d[e.id];
+    return n ? d[e.id] : CT_EX_ZERO;
+}
+
+ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex e, const ct_ex *s, const ct_ex *ds, size_t ns)
+{
+    return sweep(x, ct_ex_walk_kinds(x, &e, 1, kinds_of(x, s, ns)), e, s, ds, ns);
+}
+
+ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s)
+{
+    const ct_ex one = CT_EX_ONE;
+    return sweep(x, n, a, &s, &one, 1);
 }
 
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)
@@ -241,20 +280,19 @@ ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image)
     return rebuild(x, &n, m[0], m[1], m[2]);
 }
 
-ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
+// What has none of the kinds stays as it is.
+static void subst(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                  size_t ns, unsigned kinds)
 {
-    ct_ex_subst_list(x, &e, 1, from, to, ns);
-    return e;
-}
-
-void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
-                      size_t ns)
-{
-    const size_t n = ct_ex_walk(x, a, na);
+    const size_t n = ct_ex_walk_kinds(x, a, na, kinds);
     const uint32_t *list = x->stack;
     ct_ex *image = x->memo; // by id; nothing below starts another walk
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
+        const uint32_t arg[3] = {node.a, node.b, node.c};
+        for (int i = 0; i < ct_op_info[node.op].narg; i++)
+            if (!is_walked(x, arg[i], kinds))
+                image[arg[i]] = (ct_ex){arg[i]};
         image[list[k]] = (ct_ex){list[k]};
         if (node.op == CT_OP_SYM) {
             for (size_t i = 0; i < ns; i++)
@@ -265,7 +303,27 @@ void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, 
         }
     }
     for (size_t k = 0; k < na; k++)
-        a[k] = image[a[k].id];
+        if (is_walked(x, a[k].id, kinds))
+            a[k] = image[a[k].id];
+}
+
+ct_ex ct_ex_subst(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to, size_t ns)
+{
+    subst(x, &e, 1, from, to, ns, all_nodes);
+    return e;
+}
+
+void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
+                      size_t ns)
+{
+    subst(x, a, na, from, to, ns, all_nodes);
+}
+
+ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_ex *to,
+                         size_t ns)
+{
+    subst(x, &e, 1, from, to, ns, kinds_of(x, from, ns));
+    return e;
 }
 
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,

@@ -183,10 +183,14 @@ unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
 /// Nodes below the n roots (each once, children before parents) written to x->stack; returns their
 /// number. The list holds until the next walk. Cost: the nodes below.
 size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
+/// The same, of those nodes alone that have symbols of some of these kinds (ct_ex_kinds) below them.
+size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned kinds);
 
 /// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
-/// Cost: nodes below a, each once.
+/// Cost: nodes below a that have symbols of the kind of s below them, each once.
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
+/// The same where the last walk was ct_ex_walk_kinds(x, &a, 1, kind of s) = n: one walk for all symbols of a kind.
+ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
 /// Gradient out[i] = da/ds[i] by n symbols in reverse mode. Cost: nodes below a, whatever n.
@@ -235,6 +239,10 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t n);
+/// The same, but nodes without symbols of the kinds of from stay as they are, while the functions above
+/// make all nodes anew, which may simplify them. Cost: nodes below a that have such symbols below them.
+ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
+                         size_t n);
 /// A node that has operands, made in x from image[id] of each operand.
 ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image);
 /// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.

@@ -78,9 +78,11 @@ static struct ct_poly rewrite_parts(struct ct_collector *c, struct keyed *k, siz
     size_t nsum = 0, cap = 0;
     ct_sort(c->arena, k, n, sizeof *k, by_key, NULL);
     for (size_t from = 0, to; from < n; from = to) {
-        struct ct_poly part = {CT_NEWN(c->arena, struct ct_term, n - from), 0};
-        for (to = from; to < n && k[to].key == k[from].key; to++)
-            part.t[part.n++] = k[to].t;
+        for (to = from; to < n && k[to].key == k[from].key;)
+            to++;
+        struct ct_poly part = {CT_NEWN(c->arena, struct ct_term, to - from), 0};
+        for (size_t i = from; i < to; i++)
+            part.t[part.n++] = k[i].t;
         part = rewrite(c, ct_poly_sum(&c->ps, part.t, part.n), data);
         for (size_t i = 0; i < part.n; i++)
             CT_PUSH(c->arena, sum.t, nsum, cap, part.t[i]);

@@ -11,16 +11,18 @@
 #include <string.h>
 
 struct sharing {
-    struct ct_arena *arena;
+    struct ct_arena *arena; // of the list
+    struct ct_arena *work;
     struct ct_exs *x;
     struct ct_share_options o;
-    const ct_ex *root;
-    size_t nroot;
-    uint32_t *id; // nodes below the roots, ascending
+    uint32_t *id; // nodes below the roots, ascending; what follows is by place in this list
+    uint32_t (*arg)[3]; // places of the operands
     size_t n;
-    double *size, *times; // by id: length of the text, occurrences in the print
-    const char **meaning; // by id: a name by meaning, NULL
-    double *saving;       // by id: of chosen nodes, else 0
+    uint32_t *root; // places (nroot)
+    size_t nroot;
+    double *size, *times; // length of the text, occurrences in the print
+    const char **meaning; // a name by meaning, NULL
+    double *saving;       // of chosen nodes, else 0
     double total;
 };
 
@@ -30,13 +32,9 @@ static const char *label_of(void *unused, const struct ct_exs *x, ct_ex e)
     return e.id < x->label_cap ? x->label[e.id] : NULL;
 }
 
-static int operands(const struct ct_exs *x, uint32_t id, uint32_t arg[3])
+static int noperand(const struct sharing *s, size_t k)
 {
-    const struct ct_exnode *n = &x->node[id];
-    arg[0] = n->a;
-    arg[1] = n->b;
-    arg[2] = n->c;
-    return ct_op_info[n->op].narg;
+    return ct_op_info[s->x->node[s->id[k]].op].narg;
 }
 
 // ---- lengths ----------------------------------------------------------------------------------
@@ -65,38 +63,35 @@ static double own_length(const struct sharing *s, uint32_t id)
     }
 }
 
-static double name_length(const struct sharing *s, uint32_t id)
+static double name_length(const struct sharing *s, size_t k)
 {
-    return s->meaning[id] ? (double)strlen(s->meaning[id]) : 2;
+    return s->meaning[k] ? (double)strlen(s->meaning[k]) : 2;
 }
 
-static double shown_length(const struct sharing *s, uint32_t id)
+static double shown_length(const struct sharing *s, size_t k)
 {
-    return s->saving[id] > 0 ? name_length(s, id) : s->size[id];
+    return s->saving[k] > 0 ? name_length(s, k) : s->size[k];
 }
 
 static void measure(struct sharing *s)
 {
-    uint32_t arg[3];
     for (size_t k = 0; k < s->n; k++) {
-        const uint32_t id = s->id[k];
-        s->times[id] = 0;
-        s->size[id] = own_length(s, id);
-        for (int i = operands(s->x, id, arg); i-- > 0;)
-            s->size[id] += shown_length(s, arg[i]);
+        s->times[k] = 0;
+        s->size[k] = own_length(s, s->id[k]);
+        for (int i = noperand(s, k); i-- > 0;)
+            s->size[k] += shown_length(s, s->arg[k][i]);
     }
     s->total = 0;
     for (size_t k = 0; k < s->nroot; k++) {
-        s->times[s->root[k].id]++;
-        s->total += shown_length(s, s->root[k].id);
+        s->times[s->root[k]]++;
+        s->total += shown_length(s, s->root[k]);
     }
     for (size_t k = s->n; k-- > 0;) {
-        const uint32_t id = s->id[k];
-        const double bodies = s->saving[id] > 0 ? 1 : s->times[id];
-        for (int i = operands(s->x, id, arg); i-- > 0;)
-            s->times[arg[i]] += bodies;
-        if (s->saving[id] > 0)
-            s->total += s->size[id] + name_length(s, id) + 4;
+        const double bodies = s->saving[k] > 0 ? 1 : s->times[k];
+        for (int i = noperand(s, k); i-- > 0;)
+            s->times[s->arg[k][i]] += bodies;
+        if (s->saving[k] > 0)
+            s->total += s->size[k] + name_length(s, k) + 4;
     }
 }
 
@@ -118,18 +113,18 @@ static bool is_trivial(const struct ct_exs *x, uint32_t id)
 }
 
 // What naming a node saves: all prints but one become the name, and there is a line `name = `.
-static double saving_of(const struct sharing *s, uint32_t id)
+static double saving_of(const struct sharing *s, size_t k)
 {
-    const double name = name_length(s, id), times = s->times[id];
-    return (times - 1) * s->size[id] - (times + 1) * name - 4;
+    const double name = name_length(s, k), times = s->times[k];
+    return (times - 1) * s->size[k] - (times + 1) * name - 4;
 }
 
 // A name by meaning counts twice: it explains.
-static double worth_of(const struct sharing *s, uint32_t id)
+static double worth_of(const struct sharing *s, size_t k)
 {
-    if (s->saving[id] > 0 || is_trivial(s->x, id))
+    if (s->saving[k] > 0 || is_trivial(s->x, s->id[k]))
         return 0;
-    return saving_of(s, id) * (s->meaning[id] ? 2 : 1);
+    return saving_of(s, k) * (s->meaning[k] ? 2 : 1);
 }
 
 // Graphs of more nodes than this get many names at a time: all that save half as much as the best.
@@ -141,23 +136,22 @@ enum { LARGE_GRAPH = 1000 };
 static size_t choose(struct sharing *s, size_t most)
 {
     double best = s->o.least;
-    uint32_t chosen = 0;
+    size_t chosen = s->n;
     for (size_t k = 0; k < s->n; k++) {
-        const double worth = worth_of(s, s->id[k]);
+        const double worth = worth_of(s, k);
         if (worth > best) {
             best = worth;
-            chosen = s->id[k];
+            chosen = k;
         }
     }
-    if (!chosen)
+    if (chosen == s->n)
         return 0;
     size_t n = 0;
     const double enough = s->n > LARGE_GRAPH ? fmax(best / 2, s->o.least) : best;
     for (size_t k = 0; k < s->n && n < most; k++) {
-        const uint32_t id = s->id[k];
-        if (worth_of(s, id) < enough || (s->n <= LARGE_GRAPH && id != chosen))
+        if (worth_of(s, k) < enough || (s->n <= LARGE_GRAPH && k != chosen))
             continue;
-        s->saving[id] = saving_of(s, id);
+        s->saving[k] = saving_of(s, k);
         n++;
     }
     return n;
@@ -167,13 +161,11 @@ static size_t choose(struct sharing *s, size_t most)
 static bool drop_useless(struct sharing *s)
 {
     bool any = false;
-    for (size_t k = 0; k < s->n; k++) {
-        const uint32_t id = s->id[k];
-        if (s->saving[id] > 0 && s->times[id] < 1.5) {
-            s->saving[id] = 0;
+    for (size_t k = 0; k < s->n; k++)
+        if (s->saving[k] > 0 && s->times[k] < 1.5) {
+            s->saving[k] = 0;
             any = true;
         }
-    }
     return any;
 }
 
@@ -200,15 +192,14 @@ static struct ct_share list_definitions(struct sharing *s)
     struct ct_names taken = {0};
     size_t cap = 0, number = 0;
     for (size_t k = 0; k < s->x->nsym; k++)
-        ct_names_put(s->arena, &taken, s->x->sym[k].name, 0);
+        ct_names_put(s->work, &taken, s->x->sym[k].name, 0);
     for (size_t k = 0; k < s->n; k++) {
-        const uint32_t id = s->id[k];
-        if (!(s->saving[id] > 0))
+        if (!(s->saving[k] > 0))
             continue;
-        struct ct_definition d = {{id}, s->meaning[id], s->saving[id]};
+        struct ct_definition d = {{s->id[k]}, s->meaning[k], s->saving[k]};
         if (!d.name || is_taken(&taken, d.name))
             d.name = free_name(s, &taken, &number);
-        ct_names_put(s->arena, &taken, d.name + (d.name[0] == '-'), 0);
+        ct_names_put(s->work, &taken, d.name + (d.name[0] == '-'), 0);
         CT_PUSH(s->arena, list.at, list.n, cap, d);
     }
     return list;
@@ -223,50 +214,60 @@ static int by_id(const void *unused, const void *a, const void *b)
     return (m > n) - (m < n);
 }
 
-static void list_nodes(struct sharing *s)
+static void list_nodes(struct sharing *s, const ct_ex *root)
 {
+    struct ct_exs *x = s->x;
     const char *(*name)(void *, const struct ct_exs *, ct_ex)
         = s->o.name ? s->o.name : label_of;
-    s->n = ct_ex_walk(s->x, s->root, s->nroot);
-    s->id = CT_NEWN(s->arena, uint32_t, s->n);
-    if (s->n)
-        memcpy(s->id, s->x->stack, s->n * sizeof *s->id);
-    // children have smaller ids, so this is an order for both sweeps, and the list can be searched
-    ct_sort(s->arena, s->id, s->n, sizeof *s->id, by_id, NULL);
-    s->size = CT_NEWN(s->arena, double, s->x->nnode);
-    s->times = CT_NEWN(s->arena, double, s->x->nnode);
-    s->saving = CT_NEWN(s->arena, double, s->x->nnode);
-    s->meaning = CT_NEWN(s->arena, const char *, s->x->nnode);
-    for (size_t k = 0; k < s->n; k++)
-        s->meaning[s->id[k]] = name(s->o.data, s->x, (ct_ex){s->id[k]});
+    s->n = ct_ex_walk(x, root, s->nroot);
+    s->id = CT_NEWN(s->work, uint32_t, s->n + 1);
+    memcpy(s->id, x->stack, s->n * sizeof *s->id);
+    // children have smaller ids, so this is an order for both sweeps
+    ct_sort(s->work, s->id, s->n, sizeof *s->id, by_id, NULL);
+    uint32_t *place = CT_NEWN(s->work, uint32_t, x->nnode); // by id
+    s->arg = ct_arena_calloc(s->work, s->n + 1, sizeof *s->arg);
+    s->root = CT_NEWN(s->work, uint32_t, s->nroot + 1);
+    s->size = CT_NEWN(s->work, double, s->n + 1);
+    s->times = CT_NEWN(s->work, double, s->n + 1);
+    s->saving = CT_NEWN(s->work, double, s->n + 1);
+    s->meaning = CT_NEWN(s->work, const char *, s->n + 1);
+    for (size_t k = 0; k < s->n; k++) {
+        const struct ct_exnode *n = &x->node[s->id[k]];
+        const uint32_t arg[3] = {n->a, n->b, n->c};
+        place[s->id[k]] = (uint32_t)k;
+        for (int i = 0; i < noperand(s, k); i++)
+            s->arg[k][i] = place[arg[i]];
+        s->meaning[k] = name(s->o.data, x, (ct_ex){s->id[k]});
+    }
+    for (size_t k = 0; k < s->nroot; k++)
+        s->root[k] = place[root[k].id];
 }
 
 // All that has a meaning and two users. Lengths are finite from then on: paths through a recursion can be more than
 // numbers count.
 static void choose_names(struct sharing *s)
 {
-    unsigned char *users = CT_NEWN(s->arena, unsigned char, s->x->nnode);
-    uint32_t arg[3];
+    unsigned char *users = CT_NEWN(s->work, unsigned char, s->n + 1);
     for (size_t k = 0; k < s->nroot; k++)
-        users[s->root[k].id] += users[s->root[k].id] < 2;
+        users[s->root[k]] += users[s->root[k]] < 2;
     for (size_t k = 0; k < s->n; k++)
-        for (int i = operands(s->x, s->id[k], arg); i-- > 0;)
-            users[arg[i]] += users[arg[i]] < 2;
+        for (int i = noperand(s, k); i-- > 0;)
+            users[s->arg[k][i]] += users[s->arg[k][i]] < 2;
     for (size_t k = 0; k < s->n; k++)
-        if (s->meaning[s->id[k]] && users[s->id[k]] > 1 && !is_trivial(s->x, s->id[k]))
-            s->saving[s->id[k]] = 1;
+        if (s->meaning[k] && users[k] > 1 && !is_trivial(s->x, s->id[k]))
+            s->saving[k] = 1;
 }
 
 struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e, size_t n,
                             const struct ct_share_options *options)
 {
-    struct sharing s = {.arena = a, .x = x, .root = e, .nroot = n};
+    struct sharing s = {.arena = a, .work = ct_arena_create_under(a), .x = x, .nroot = n};
     if (options)
         s.o = *options;
     s.o.most = s.o.most ? s.o.most : 40;
     s.o.enough = s.o.enough > 0 ? s.o.enough : 1500;
     s.o.least = s.o.least > 0 ? s.o.least : 20;
-    list_nodes(&s);
+    list_nodes(&s, e);
     if (s.o.names_first)
         choose_names(&s);
     measure(&s);
@@ -278,7 +279,9 @@ struct ct_share ct_ex_share(struct ct_arena *a, struct ct_exs *x, const ct_ex *e
     }
     while (drop_useless(&s))
         measure(&s);
-    return list_definitions(&s);
+    const struct ct_share list = list_definitions(&s);
+    ct_arena_destroy(s.work);
+    return list;
 }
 
 const char *ct_share_name(void *data, ct_ex e)

@@ -129,15 +129,14 @@ static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
     own[7] = as_column[7] = s->elastic;
 }
 
-// Which symbols stand in v? false: none.
-static bool find_symbols(struct ct_exs *x, ct_ex v, const ct_ex symbol[NSYMBOL],
+// Which symbols stand among the n nodes of the last walk? false: none.
+static bool find_symbols(const struct ct_exs *x, size_t n, const ct_ex symbol[NSYMBOL],
                          bool found[NSYMBOL])
 {
     bool any = false;
-    const size_t n = ct_ex_walk(x, &v, 1);
     for (size_t k = 0; k < n; k++)
-        for (int i = 0; i < NSYMBOL; i++)
-            if (x->stack[k] == symbol[i].id && !ct_ex_is_zero(symbol[i]))
+        for (int i = 0; i < NSYMBOL && x->node[x->stack[k]].op == CT_OP_SYM; i++)
+            if (x->stack[k] == symbol[i].id)
                 any = found[i] = true;
     return any;
 }
@@ -153,16 +152,17 @@ static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool
     *own = CT_EX_ZERO;
     *rest = v;
     symbols_of(s, symbol, as_column);
-    if (!find_symbols(x, v, symbol, found))
+    const size_t nwalk = ct_ex_walk_kinds(x, &v, 1, 1u << CT_SYM_LOCAL); // that of all symbols
+    if (!find_symbols(x, nwalk, symbol, found))
         return;
     for (int i = 0; i < NSYMBOL; i++) {
         if (!found[i])
             continue;
         from[n++] = symbol[i];
-        *own = ct_ex_add_product(x, *own, ct_ex_diff(x, v, symbol[i]),
+        *own = ct_ex_add_product(x, *own, ct_ex_diff_walked(x, nwalk, v, symbol[i]),
                                  transposed ? as_column[i] : symbol[i]);
     }
-    *rest = ct_ex_subst(x, v, from, to, n);
+    *rest = ct_ex_subst_within(x, v, from, to, n);
 }
 
 // ---- rows ---------------------------------------------------------------------------------------

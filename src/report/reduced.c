@@ -241,16 +241,16 @@ static int by_id(const void *unused, const void *a, const void *b)
 }
 
 // Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
-static void replace_named(struct ct_arena *a, struct ct_equations *e,
+static void replace_named(struct ct_arena *a, struct ct_arena *work, struct ct_equations *e,
                           struct ct_definitions *list, struct ct_share *share,
                           const ct_ex *root, size_t nroot, ct_ex *map)
 {
     struct ct_exs *x = e->x;
     const size_t n = ct_ex_walk(x, root, nroot);
-    uint32_t *id = CT_NEWN(a, uint32_t, n + 1);
+    uint32_t *id = CT_NEWN(work, uint32_t, n + 1);
     for (size_t k = 0; k < n; k++)
         id[k] = x->stack[k];
-    ct_sort(a, id, n, sizeof *id, by_id, NULL);
+    ct_sort(work, id, n, sizeof *id, by_id, NULL);
     *list = (struct ct_definitions){CT_NEWN(a, struct ct_reduced_definition, share->n + 1), 0};
     for (size_t k = 0; k < n; k++) {
         const ct_ex old = {id[k]};
@@ -280,16 +280,18 @@ struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equation
         .enough = 2000,
         .least = names_first ? CT_PAGE_WIDTH : 0, // a definition takes a line: it must save one
         .names_first = names_first};
-    ct_ex *root = CT_NEWN(a, ct_ex, n + 1);
+    struct ct_arena *work = ct_arena_create_under(a); // of tables as large as the store
+    ct_ex *root = CT_NEWN(work, ct_ex, n + 1);
     struct ct_definitions list;
     for (size_t i = 0; i < n; i++)
         root[i] = *where[i];
     struct ct_share share = ct_ex_share(a, e->x, root, n, &o);
-    ct_ex *map = CT_NEWN(a, ct_ex, e->x->nnode);
-    replace_named(a, e, &list, &share, root, n, map);
+    ct_ex *map = CT_NEWN(work, ct_ex, e->x->nnode);
+    replace_named(a, work, e, &list, &share, root, n, map);
     for (size_t i = 0; i < n; i++)
         *where[i] = tidy(e, map[root[i].id]);
     *size = share.size;
+    ct_arena_destroy(work);
     return list;
 }
 

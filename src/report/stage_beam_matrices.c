@@ -424,7 +424,7 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
             swept[3 * k + i] = ct_beam_parts_name(p, c.swept[k].e[i]);
         }
     }
-    ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
+    ct_ex_gradient(x, work, ct_flexible_strain(b, f), q, n, force);
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k <= i; k++) {
             const size_t row = (size_t)f->elastic[i].u, column = (size_t)f->elastic[k].u;

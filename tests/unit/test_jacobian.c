@@ -19,8 +19,8 @@ static void begin(struct fixture *f)
     f->a = ct_arena_create();
     f->scratch = ct_arena_create();
     ct_exs_init(&f->x, f->a);
-    for (int i = 0; i < NSYM; i++)
-        f->sym[i] = ct_ex_sym(&f->x, CT_SYM_Q, "q", (uint32_t)i);
+    for (int i = 0; i < NSYM; i++) // of two kinds: one derivative walks those of its kind alone
+        f->sym[i] = ct_ex_sym(&f->x, i % 2 ? CT_SYM_U : CT_SYM_Q, "q", (uint32_t)i);
 }
 
 static void end(struct fixture *f)
@@ -55,6 +55,11 @@ static void entries_are_single_derivatives(void **unused)
         for (uint32_t row = 0; row < NF; row++)
             for (uint32_t k = 0; k < NSYM; k++) {
                 const ct_ex want = ct_ex_diff(&f.x, out[row], f.sym[k]);
+                const size_t nwalk
+                    = ct_ex_walk_kinds(&f.x, &out[row], 1, ct_ex_kinds(&f.x, f.sym[k]));
+                for (int i = 0; i < 2; i++) // the walk stays
+                    assert_true(
+                        ct_ex_same(ct_ex_diff_walked(&f.x, nwalk, out[row], f.sym[k]), want));
                 if (ct_ex_is_zero(want))
                     continue;
                 if (next == n || s[next].row != row || s[next].direction != k) {
@@ -174,6 +179,37 @@ static void gradients_are_single_derivatives(void **unused)
         end(&f);
     }
     assert_true(ncompared > 100);
+}
+
+// Substitution within the nodes of a kind: the values of the other one; what lacks the kind is the same node.
+static void substitution_within_a_kind(void **unused)
+{
+    (void)unused;
+    struct random r = random_start("within");
+    const double value[NSYM] = {0.3, -0.7, 1.1, 0.9, -1.3, 0.5};
+    int ncompared = 0, nother = 0;
+    for (int trial = 0; trial < 100; trial++) {
+        struct fixture f;
+        begin(&f);
+        ct_ex node[NSYM + NNODE];
+        memcpy(node, f.sym, sizeof f.sym);
+        for (size_t i = NSYM; i < NSYM + NNODE; i++) {
+            node[i] = random_node(&r, &f.x, node, i);
+            const ct_ex got = ct_ex_subst_within(&f.x, node[i], &f.sym[0], &f.sym[2], 1);
+            const double is = ct_ex_value(&f.x, got, value),
+                         want = ct_ex_value(
+                             &f.x, ct_ex_subst(&f.x, node[i], &f.sym[0], &f.sym[2], 1), value);
+            if (!(ct_ex_kinds(&f.x, node[i]) & 1u << CT_SYM_Q)) {
+                assert_true(ct_ex_same(got, node[i]));
+                nother++;
+            } else if (isfinite(want) && fabs(want) < 1e6) {
+                assert_true(fabs(is - want) <= 1e-9 * (1 + fabs(want)));
+                ncompared += !ct_ex_same(got, node[i]);
+            }
+        }
+        end(&f);
+    }
+    assert_true(ncompared > 100 && nother > 100);
 }
 
 // ---- inner values -----------------------------------------------------------------------------------------
@@ -319,6 +355,7 @@ int main(void)
         cmocka_unit_test(numbers_are_values_of_derivatives),
         cmocka_unit_test(gradients_are_single_derivatives),
         cmocka_unit_test(seeds_form_directions),
+        cmocka_unit_test(substitution_within_a_kind),
         cmocka_unit_test(inner_values_lead_to_the_same_derivatives),
         cmocka_unit_test(chains_keep_their_sums),
     };
