@@ -1,7 +1,8 @@
 // Choice of shared subexpressions; see share.h.
 //
-// Two sweeps per definition: upwards the length of each node's text, downwards how often that text
-// is printed; a name counts as short text, and what is below it is printed once.
+// Two sweeps per definition. The upward sweep finds the length of each node's text, where a named
+// node counts as the length of its name. The downward sweep finds how often the text is printed,
+// where the text below a named node is printed once.
 #include "expr/share.h"
 
 #include "base/names.h"
@@ -19,7 +20,7 @@ struct sharing {
     uint32_t *id; // nodes below the roots, ascending
     size_t n;
     double *size, *times; // by id: length of the text, occurrences in the print
-    const char **meaning; // by id: a name by meaning, NULL
+    const char **meaning; // by id: its label, or NULL
     double *saving;       // by id: of chosen nodes, else 0
     double total;
 };
@@ -41,7 +42,7 @@ static int operands(const struct ct_exs *x, uint32_t id, uint32_t arg[3])
 
 // ---- lengths ----------------------------------------------------------------------------------
 
-// Characters an operator adds to those of its operands, parentheses of products guessed.
+// Characters that an operator adds to those of its operands; parentheses of products are estimated.
 static double own_length(const struct sharing *s, uint32_t id)
 {
     const struct ct_exnode *n = &s->x->node[id];
@@ -117,14 +118,14 @@ static bool is_trivial(const struct ct_exs *x, uint32_t id)
     return n->op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n->a}, NULL) && is_leaf(x, n->b);
 }
 
-// What naming a node saves: all prints but one become the name, and there is a line `name = `.
+// Characters saved by naming a node: all prints but one become the name; a line `name = ` is added.
 static double saving_of(const struct sharing *s, uint32_t id)
 {
     const double name = name_length(s, id), times = s->times[id];
     return (times - 1) * s->size[id] - (times + 1) * name - 4;
 }
 
-// A name by meaning counts twice: it explains.
+// A labelled node counts twice, because its name also explains it.
 static double worth_of(const struct sharing *s, uint32_t id)
 {
     if (s->saving[id] > 0 || is_trivial(s->x, id))
@@ -132,9 +133,9 @@ static double worth_of(const struct sharing *s, uint32_t id)
     return saving_of(s, id) * (s->meaning[id] ? 2 : 1);
 }
 
-// Graphs of more nodes than this get many names at a time: all that save half as much as the best.
-// Those that others make useless are taken back at the end.
-// Limit: one name at a time costs the square of the nodes.
+// In graphs of more nodes than this several names are chosen per sweep: all that save at least half
+// as much as the best. Names that others make useless are removed at the end. Limit: one name at a
+// time costs the square of the nodes.
 enum { LARGE_GRAPH = 1000 };
 
 // Names the node that saves most; ties go to the older one. Returns how many were named.
@@ -163,7 +164,7 @@ static size_t choose(struct sharing *s, size_t most)
     return n;
 }
 
-// A definition that later ones left with a single use is taken back.
+// Remove a definition that, after later choices, is used only once.
 static bool drop_useless(struct sharing *s)
 {
     bool any = false;
@@ -231,7 +232,7 @@ static void list_nodes(struct sharing *s)
     s->id = CT_NEWN(s->arena, uint32_t, s->n);
     if (s->n)
         memcpy(s->id, s->x->stack, s->n * sizeof *s->id);
-    // children have smaller ids, so this is an order for both sweeps, and the list can be searched
+    // operands have smaller ids, so this order serves both sweeps and a binary search
     ct_sort(s->arena, s->id, s->n, sizeof *s->id, by_id, NULL);
     s->size = CT_NEWN(s->arena, double, s->x->nnode);
     s->times = CT_NEWN(s->arena, double, s->x->nnode);
@@ -241,8 +242,8 @@ static void list_nodes(struct sharing *s)
         s->meaning[s->id[k]] = name(s->o.data, s->x, (ct_ex){s->id[k]});
 }
 
-// All that has a meaning and two users. Lengths are finite from then on: paths through a recursion can be more than
-// numbers count.
+// Name all labelled nodes with two users. This keeps the lengths finite: the unfolded text of a
+// recursion can exceed the range of double.
 static void choose_names(struct sharing *s)
 {
     unsigned char *users = CT_NEWN(s->arena, unsigned char, s->x->nnode);

@@ -1,12 +1,13 @@
-// Jumps and kinks of an expression along a symbol: between them it is smooth, and quadrature
-// converges.
+// Points where an expression jumps or has a kink as a function of one symbol. Between them it is
+// smooth, so that quadrature converges.
 #ifndef CT_EXPR_SWITCHES_H
 #define CT_EXPR_SWITCHES_H
 
 #include "expr/ex.h"
 
-/// Places closer than this part of the whole are one. Default: a short element is stiff and costs
-/// steps, and places have round-off. Test: switches.
+/// Switching points closer than this part of the interval are merged. Default: below it, an element
+/// between two points is so stiff that it costs steps; above it, distinct points are lost. Test:
+/// switches.
 #define CT_SAME_PLACE 1e-9
 
 /**
