@@ -33,7 +33,7 @@ enum { DECADES_OF_STEPS = 2 }; // Limit: rows of a table
 // Errors that differ by this part of themselves are the same. Derived: the table shows two digits.
 static const double same_error = 0.01;
 
-// ---- ladders ---------------------------------------------------------------------------------------------
+// ---- ladders ------------------------------------------------------------------------------------
 
 static int compare_doubles(const void *a, const void *b)
 {
@@ -208,7 +208,7 @@ static bool choose_methods(struct ct_accuracy *a, const char *text, const char *
     return ok;
 }
 
-// ---- the whole -------------------------------------------------------------------------------------------
+// ---- the whole ----------------------------------------------------------------------------------
 
 static void choose_best(struct ct_accuracy *a)
 {
@@ -346,7 +346,7 @@ void ct_accuracy_destroy(struct ct_accuracy *a)
     free(a);
 }
 
-// ---- what it says ------------------------------------------------------------------------------------------
+// ---- what it says -------------------------------------------------------------------------------
 
 struct output {
     struct ct_ctx *ctx;

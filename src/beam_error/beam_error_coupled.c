@@ -42,7 +42,7 @@ struct ct_beam_error_coupled_run {
     bool is_lost;
 };
 
-// ---- the scene with rigid beams ---------------------------------------------------------------------------
+// ---- the scene with rigid beams -----------------------------------------------------------------
 
 static struct ct_build *rigid_scene(struct ct_build *b)
 {
@@ -102,7 +102,7 @@ static bool find_start(const struct ct_build *r, double *start)
     return true;
 }
 
-// ---- numbers ----------------------------------------------------------------------------------------------
+// ---- numbers ------------------------------------------------------------------------------------
 
 struct outputs {
     ct_ex *e;
@@ -223,7 +223,7 @@ ct_beam_error_coupled_run_create(struct ct_arena *a, const struct ct_beam_error_
     return r;
 }
 
-// ---- a step -----------------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
 struct scene { // of one model at one instant
     const double *Q, *rate, *base, *bias, *B;

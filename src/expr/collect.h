@@ -33,7 +33,8 @@ struct ct_collect_options {
 ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options);
 
 /// Linear form e = sum over k of coefficient[k] s[k] + rest in the symbols s[0 ... n), each part
-/// collected. False if e is not linear in them; rest then holds the whole of e.
+/// collected.
+/// False if e is not linear in them; rest then also holds the nonlinear terms.
 bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                           ct_ex *coefficient, ct_ex *rest,
                           const struct ct_collect_options *options);

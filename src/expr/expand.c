@@ -180,7 +180,7 @@ static struct ct_poly reduce_roots(struct ct_collector *c, struct ct_poly p)
             continue;
         const struct ct_poly old = {(struct ct_term[]){t}, 1};
         p = ct_poly_add(&c->ps, ct_poly_add(&c->ps, p, -1, old), 1, reduced);
-        k = (size_t)-1; // terms have moved: start again; each step removes a square root, so this ends
+        k = (size_t)-1; // terms have moved: start again; each step removes a root
     }
     return p;
 }

@@ -1,18 +1,20 @@
-// The search for a pair of spanning trees, one per graph, at least cost; formulation 2.3.
+// Search for the pair of spanning trees, one per graph, of least cost; formulation 2.3.
 //
 //     least weight pair  -->  few pairs?  --yes-->  try them all
 //      (Kruskal twice)            '-------no------>  steepest descent by exchanges
 //
-// The two graphs share nodes and edges; they differ in weights and in the edges that are forced
-// or banned. Cost is the caller's: a function of the two trees. What always holds: every pair
-// that is tried has all forced edges and no banned one, agrees on every tied edge, and weighs
-// at most the least weight plus the excess. The same input gives the same pair.
+// The two graphs share nodes and edges; they differ in weights and in the edges that are forced or
+// banned. The caller defines the cost as a function of the two trees.
+//
+// What always holds: every pair tried contains all forced edges and no banned one, agrees on every
+// tied edge, and weighs at most the least weight plus the excess. The same input gives the same
+// pair.
 #ifndef CT_GRAPH_EXCHANGE_H
 #define CT_GRAPH_EXCHANGE_H
 
 #include "graph/graph.h"
 
-/// What one of the two trees must respect; arrays have one entry per edge.
+/// Constraints on one of the two trees; arrays have one entry per edge.
 struct ct_tree_rules {
     const int *weight;  // negative: never a branch
     const int *rank;    // order among equal weights for the least weight pair; may be NULL
@@ -25,7 +27,7 @@ struct ct_search_options {
     const bool *tied; // per edge: in both trees or in neither (R3); may be NULL
     double limit;     // all pairs are tried if there are at most this many
     int budget;       // evaluations of the descent
-    int excess;       // allowed weight above the least
+    int excess;       // weight allowed above the least
 };
 
 /// A pair of trees by their branches, one entry per edge.
@@ -37,7 +39,7 @@ struct ct_search_stats {
     double npair;                   // pairs by forced and banned edges alone
     int nevaluated;                 // calls of the cost function
     bool exhaustive;                // all pairs were tried
-    bool out_of_budget;             // the descent was cut short
+    bool out_of_budget;             // the descent stopped because its budget was used up
     int weight_least, weight;       // total weight: least possible, of the pair found
     double cost_least_weight, cost; // cost of the least weight pair, of the pair found
 };

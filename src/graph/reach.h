@@ -9,7 +9,7 @@ struct ct_ends {
     int *first, *at;
 };
 
-/// Of the edges with is_in only. Cost O(v + e).
+/// Adjacency lists of the edges with is_in. Cost O(v + e).
 struct ct_ends ct_ends_list(struct ct_arena *a, const struct ct_graph *g, const bool *is_in);
 
 /// Propagate `known` over edges: an edge with one known end makes its other end known. Edges are

@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
-/// An operator OP that is symmetric in the metric M: x' M OP y = y' M OP x. M may be singular on
-/// what OP takes to 0.
+/// A linear operator OP that is symmetric in the inner product of M: x' M OP y = y' M OP x. M may
+/// be singular if OP maps its null space to 0.
 struct ct_operator {
     /// y (n, out) = OP x; Mx (n) = M x
     void (*apply)(void *data, double *y, const double *x, const double *Mx);
