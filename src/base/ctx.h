@@ -22,7 +22,7 @@ struct ct_mark {
     const char *file;
     int line, column;
     bool
-        is_table; // in a table file that a model names: its lines are not shown, since it may be any file
+        is_table; // in a table file of a model, which may be any file: its lines are not shown
 };
 
 enum ct_code {
