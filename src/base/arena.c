@@ -36,8 +36,8 @@ struct ct_arena {
 // Limit: smallest and largest chunk, header included: from one page to two large pages, doubling.
 // Bounds the number of chunks and the unused memory.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
-// malloc and are zeroed when memory is given out.
+// Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come
+// from malloc and are zeroed when memory is allocated.
 static const size_t least_page_chunk = 1 << 18;
 
 // size: with its header.

@@ -21,8 +21,8 @@
 struct ct_mark {
     const char *file;
     int line, column;
-    bool
-        is_table; // in a table file of a model, which may be any file: its lines are not shown
+    // in a table file of a model, which may be any file: its lines are not shown
+    bool is_table;
 };
 
 enum ct_code {

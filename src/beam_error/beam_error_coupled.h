@@ -5,10 +5,11 @@
 // the velocity V = B u + V_t in axes of the beam. With the shapes of beam_error_modal.h, to first
 // order in their amplitudes x,
 //
-//     M u' + G x'' = Q - B' r(x, x'),        G = B' p, p: momentum of the base's six motions in a shape
+//     M u' + G x'' = Q - B' r(x, x'),        G = B' p
 //     (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 + G' u' = F
 //
-// for the linear, the foreshortened and the exact beam. r: reaction on the base by inertia and
+// for the linear, the foreshortened and the exact beam. p: momentum of the base's six motions in a
+// shape; r: reaction on the base by inertia and
 // weight of the deflection, without the part of x''. Each beam model has a base of its own, because
 // the neglected terms change its motion too. The implicit midpoint rule is used with the same steps
 // for all three, so that their differences are those of the models.

@@ -55,8 +55,8 @@ struct ct_beam_error_modal {
     double t;
     double base[9]; // angular velocity, velocity, weight per mass; axes of the beam
     double error[CT_BEAM_MODELS], deflection; // largest so far
-    double end_deflection,
-        unexplained; // largest difference of the simulated and the actual end deflection of the linear beam
+    // at the end of the beam: largest actual deflection; largest difference to that of the shapes
+    double end_deflection, unexplained;
 };
 
 /// w_x, w_x' and w_y w_z, which couple the planes.

@@ -35,8 +35,8 @@ struct line {
     double *K, *M;      // lower triangles, A(i, j) at i - j + (band + 1) j
     double *Kg[2];      // geometric stiffness with P1, P2
     double *carried[2]; // int shape m dx, int shape m x dx
-    double *
-        beyond; // by element and one more: int m x and int m from its start to the end of the beam (2 x)
+    // by element and one more: int m x and int m from its start to the end of the beam (2 x)
+    double *beyond;
     double *value; // of symbols
     struct lump *lump;
     size_t nlump;

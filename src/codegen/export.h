@@ -44,8 +44,8 @@ struct ct_export_motion {
     long nstep;     // calls of NAME_step between two samples
     size_t nsample; // 0: no motion is known
     double *y;      // (nsample x (nq + nu))
-    double
-        tolerance; // of each number, relative to the largest value of its coordinate or speed
+    // of each number, relative to the largest value of its coordinate or speed
+    double tolerance;
 };
 
 struct ct_export {

@@ -77,8 +77,8 @@ struct ct_loop {
 struct ct_reroll {
     struct ct_loop *loop; // ascending; loops of one stretch are adjacent
     size_t nloop;
-    uint32_t *
-        slot; // by value: slot of a result of a loop, or CT_REROLL_OUT; CT_VALUE_NONE for others
+    // by value: slot of a result of a loop, or CT_REROLL_OUT; CT_VALUE_NONE for others
+    uint32_t *slot;
     struct ct_copy *table; // constants and parameters by row: copied once, at prepare
     size_t ntable, table_cap;
     uint32_t nwork;   // size of the work array in slots

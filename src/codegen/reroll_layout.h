@@ -47,8 +47,8 @@ struct ct_source {
         CT_SOURCE_RESULTS,
         CT_SOURCE_COLUMN
     } kind;
-    uint32_t
-        at; // instruction of the body; value; input at row 0; instruction of the other body; column
+    // instruction of the body; value; input at row 0; instruction of the other body; column
+    uint32_t at;
     uint32_t other; // CT_SOURCE_RESULTS: index of the repetition
     int32_t row,
         // CT_SOURCE_RESULTS: its row for row 0, and its rows per row; CT_SOURCE_INPUTS: step is the

@@ -1,8 +1,8 @@
 // A beam as read: straight along its own x axis, from 0 to `length`.  (formulation 1.2, 5.3)
 //
 //     node 0 ---- element 1 ---- node 1 ---- ... ---- element N ---- node N
-//     body frame                 u v w rx ry rz of each: displacements along the beam's axes, right-handed
-//                                rotations (ry = -dw/dx, rz = dv/dx)
+//     body frame                 u v w rx ry rz of each: displacements and right-handed rotations
+//                                along the beam's axes (ry = -dw/dx, rz = dv/dx)
 //
 // What always holds after ct_model_read: length > 0; end[] increases strictly and ends at `length`;
 // values have the right dimension and sign. Only values of section and material contain the symbol
@@ -60,8 +60,8 @@ struct ct_beam {
     int nelement;
     const ct_ex *end; // [m] ends of elements; end[nelement - 1] is `length`
     bool is_even;     // all elements have equal length
-    const double *
-        cut; // [m] positions of jumps and kinks of section or material, ascending: elements end there
+    // [m] ascending: positions of jumps and kinks of section or material; elements end there
+    const double *cut;
     int ncut;
     bool is_cut;           // cuts were added to the ends of elements in the file
     ct_ex E, G;            // [Pa]; may contain x; G is 0 where neither G nor nu is given
@@ -70,8 +70,8 @@ struct ct_beam {
     bool has_rotary;       // `rotary_inertia` is neither absent nor false
     bool misses_rotary;    // `rotary_inertia: true` was given, but lumped mass has none
     ct_ex rotary[3];       // inertia per length about x, y, z [kg m]; may contain x
-    ct_ex
-        twist_inertia; // rho (Iy + Iz), for twist where torsion is present and has_rotary is false
+    // rho (Iy + Iz), for twist where torsion is present and has_rotary is false
+    ct_ex twist_inertia;
     enum ct_beam_theory theory;
     ct_ex shear_factor[2]; // Timoshenko shear factors along y and along z; may contain x
     enum ct_beam_integration integration;
@@ -82,8 +82,8 @@ struct ct_beam {
     bool lacks_quadratic;       // quadratic_velocity: false
     bool has_quadratic_twist;   // twist: quadratic
     bool has_quadratic_stretch; // stretch: quadratic
-    unsigned
-        known; // bits: deformations whose stiffness is given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
+    // bits: deformations with given stiffness, not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
+    unsigned known;
     bool deformation_given;
     unsigned deformation;                  // bits; CT_BEAM_ALL unless given
     int modes;                             // 0: nodal coordinates

@@ -95,7 +95,7 @@ enum { CT_MAX_COORD = 12, CT_MAX_ROW = 6 };
 ///
 ///       length      q = along . d                        u = along . d'
 ///       angle       q = angle about `about` from v (axes of `from`) to R w (w in axes of `to`)
-///                   u = (from . w_rel) + (to . w_rel),   w_rel = angular velocity of `to` in `from`
+///                   u = (from . w_rel) + (to . w_rel),   w_rel: angular velocity, `to` in `from`
 ///       quaternion  first of the four stored numbers; u = components of w_rel in axes of `to`
 enum ct_measure_kind { CT_MEASURE_LENGTH, CT_MEASURE_ANGLE, CT_MEASURE_QUATERNION };
 struct ct_measure {
@@ -116,11 +116,11 @@ struct ct_motion {
     ct_ex coord[CT_MAX_COORD]; // in:  symbols (or driver expressions) of the coordinates
     const double *value; // in:  values of all symbols at the start, used only to choose axes
     ct_ex3 d;            // out: [m]
-    int nturn; // out: number of successive rotations, each about an axis of the frame rotated so far
+    int nturn;           // out: successive rotations, about axes of the frame rotated so far
     struct ct_turn turn[CT_MAX_COORD];
-    int quaternion; // index of the first of 4 coordinates that give a 3-dof rotation, or -1.
-        // The quaternion is then the whole rotation: nturn = 0. Constraint rows of the
-        // joint as a chord. Translational: directions in axes of `from`.
+    // index of the first of 4 coordinates that are the whole rotation (then nturn = 0), or -1
+    int quaternion;
+    // constraint rows of the joint as a chord; translational: directions in axes of `from`
     int ntrans;
     ct_ex3 trans[3];
     // Rotational: pairs (s | t), s in axes of `from`, t in axes of `to`, with s . R t constant.
@@ -128,8 +128,8 @@ struct ct_motion {
     ct_ex3 rot_from[3], rot_to[3];
 
     int nmeasure; // length and angle: one per coordinate; quaternion: one for its four
-    struct ct_measure
-        measure[CT_MAX_COORD]; // last member: ct_motion_keep omits the unused part
+    // last member: ct_motion_keep omits the unused part
+    struct ct_measure measure[CT_MAX_COORD];
 };
 
 /// Start values of a joint: `initial: {q:, u:, rotate:, guess:}`. q has one entry per stored
@@ -171,8 +171,8 @@ struct ct_component_class {
     const char *across, *through; // terminal equations, for `components` and `--show terminal`
     int ncoord, nfree;            // joints; custom: -1, from its list of coordinates
     bool always_branch;           // joints without constraint rows as a chord: screw, custom
-    bool
-        is_moment_free; // joints and forces: transmits no moment, except by springs, dampers and efforts of joints
+    // joints and forces: transmits no moment, except by springs, dampers, efforts of joints
+    bool is_moment_free;
     enum ct_applied_load applied; // forces
     bool is_standard;             // class of a component without `type`; at most one per family
     /// Joints with motion: fill `m` from the instance. NULL for distance and gear.

@@ -112,9 +112,8 @@ struct ct_model {
     struct ct_output *output;
     size_t noutput, output_cap;
     struct ct_simulation simulation;
-    unsigned char *
-        decided; // by symbol: a count depends on it, so it determines the structure; NULL: none does
-    double *value; // by number of symbol: t (0) and the parameters
+    unsigned char *decided; // by symbol: a count (structure) depends on it; NULL: none does
+    double *value;          // by number of symbol: t (0) and the parameters
     struct ct_names parameter_index, state_index; // names -> indices
     struct ct_names frame_index, body_index, joint_index, force_index;
 };

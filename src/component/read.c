@@ -14,8 +14,8 @@ static const char *const top_keys[]
 
 struct group {
     const struct ct_finding *first; // an error or warning; its notes follow
-    struct ct_mark
-        mark; // first position in the model file itself: for a table, where it is used
+    // first position in the model file itself: for a table, where it is used
+    struct ct_mark mark;
     size_t n, number;
 };
 
@@ -81,8 +81,7 @@ static const char *stem(struct ct_reader *r)
     const char *dot = strrchr(base, '.');
     char *name
         = ct_arena_strndup(r->a, base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
-    for (char *c = name; *c;
-         c++) // control characters, which could steer a terminal, are removed
+    for (char *c = name; *c; c++) // replace control characters
         if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
     return name;

@@ -1,7 +1,9 @@
 // See read_stl.h.
 //
-//     text     solid NAME { facet normal x y z  outer loop { vertex x y z } three times endloop endfacet } endsolid NAME
-//     binary   80 bytes, number n of triangles (4), n times: normal (12), corners (36), attribute (2); little-endian
+//     text     solid NAME { facet normal x y z  outer loop { vertex x y z } three times
+//              endloop endfacet } endsolid NAME
+//     binary   80 bytes, number n of triangles (4), n times: normal (12), corners (36),
+//              attribute (2); little-endian
 //
 // A file is binary if its length is the one that its number of triangles asks for: some binary
 // files begin with "solid", too.

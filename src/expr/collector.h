@@ -13,8 +13,8 @@ struct ct_atom {
     ct_ex e;
     uint32_t angle; // 1 + the angle whose sine or cosine this is, 0 for other atoms
     bool is_sine;
-    const struct ct_poly *
-        square; // polynomial of its square, for a square root or the first symbol of a quaternion
+    // polynomial of its square, for a square root or the first symbol of a quaternion
+    const struct ct_poly *square;
 };
 
 struct ct_angle {

@@ -98,8 +98,8 @@ struct ct_table {
     size_t n;
     const double *x, *y; // x strictly increasing
     const double *m; // slopes at the points (cubic Hermite of the natural spline), NULL: linear
-    bool
-        holds; // piecewise constant: y[i] from x[i] to x[i + 1]; y[0] before, the last after all
+    // piecewise constant: y[i] from x[i] to x[i + 1]; y[0] before, the last after all
+    bool holds;
 };
 
 struct ct_exs {
@@ -112,8 +112,8 @@ struct ct_exs {
     size_t ntable, table_cap;
     uint16_t *kinds;        // per node: bit set of the kinds of symbols below it
     struct ct_exlink *link; // per node
-    uint32_t *
-        hash; // constants, and nodes in no list; open addressing: 0 free, else id + 1
+    // constants, and nodes in no list; open addressing: 0 free, else id + 1
+    uint32_t *hash;
     size_t hash_size, nhash;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;

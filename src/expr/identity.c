@@ -209,8 +209,8 @@ static uint32_t turned(const struct ct_collector *c, uint32_t atom)
 // Merge k R f(a) g(b) with its partner, in which both functions are exchanged, if the coefficients
 // match:
 //
-//     k cos a cos b + k sin a sin b = k cos(a - b)      k sin a cos b + k cos a sin b = k sin(a + b)
-//     k cos a cos b - k sin a sin b = k cos(a + b)      k sin a cos b - k cos a sin b = k sin(a - b)
+//     k cos a cos b + k sin a sin b = k cos(a - b)     k sin a cos b + k cos a sin b = k sin(a + b)
+//     k cos a cos b - k sin a sin b = k cos(a + b)     k sin a cos b - k cos a sin b = k sin(a - b)
 static bool merge_factors(struct ct_collector *c, struct ct_poly p, const struct ct_term *t,
                           uint32_t f, uint32_t g, const struct ct_term **partner,
                           struct ct_poly *merged)

@@ -20,8 +20,8 @@
 struct ct_text {
     const char *text;
     struct ct_mark mark; // position of the value, including its quote
-    bool
-        is_exact; // character k at column mark.column + offset + k; else errors show mark
+    // character k at column mark.column + offset + k; else errors show mark
+    bool is_exact;
     int offset; // 1 if the text follows a quote
 };
 

@@ -77,8 +77,8 @@ const char *ct_latex_quoted(struct ct_arena *a, const char *name);
 /// Estimated width of a LaTeX formula (length characters of s) on the page [pt], in Computer Modern
 /// of 10 pt, to a few per cent.
 size_t ct_latex_width(const char *s, size_t length);
-/// Layout: width of a line [pt], that of the class article at 10 pt; a fraction with a wider part is
-/// printed as a product.
+/// Layout: width of a line [pt], that of the class article at 10 pt; a wider fraction is printed as
+/// a product.
 enum { CT_LATEX_LINE = 345 };
 /// A C identifier from a name: characters that C does not allow become _, a prime becomes d.
 /// Different names can give the same identifier; the caller must tell them apart.

@@ -11,8 +11,8 @@ struct ct_selected_inverse {
     const struct ct_lu_factors *t;
     int *row_start, *in_row; // U without its diagonal, by rows: row starts, indices of entries
     int *column_of;          // by entry of U
-    int *
-        factor; // indices of Z(l, k), in the order of the recursion: i descending, each l, each k
+    // indices of Z(l, k), in the order of the recursion: i descending, each l, each k
+    int *factor;
     double *Z; // entries on the pattern of U, then of L
 };
 
