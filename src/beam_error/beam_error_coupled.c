@@ -497,11 +497,11 @@ static double finest(const struct ct_beam_error_modal *s)
 void ct_beam_error_coupled_advance(struct ct_beam_error_coupled_run *r,
                                    struct ct_beam_error_modal *s, double t, double glance)
 {
-    const double from = s->t,
-                 // Derived: 1e-9 exceeds the round-off of times, so that an interval of a whole
-        // number of steps is not given another one
+    const double from
+        = s->t,
+        // Derived: 1e-9 exceeds the round-off of times: a whole number of steps stays it
         asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
-                 n = fmin(asked, MOST_STEPS);
+        n = fmin(asked, MOST_STEPS);
     for (double i = 0; i < n && !r->is_lost; i++) {
         for (int m = 0; m < CT_BEAM_MODELS; m++)
             r->is_lost |= !step(r, s, m, from + i / n * (t - from), (t - from) / n);

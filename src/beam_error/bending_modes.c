@@ -11,10 +11,10 @@
 
 // Definition: as CT_ELEMENT_POINTS. Limit: of inverse iteration, after which a mode is omitted
 enum { POINTS = 8, MOST_ITERATIONS = 200 };
-// Derived: the error of a frequency is the square of that of its shape (Rayleigh quotient), which
+// Derived: the error of a frequency is the square of that of the shape (Rayleigh quotient), which
 // is then 1e-6
 static const double arrived = 1e-12; // relative change of a frequency
-// Derived: (50)^2 at 50 times the first frequency: the dynamic part of such a shape is 1/2500 of
+// Derived: 50^2 at 50 times the first frequency: the dynamic part of such a shape is 1/2500 of
 // its static part
 static const double farthest
     = 2500; // omega^2 relative to the first: faster shapes respond statically

@@ -82,7 +82,7 @@ struct ct_beam {
     bool lacks_quadratic;       // quadratic_velocity: false
     bool has_quadratic_twist;   // twist: quadratic
     bool has_quadratic_stretch; // stretch: quadratic
-    // bits: deformations with given stiffness, not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G and J, ...)
+    // bits: deformations with stiffness given and not 0 (AXIAL: area, BENDING_Y: Iy, TORSION: G, J)
     unsigned known;
     bool deformation_given;
     unsigned deformation;                  // bits; CT_BEAM_ALL unless given

@@ -134,7 +134,7 @@ static double size_of(const struct field_check *c, ct_ex e)
 static bool vanishes_at(const struct field_check *c, ct_ex e, double size, double place,
                         const char *what, enum ct_code code)
 {
-    // Derived: exceeds round-off; a shape whose coefficients have ten digits
+    // Derived: coefficients given with ten digits leave up to 1e-9 where a shape should vanish
     const double roundoff = 1e-9, v = field_at(c, e, place);
     if (fabs(v) <= roundoff * size)
         return true;
