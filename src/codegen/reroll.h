@@ -42,14 +42,14 @@ enum ct_reach {
 
 struct ct_operand {
     enum ct_reach reach;
-    // ROW: number of the loop's own instruction; FIXED: value; PLACE: of the work array, for all
-    // rows; NUMBER: one double for all lanes, counted in doubles of the work array; OUT: output;
-    // else the place at row 0, STRIP: of the strip
+    // ROW: index of the instruction in the loop; FIXED: value; PLACE: slot of the work array for all
+    // rows; NUMBER: index of a double of the work array, the same for all lanes; OUT: output; else
+    // the slot of row 0, in STRIP relative to the strip
     uint32_t at;
     int32_t stride;
 };
 
-/// CT_REACH_NUMBER: slot is the index of a double
+/// Copy of a value to the work array. is_number: one double for all lanes; slot counts doubles.
 struct ct_copy {
     uint32_t value, slot; // slot: index in the work array
     bool is_number;

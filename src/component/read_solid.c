@@ -25,7 +25,7 @@ static const char *const colour_values[COUNT(colour_names)] = {
 };
 #undef COLOR
 
-// "#rgb" and "#rrggbb" as the latter; NULL: neither.
+// Convert "#rgb" to "#rrggbb" and copy "#rrggbb"; NULL for any other text.
 static const char *read_digits(struct ct_arena *a, const char *text)
 {
     const size_t n = strlen(text);

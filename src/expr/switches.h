@@ -16,11 +16,12 @@
  *
  * A linear difference is solved directly. Any other is enclosed by bisection with interval
  * arithmetic (Moore, Kearfott and Cloud 2009, chapter 5): no root is missed, and roots closer than
- * the smallest interval count as one.
+ * the smallest interval are merged.
  *
- * value  in    of all symbols but s; entry of s: work
- * place  out   ascending; points closer than 1e-9 (to - from) to each other are one, to an end none
- * most         room in place
+ * value  in    values of all symbols; the entry of s is workspace
+ * place  out   points, ascending; points closer than 1e-9 (to - from) are merged, and points that
+ *              close to an end are omitted
+ * most   in    capacity of place
  *
  * Returns their number, -1 if there are more than `most` or the bisection exceeds its limit.
  * Cost: nodes below f, about 100 times for a difference of higher degree.

@@ -48,7 +48,7 @@ struct ct_search_stats {
 typedef double (*ct_tree_cost)(void *data, const struct ct_tree *T, const struct ct_tree *R);
 
 /**
- * The cheapest pair of spanning trees the search meets.
+ * Find the cheapest pair of spanning trees among those that the search evaluates.
  *
  * Among equal costs the smaller total weight wins, then the pair found first. A descent step
  * tries all neighbours, lightest first, and goes to the best one. A neighbour exchanges a chord
@@ -57,14 +57,14 @@ typedef double (*ct_tree_cost)(void *data, const struct ct_tree *T, const struct
  *
  * a       in    holds the result and the trees tried
  * g       in    both graphs' nodes and edges
- * best    out   branches of the pair found; left alone on false
- * stats   out   filled in any case
+ * best    out   branches of the pair found; unchanged if the function returns false
+ * stats   out   set in any case
  *
- * False if no pair keeps the rules (then nevaluated is 0), or if no pair tried has a finite
+ * False if no pair satisfies the rules (then nevaluated is 0), or if no pair tried has a finite
  * cost.
  * Cost    at most max(limit, budget) evaluations and O(e^2) besides each
  * Source  formulation 2.3; the least weight pair is exact (graphic matroid, 2.1), tied edges
- *         are settled by branch and bound
+ *         are decided by branch and bound
  */
 bool ct_tree_search(struct ct_arena *a, const struct ct_graph *g,
                     const struct ct_search_options *options, ct_tree_cost cost, void *data,
