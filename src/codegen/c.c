@@ -72,7 +72,7 @@ const char *ct_c_comment(struct ct_arena *a, const char *s)
     return copy;
 }
 
-// ---- what is needed -----------------------------------------------------------------------------
+// ---- readers of values -------------------------------------------------------------------------
 
 static bool is_statement(const struct writer *w, uint32_t v)
 {

@@ -165,8 +165,8 @@ static uint32_t strip_of(uint32_t count, uint32_t lanes)
 // Choose between one row and several at a time by a cost model: number of instructions.
 static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
 {
-    // Derived: instructions: to gather four doubles, two pairs of loads and a merge; to hand a value
-    // from one part to the next, a store and a load
+    // Derived: instructions: to gather four doubles two pairs of loads and a merge; to pass a value
+    // to the next part, a store and a load
     enum { GATHER = 5, HAND_OVER = 2 };
     for (size_t i = 0; i < p->nrepetition && lanes > 1; i++) {
         struct ct_repetition *r = &p->repetition[i];

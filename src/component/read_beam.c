@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what is asked of single values ------------------------------------------------------------
+// ---- checks of single values -------------------------------------------------------------------
 
 struct work {
     struct ct_reader *r;

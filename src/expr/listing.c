@@ -12,7 +12,7 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- what is counted --------------------------------------------------------------------------
+// ---- counts of operations ----------------------------------------------------------------------
 
 // Comparison and selection (if, min, abs ...) are not counted: they cost no more than a negation.
 static void count_op(struct ct_tape_counts *n, uint32_t op)

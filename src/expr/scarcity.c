@@ -184,7 +184,7 @@ void ct_scarcity_thin(struct ct_scarcity *s, long most)
     }
 }
 
-// ---- what is left ------------------------------------------------------------------------------
+// ---- remaining vertices ------------------------------------------------------------------------
 
 size_t ct_scarcity_nodes(const struct ct_scarcity *s, struct ct_arena *a, ct_ex **node)
 {

@@ -26,8 +26,8 @@ struct ct_operator {
  * nev     in   number of eigenvalues wanted, nev > 0
  * room    in   bound on the dimension of the range of OP in the M-orthogonal complement of
  *              `converged`; room > 0
- * converged   in   n x nconverged, eigenvectors found before, of unit M-norm: the search is in their
- *              M-orthogonal complement
+ * converged   in   n x nconverged, eigenvectors found before, of unit M-norm: the search is in
+ *              their M-orthogonal complement
  * start   in   n, start vector
  * theta   out  nev, eigenvalues
  * V       out  n x nev, eigenvectors, V' M V = 1
