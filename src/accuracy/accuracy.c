@@ -212,7 +212,7 @@ static bool choose_methods(struct ct_accuracy *a, const char *text, const char *
     return ok;
 }
 
-// ---- the whole ----------------------------------------------------------------------------------
+// ---- entry points ------------------------------------------------------------------------------
 
 static void choose_best(struct ct_accuracy *a)
 {

@@ -45,7 +45,7 @@ char *ct_ctx_diagnostics(const struct ct_ctx *ctx)
     return ct_print_text(print_diagnostics, ctx);
 }
 
-// ---- diagnostics one by one ---------------------------------------------------------------------
+// ---- access to diagnostics ---------------------------------------------------------------------
 
 // Was the work interrupted, without a diagnostic that says how far it came?
 static bool is_silently_interrupted(const struct ct_ctx *ctx)

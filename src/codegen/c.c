@@ -72,7 +72,7 @@ const char *ct_c_comment(struct ct_arena *a, const char *s)
     return copy;
 }
 
-// ---- readers of values -------------------------------------------------------------------------
+// ---- statements and readers of values ----------------------------------------------------------
 
 static bool is_statement(const struct writer *w, uint32_t v)
 {

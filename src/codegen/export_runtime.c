@@ -770,7 +770,7 @@ static const char text_thesmoothstep[]
       "}\n"
       "\n";
 
-// ---- what follows from a state ----------------------------------------------------------------
+// ---- functions of a state ----------------------------------------------------------------------
 
 static const char text_parameters[] = "void @_parameters(double *in)\n"
                                       "{\n"
@@ -836,7 +836,7 @@ static const char text_reactions[]
       "}\n"
       "\n";
 
-// ---- the whole --------------------------------------------------------------------------------
+// ---- entry point -------------------------------------------------------------------------------
 
 static void put(struct ct_export_text *t, const char *s)
 {

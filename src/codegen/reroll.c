@@ -7,7 +7,7 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- how operands are reached -----------------------------------------------------------------
+// ---- addresses of operands ---------------------------------------------------------------------
 
 static bool is_made_before(const struct ct_repetitions *p, const struct ct_repetition *r,
                            uint32_t v)

@@ -43,8 +43,8 @@ enum ct_reach {
 struct ct_operand {
     enum ct_reach reach;
     // ROW: index of the instruction in the loop; FIXED: value; PLACE: slot of the work array, for
-    // all rows; NUMBER: index of a double of the work array, the same for all lanes; OUT: output; else
-    // the slot of row 0, in STRIP relative to the strip
+    // all rows; NUMBER: index of a double of the work array, the same for all lanes; OUT: output;
+    // else the slot of row 0, in STRIP relative to the strip
     uint32_t at;
     int32_t stride;
 };

@@ -183,7 +183,7 @@ static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
     }
 }
 
-// ---- places -------------------------------------------------------------------------------------
+// ---- slots of the work array -------------------------------------------------------------------
 
 static uint32_t place_of(const struct ct_repetition *r, uint32_t number, int32_t row)
 {

@@ -6,7 +6,7 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- where values are -------------------------------------------------------------------------
+// ---- registers and homes of values -------------------------------------------------------------
 
 uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area)
 {
@@ -463,7 +463,7 @@ static void roll_up(struct ct_emitter *e)
     e->nfixed = e->nwork = e->reroll.nwork;
 }
 
-// ---- the whole --------------------------------------------------------------------------------
+// ---- entry point -------------------------------------------------------------------------------
 
 static void place_values(struct ct_emitter *e, const uint32_t *home)
 {

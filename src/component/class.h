@@ -185,7 +185,7 @@ struct ct_component_class {
     const char *signals; // their names for messages: "force, length and rate"
 };
 
-// ---- what classes of joints use to fill a motion ------------------------------------------------
+// ---- functions for classes of joints to define a motion ----------------------------------------
 
 /// The axis given under `key`; if not given, coordinate axis number `standard`.
 ct_ex3 ct_instance_axis(struct ct_exs *x, const struct ct_instance *self, const char *key,

@@ -58,7 +58,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
             ctx->diagnostic[k++] = group[g].first[i];
 }
 
-// ---- the top of the file -----------------------------------------------------------------------
+// ---- top-level keys ----------------------------------------------------------------------------
 
 static void check_version(struct ct_reader *r)
 {

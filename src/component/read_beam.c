@@ -106,7 +106,7 @@ static bool check_scalars(const struct work *w)
     return check_density(w) && ok;
 }
 
-// ---- which keys go together --------------------------------------------------------------------
+// ---- combinations of keys ----------------------------------------------------------------------
 
 static unsigned find_known(const struct work *w)
 {
@@ -271,7 +271,7 @@ static bool fill_elements(const struct work *w)
     return ok;
 }
 
-// ---- the section along the axis ----------------------------------------------------------------
+// ---- section and material along the axis -------------------------------------------------------
 
 // Sample points inside an element for checks of the section; its ends may be jumps or cusps. Limit:
 // number of points; a product of four linear functions is determined by them.

@@ -299,7 +299,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_n
     return ok;
 }
 
-// ---- a driver and the start it contradicts -----------------------------------------------------
+// ---- start values that contradict a driver -----------------------------------------------------
 
 // Value of an expression of t at t = 0; false if it has none.
 static bool value_at_start(struct ct_reader *r, ct_ex e, double *v)

@@ -179,7 +179,7 @@ static bool read_text(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
     return true;
 }
 
-// ---- either -----------------------------------------------------------------------------------
+// ---- text or binary ----------------------------------------------------------------------------
 
 static bool is_text(const char *text, size_t n)
 {
