@@ -1,10 +1,11 @@
-// Speed against error: methods x tolerances against a converged reference.
+// Work-precision study: methods x tolerances against a converged reference.
 //
-//     reference: tight runs of different methods that agree, or a file
+//     reference: runs with tight tolerances of different methods that agree, or a file
 //     ladder of a method: loose -> tight, each setting run several times  -> a point each
 //
-// What always holds: settings run one after the other in this thread; a ladder ends when its method has used
-// up its share of the time; a setting that fails is a point without an error, not a failure of the whole.
+// What always holds: settings run one after the other in this thread. A ladder ends when its method
+// has used up its share of the time. A setting that fails is a point without an error, not a
+// failure of the study.
 #include "accuracy/accuracy.h"
 
 #include "base/guard.h"
@@ -14,26 +15,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Chosen: the error that is asked about, as docs/cli.md tells.
+// Chosen: the default of the wanted error, as documented in docs/cli.md.
 static const double standard_error = 1e-6;
-// Limit: six methods within about a minute; more where already the reference takes long.  [s]
+// Limit: six methods in about a minute; more if the reference alone takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;
-// Limit: of the time to measure times, with the table only less noisy.
-enum { REPEATS = 3, MOST_REPEATS = 101 }; // the latter of short ones
+// Limit: of the time spent on repetitions, which only make measured times less noisy.
+enum { REPEATS = 3, MOST_REPEATS = 101 }; // MOST_REPEATS: of short runs
 static const double short_times = 0.05;   // Limit: of one setting together  [s]
 enum { MOST_PER_DECADE = 10 };            // Limit: tolerances have two digits; with a message
-// A reference should be better than the error that is asked about by this factor. Chosen: a warning
-// says so.
+// A warning is given unless the reference is better than the wanted error by this factor. Chosen:
+// by judgement.
 static const double reference_margin = 0.1;
-// Limit: steps of fixed length: as many halvings, from the spacing of samples but at least so many in the run.
+// Limit: fixed steps: number of halvings, from the spacing of samples, but at least this number of
+// steps in the run.
 static const int most_steps_of_ladder = 7;
 static const double least_fixed_steps = 100;
-// Or, from a step that is asked for, so many powers of ten.
+// With a given step: number of powers of ten covered.
 enum { DECADES_OF_STEPS = 2 }; // Limit: rows of a table
-// Errors that differ by this part of themselves are the same. Derived: the table shows two digits.
+// Errors that differ by less than this part of themselves are equal. Derived: the table shows two
+// digits.
 static const double same_error = 0.01;
 
-// ---- ladders ---------------------------------------------------------------------------------------------
+// ---- ladders ------------------------------------------------------------------------------------
 
 static int compare_doubles(const void *a, const void *b)
 {
@@ -41,7 +44,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Of n > 0 numbers, which are sorted; of an even number the lower one of both.
+// Median of n > 0 numbers, which are sorted in place; the lower one of both if n is even.
 static double median(double *v, int n)
 {
     qsort(v, (size_t)n, sizeof *v, compare_doubles);
@@ -59,7 +62,7 @@ static bool compare_row(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-// One setting, several times in place while the time lasts.
+// Run one setting several times in place while the time lasts.
 static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s, double end)
 {
     struct ct_work_precision_point p;
@@ -78,12 +81,13 @@ static enum ct_ending measure(struct ct_accuracy *a, const struct ct_setting *s,
     if (ending == CT_RUN_REFUSED)
         return ending;
     // Definition: [ns]
-    p.seconds = round(median(seconds, n) * 1e9) / 1e9; // what the clock resolves
+    p.seconds = round(median(seconds, n) * 1e9) / 1e9; // resolution of the clock
     CT_PUSH(a->own.model, a->point, a->npoint, a->point_cap, p);
     return ending;
 }
 
-// Powers of ten from loose to tight. The one that is chosen automatically begins explicit.
+// Range of tolerances as powers of ten, from loose to tight. The automatic method begins with an
+// explicit one.
 static void choose_powers(const char *name, int *first, int *last)
 {
     const struct ct_method *m = ct_method_find(name);
@@ -92,11 +96,11 @@ static void choose_powers(const char *name, int *first, int *last)
     *last = !is_implicit ? 11 : is_low ? 7 : 9;
 }
 
-// Of the ladder that begins at point[start]: tighter tolerances do not change the error of a beam any more, it is that of its
-// elements or formulation.
+// In the ladder that begins at point[start], do tighter tolerances no longer change the error of a
+// beam? The rest is then the error of its elements or formulation.
 static bool shows_mesh(const struct ct_accuracy *a, size_t start)
 {
-    // Limit: settings that have shown that more bring nothing
+    // Limit: number of settings without a change
     enum { SETTINGS = 3 };
     if (!a->variant || a->npoint < start + SETTINGS)
         return false;
@@ -107,7 +111,7 @@ static bool shows_mesh(const struct ct_accuracy *a, size_t start)
     return is_same;
 }
 
-// Two digits of 10^power: 2.2e-05, and 1e-05, not 1.0000000000000001e-05.
+// 10^power to two digits: 2.2e-05, and 1e-05 rather than 1.0000000000000001e-05.
 static double tolerance_at(double power)
 {
     char text[CT_NUMBER_SIZE];
@@ -137,7 +141,7 @@ static bool climb_tolerances(struct ct_accuracy *a, const char *name, double end
     return ending != CT_RUN_REFUSED;
 }
 
-// Ten digits of v: 1e-4, not 9.9999999999999991e-05.
+// v to ten digits: 1e-4 rather than 9.9999999999999991e-05.
 static double readable(double v)
 {
     char text[CT_NUMBER_SIZE];
@@ -145,8 +149,8 @@ static double readable(double v)
     return strtod(text, NULL);
 }
 
-// Halved again and again, from the spacing of samples on: steps end on them, so longer ones make no difference. From a step
-// that is asked for: that one alone, or as many as are asked for in a power of ten.
+// Ladder of fixed steps. Default: halvings of the spacing of samples, since steps end at samples.
+// With a given step: that one alone, or as many per power of ten as requested.
 static bool climb_steps(struct ct_accuracy *a, const char *name, double end)
 {
     const double spacing = a->duration / fmax(1, (double)a->nsample - 1);
@@ -175,8 +179,8 @@ static bool climb(struct ct_accuracy *a, const char *name)
         || (ct_ctx_hand_over(&a->own, &a->said), false);
 }
 
-// method (ct_nmethod + 1, out): those asked for, once each, in the order of the table of methods, the automatic choice first. It
-// counts as one where it is listed with others.
+// method (ct_nmethod + 1, out): the requested methods, once each, in the order of the table of
+// methods, the automatic choice first. If listed with others, it counts as one.
 static bool choose_methods(struct ct_accuracy *a, const char *text, const char **method, int *n)
 {
     static const char usual[] = "dopri5,dop853,rk4,radau5,generalized-alpha", chosen[] = "auto";
@@ -208,19 +212,19 @@ static bool choose_methods(struct ct_accuracy *a, const char *text, const char *
     return ok;
 }
 
-// ---- the whole -------------------------------------------------------------------------------------------
+// ---- entry points ------------------------------------------------------------------------------
 
 static void choose_best(struct ct_accuracy *a)
 {
     if (a->uncertainty > a->wanted)
-        return; // an error that small cannot be seen
+        return; // an error this small cannot be resolved
     for (size_t i = 0; i < a->npoint; i++)
         if (a->point[i].error <= a->wanted
             && (!a->best || a->point[i].seconds < a->best->seconds))
             a->best = &a->point[i];
 }
 
-// The model as simulate would run it says what is wrong with the options, and how many samples there are.
+// Set up the model as simulate would: this reports wrong options and gives the number of samples.
 static bool learn_sizes(struct ct_accuracy *a)
 {
     const struct ct_simulation *m = &a->system->model.simulation;
@@ -303,7 +307,7 @@ static bool create(void *task)
     struct ct_accuracy *a = c->a;
     ct_own_init(&a->own);
     a->said.model = a->own.model;
-    a->system = ct_system_borrow(&a->own, a->system); // all runs share what is derived later
+    a->system = ct_system_borrow(&a->own, a->system); // all runs share data derived later
     if (a->o->bar) {
         ct_progress_init(&a->progress, a->o->bar, "accuracy");
         ct_progress_update(&a->progress, 0);
@@ -346,7 +350,7 @@ void ct_accuracy_destroy(struct ct_accuracy *a)
     free(a);
 }
 
-// ---- what it says ------------------------------------------------------------------------------------------
+// ---- results -----------------------------------------------------------------------------------
 
 struct output {
     struct ct_ctx *ctx;
@@ -420,7 +424,7 @@ static void print_left_out(const struct ct_accuracy *a, FILE *out)
         fputs(": not in the reference, or zero but for round-off\n", out);
 }
 
-// The cheapest of those with the least error; NULL if all failed.
+// The cheapest point among those with the least error; NULL if all failed.
 static const struct ct_work_precision_point *find_nearest(const struct ct_accuracy *a)
 {
     const struct ct_work_precision_point *nearest = NULL;

@@ -1,5 +1,5 @@
-// The reference of a study of speed against error: tight runs of different methods that agree, runs
-// in quadruple precision, or a file.
+// Reference of a work-precision study: runs with tight tolerances of different methods that agree,
+// runs in quadruple precision, or a file.
 #include "accuracy/accuracy.h"
 
 #include "expr/unit.h"
@@ -12,9 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-// Runs that agree to this need no third one to judge. Chosen: 0.01 of the error that is asked about.
+// Agreement of two runs at which no third one is made. Chosen: 0.01 of the default wanted error.
 static const double good_agreement = 1e-8;
-// Times of samples in a file are matched to this part of the run. Derived: files of nine digits.
+// Sample times in a file are matched to this part of the run. Derived: files with nine digits.
 static const double same_time = 1e-9;
 static const double reference_limit = 20, quad_limit = 10; // Limit: [s]
 enum { NREFERENCE = 4 };                                   // Definition: of the lists below
@@ -24,8 +24,8 @@ enum { NREFERENCE = 4 };                                   // Definition: of the
 struct candidate {
     const char *method;
     double rtol;
-    double *row;    // nsample x nresult; NULL: did not come to its end
-    double seconds; // that it took; INFINITY: it had no time to come to its end
+    double *row;    // nsample x nresult; NULL: the run did not finish
+    double seconds; // duration of the run; INFINITY: stopped by its time limit
 };
 
 static bool keep_row(void *user, double t, const double *value, size_t n)
@@ -47,12 +47,12 @@ static bool run_candidate(struct ct_accuracy *a, struct candidate *c)
         c->row = a->store;
         a->reference_seconds = fmax(a->reference_seconds, p.seconds);
     } else {
-        ct_ctx_hand_over(&a->own, &a->said); // forgotten if another one does better
+        ct_ctx_hand_over(&a->own, &a->said); // discarded if another run is better
     }
     return ending != CT_RUN_REFUSED;
 }
 
-// The pair of runs that are nearest to each other; the first of them is the reference.
+// Choose the pair of runs with the least distance; the first of them is the reference.
 static void choose_pair(struct ct_accuracy *a, const struct candidate *c, int n)
 {
     double *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
@@ -83,8 +83,8 @@ static void drop_small(struct ct_accuracy *a)
             a->scale[i] = 0;
 }
 
-// No two came to their end: one alone must do. Its digits are not known, so that what is small
-// counts as round-off.
+// Fewer than two runs finished: take that one. Its accuracy is unknown, so small columns count as
+// round-off.
 static void choose_single(struct ct_accuracy *a, const struct candidate *c, int n)
 {
     for (int i = 0; i < n && !a->reference; i++)
@@ -98,10 +98,11 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
 }
 // ---- in quadruple precision --------------------------------------------------------------
 
-// Two runs in arithmetic that is at least 50 times as slow, and with no fewer steps.
+// Is there time for two runs in quadruple precision, 50 or more times as slow and with at least as
+// many steps?
 static bool has_time(const struct candidate *c)
 {
-    // Chosen: the least that an operation takes longer than in double precision
+    // Chosen: least slowdown of both runs together against double precision
     const double least_factor = 100;
     return c->seconds * least_factor < quad_limit;
 }
@@ -112,15 +113,17 @@ static bool is_in_time(void *user)
     return ct_monotonic_time() < *end;
 }
 
-// Two runs with different steps; the first is the reference if they agree better than runs in
-// double precision do, and with those as well as they among each other.
+// Two runs in quadruple precision with different steps. The first becomes the reference if they
+// agree better than the runs in double precision do, and are as close to those as those are to each
+// other.
 static void run_quad(struct ct_accuracy *a)
 {
-    // Derived: far below the distance of runs in double precision, and four digits apart
+    // Derived: the error of double precision is above 1e-16; both are far below it, and four digits
+    // apart
     const double tolerance[2] = {1e-26, 1e-22};
-    // Chosen: of what is believed
-    const double as_runs_agree = 100; // times the distance of runs in double precision
-    // Derived: 4 units of round-off, with which results are stored
+    // Chosen: factor for "as close as"
+    const double as_runs_agree = 100; // times the distance of the runs in double precision
+    // Derived: 4 units of round-off of stored results, 4 * 2.2e-16
     const double double_rounding = 1e-15;
     double *row[2], *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
     struct ct_sim_options o = a->o->run;
@@ -154,8 +157,8 @@ static void run_quad(struct ct_accuracy *a)
 
 bool ct_accuracy_find_reference(struct ct_accuracy *a)
 {
-    // Definition: none is a setting of the table. Loops lose digits below 1e-13; the last
-    // one is for mechanisms that no second method gets through.
+    // Definition: settings that differ from those of the table. Loops lose digits below 1e-13; the
+    // last setting is for mechanisms that only one method can integrate.
     struct candidate open[NREFERENCE] = {{.method = "dop853", .rtol = 2e-14},
                                          {.method = "dopri5", .rtol = 7e-14},
                                          {.method = "radau5", .rtol = 5e-13},
@@ -170,7 +173,7 @@ bool ct_accuracy_find_reference(struct ct_accuracy *a)
     for (int i = 0; i < NREFERENCE; i++) {
         if (i > 1 && a->uncertainty <= (i < NREFERENCE - 1 ? good_agreement : DBL_MAX))
             continue;
-        if (i == NREFERENCE - 1 && !c[0].row) // stiff
+        if (i == NREFERENCE - 1 && !c[0].row) // stiff system
             // Definition: the last of the list
             c[i] = (struct candidate){.method = "radau5", .rtol = 1e-11};
         if (!run_candidate(a, &c[i]))
@@ -228,7 +231,7 @@ static bool read_field(struct ct_accuracy *a, const struct ct_sheet *sheet, size
                     text);
 }
 
-// The column of that name, or ncolumn.
+// Index of the column of that name, or ncolumn.
 static size_t find_column(const struct ct_sheet *sheet, const char *name)
 {
     size_t c = 0;
@@ -237,7 +240,7 @@ static size_t find_column(const struct ct_sheet *sheet, const char *name)
     return c;
 }
 
-// of (nresult, out): where results stand in the file.
+// of (nresult, out): column of each result in the file.
 static bool find_columns(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t *time,
                          size_t *of)
 {
@@ -258,7 +261,7 @@ static bool find_columns(struct ct_accuracy *a, const struct ct_sheet *sheet, si
     return true;
 }
 
-// The sample at time t, or nsample.
+// Index of the sample at time t, or nsample.
 static size_t find_sample(const struct ct_accuracy *a, double t)
 {
     if (a->nsample < 2 || !(a->duration > 0))
@@ -270,7 +273,7 @@ static size_t find_sample(const struct ct_accuracy *a, double t)
     return fabs(t - at) <= same_time * a->duration ? (size_t)k : a->nsample;
 }
 
-// largest (nresult, in and out): of each column, at the times of samples or not.
+// largest (nresult, in and out): largest value of each column, at sample times and others.
 static bool fill_reference(struct ct_accuracy *a, const struct ct_sheet *sheet, size_t time,
                            const size_t *of, double *largest)
 {
@@ -313,7 +316,7 @@ bool ct_accuracy_read_reference(struct ct_accuracy *a, const char *path)
     if (!fill_reference(a, &sheet, time, of, largest))
         return false;
     ct_accuracy_compare(a, a->reference, a->reference, a->scale);
-    for (size_t i = 0; i < a->nresult; i++) // columns that are round-off stay left out
+    for (size_t i = 0; i < a->nresult; i++) // columns of round-off size are still left out
         a->scale[i] = a->scale[i] > 0 ? fmax(a->scale[i], largest[i]) : 0;
     a->uncertainty = NAN;
     return true;

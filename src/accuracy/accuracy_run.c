@@ -1,4 +1,4 @@
-// One run of a study of speed against error, and the distance of two.
+// One run of a work-precision study, and the distance of two runs.
 #include "accuracy/accuracy.h"
 
 #include "base/guard.h"
@@ -25,7 +25,7 @@ bool ct_accuracy_start_run(struct ct_accuracy *a, const struct ct_setting *s)
     a->sim = ct_sim_create(&a->said, a->system, &o);
     if (!a->sim)
         return false;
-    a->sim->run_options.step = s->step; // not the one of the model
+    a->sim->run_options.step = s->step; // overrides the step of the model
     if (s->rtol > 0) {
         a->sim->run_options.rtol = s->rtol;
         a->sim->run_options.atol = s->rtol / 100;
@@ -52,7 +52,7 @@ enum ct_ending ct_accuracy_start(struct ct_accuracy *a, const struct ct_setting 
     a->sim->deadline = ct_monotonic_time() + limit;
     const struct ct_sim_results results = {.row = row, .user = a};
     const bool ok = ct_sim_run(&a->said, a->sim, &results);
-    ct_guard_poll(); // a run that was interrupted says nothing about its method
+    ct_guard_poll(); // an interrupted run is no result of its method
     p->seconds = a->sim->integrate;
     p->steps = a->sim->report.stats.steps;
     p->evaluations = a->sim->report.stats.evaluations;

@@ -13,8 +13,8 @@
 struct chunk {
     struct chunk *next;
     size_t size, used;  // bytes of payload
-    size_t zeroed_from; // of the payload: bytes from here on have not been used, and are zero
-    size_t ready;       // of pages: bytes from the chunk's start that are there
+    size_t zeroed_from; // offset in the payload from which bytes are unused and still zero
+    size_t ready;       // of pages: offset up to which they are populated
     bool is_pages;      // from pages.h; else from malloc
     _Alignas(16) unsigned char data[];
 };
@@ -27,19 +27,20 @@ struct cleanup {
 
 struct ct_arena {
     struct chunk *head;
-    struct chunk *spare;     // cleared, in the order in which they came
+    struct chunk *spare;     // cleared chunks, in the order of their allocation
     struct cleanup *cleanup; // in a chunk
-    struct cleanup *under;   // of the owner, for this arena; may be NULL
+    struct cleanup *under;   // cleanup in the owner that destroys this arena; may be NULL
     size_t total;
 };
 
-// Limit: bytes of a chunk with its header, of the number of chunks and of memory that is not used: they double from one page to the size of two large pages.
+// Limit: smallest and largest chunk, header included: from one page to two large pages, doubling.
+// Bounds the number of chunks and the unused memory.
 static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
-// Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come from
-// malloc and are zeroed when memory is given out.
+// Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come
+// from malloc and are zeroed when memory is allocated.
 static const size_t least_page_chunk = 1 << 18;
 
-// size: of all.
+// size: with its header.
 static struct chunk *chunk_create(size_t size)
 {
     ct_guard_poll();
@@ -47,7 +48,7 @@ static struct chunk *chunk_create(size_t size)
         return NULL;
     const bool is_pages = size >= least_page_chunk;
     struct chunk *c = is_pages ? ct_pages_create(size) : malloc(size);
-    // a block of its own may be a table most of whose pages are never touched
+    // most pages of a large block may never be touched, so a block of its own is not populated
     const size_t ready = !c || !is_pages      ? 0
                        : size > largest_chunk ? size
                                               : ct_pages_extend(c, size, 0, sizeof *c);
@@ -156,8 +157,7 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     if (from->under)
         from->under->data = NULL;
     into->total += from->total;
-    struct chunk **last
-        = &from->head; // before the chunks of `into` but its newest, which has room
+    struct chunk **last = &from->head; // behind the newest chunk of `into`, which has free room
     while (*last)
         last = &(*last)->next;
     struct chunk **second = into->head ? &into->head->next : &into->head;
@@ -172,11 +172,11 @@ void ct_arena_merge(struct ct_arena *into, struct ct_arena *from)
     free(from);
 }
 
-// Padding before an allocation of this size. Arrays start on a cache line, so that SIMD loads of
-// four doubles do not cross lines.
+// Padding before an allocation of this size. Large arrays start on a cache line, so that SIMD loads
+// of four doubles do not cross lines.
 static size_t padding(const struct chunk *c, size_t size)
 {
-    // Definition: bytes of a cache line. Limit: of what padding wastes, a quarter
+    // Definition: bytes of a cache line. Limit: of waste by padding, a quarter
     const size_t line = 64, least = 256;
     return size < least ? 0 : -((uintptr_t)c->data + c->used) & (line - 1);
 }
@@ -186,7 +186,7 @@ static bool has_room(const struct chunk *c, size_t size)
     return c && c->size - c->used >= size + padding(c, size);
 }
 
-// Make a chunk with room for this size the newest one: a spare one, else a new one of twice the
+// Make a chunk with room for this size the current one: a spare chunk, else a new one of twice the
 // size of the last.
 static struct chunk *next_chunk(struct ct_arena *a, size_t size)
 {
@@ -283,7 +283,7 @@ char *ct_arena_vprintf(struct ct_arena *a, const char *fmt, va_list ap)
         join(joined, fmt, ap);
         return joined;
     }
-    char most[256]; // formatted once where it is short
+    char most[256]; // short texts are formatted once, into this buffer
     va_list again;
     va_copy(again, ap);
     const int n = vsnprintf(most, sizeof most, fmt, ap);
@@ -305,8 +305,9 @@ char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
     return p;
 }
 
-// Arrays double; those of half a megabyte grow eightfold, into a block of their own, whose pages come as they are
-// touched: what is left behind is memory, what is never used is not.
+// Capacities double; arrays of half a megabyte or more grow eightfold, into a block of their own
+// whose pages are populated when touched. The array left behind wastes memory; capacity never used
+// does not.
 static size_t next_cap(size_t cap, size_t size)
 {
     const size_t least = 8; // Limit: of memory

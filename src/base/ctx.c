@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Limit: nobody reads on after so many; the rest is counted.
+// Limit: number of diagnostics that are kept; the rest is only counted.
 enum { MOST_KEPT = 100 };
 
 static void record(struct ct_ctx *ctx, enum ct_severity severity, enum ct_code code,
@@ -52,7 +52,8 @@ void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     va_end(ap);
 }
 
-// Text that may be the file's own, in one line and without what would steer a terminal.
+// Print text that may come from the file, in one line and without control characters, which could
+// steer a terminal.
 static void print_plain(const char *text, FILE *out)
 {
     for (; *text; text++) {
@@ -61,7 +62,7 @@ static void print_plain(const char *text, FILE *out)
     }
 }
 
-// Layout: of a long line so much is shown, and so much of it before the column.
+// Layout: length of the excerpt of a long line, and its part before the column.
 enum { EXCERPT = 250, EXCERPT_BEFORE = 60 };
 
 static bool skip_lines(FILE *f, int n)
@@ -76,7 +77,7 @@ static bool is_end_of_line(int c)
     return c == EOF || c == '\n' || c == '\r';
 }
 
-// The line of a file with a caret under the column; silent when the file cannot be read again.
+// Print the line of a file with a caret under the column; nothing if the file cannot be read again.
 static void print_source_line(struct ct_mark m, FILE *out)
 {
     FILE *f = fopen(m.file, "r");
@@ -142,7 +143,8 @@ void ct_ctx_print(const struct ct_ctx *ctx, FILE *out)
         fprintf(out, "cotree: error: out of memory [E%03d]\n", CT_E_MEMORY);
 }
 
-// Edit distance with adjacent swaps, given up beyond `limit`. Names are short: quadratic is fine.
+// Edit distance with adjacent swaps (Damerau-Levenshtein); stops beyond `limit`. Quadratic, as
+// names are short.
 static size_t edit_distance(const char *a, const char *b, size_t limit)
 {
     enum { LONGEST = 63 }; // Limit: of names that are compared
@@ -178,7 +180,7 @@ const char *ct_nearest(const char *name, const char *const *names, size_t n)
     for (size_t i = 0; i < n; i++) {
         const size_t d = edit_distance(name, names[i], best_distance);
         const size_t given = strlen(name), known = strlen(names[i]);
-        // at least half of the letters agree: `r` is no misspelt `t`
+        // at least half of the letters must agree: `r` is not suggested for `t`
         if (d < best_distance && 2 * d <= (given > known ? given : known)) {
             best_distance = d;
             best = names[i];

@@ -1,7 +1,8 @@
-// What every stage is given: two arenas and the place where diagnostics go.
+// The context that every stage gets: two arenas and the list of diagnostics.
 //
-// Every function that can fail returns bool and, when false, has put at least one diagnostic here;
-// the caller only passes the false on. A stage reports all the errors it can see before it returns.
+// Every function that can fail returns bool. When it returns false, it has put at least one
+// diagnostic here; the caller only returns false too. A stage reports all the errors it can detect
+// before it returns.
 #ifndef CT_BASE_CTX_H
 #define CT_BASE_CTX_H
 
@@ -15,13 +16,13 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/// A place in a text file. Counts from 0 as libyaml does; one is added where it is printed.
-/// file == NULL: no place is known (command line, numerical trouble).
+/// A position in a text file. Counts start at 0 as in libyaml; one is added when it is printed.
+/// file == NULL: no position is known (command line, numerical failure).
 struct ct_mark {
     const char *file;
     int line, column;
-    bool
-        is_table; // of a file that a model names: its lines are not shown, since it may be any file
+    // in a table file of a model, which may be any file: its lines are not shown
+    bool is_table;
 };
 
 enum ct_code {
@@ -42,24 +43,26 @@ struct ct_ctx {
     struct ct_arena *scratch; // one stage; reset by the stage driver
     struct ct_finding *diagnostic;
     size_t ndiagnostic, diagnostic_cap;
-    size_t nerror;  // errors among them
-    bool no_memory; // the guard was reached: E001, which needs no room of its own
-    // of contexts that callers make
-    atomic_bool is_cancelled;     // work that reports here ends: E005
-    const atomic_bool *cancelled; // the same of the context that it is part of; NULL: of none
-    void (*tell)(void *user, const struct ct_diagnostic *diagnostic); // NULL: nobody is told
+    size_t nerror;  // number of errors among them
+    bool no_memory; // out of memory: E001, which is reported without allocating
+    // of contexts that callers create
+    atomic_bool is_cancelled;     // set to cancel the work that reports here: E005
+    const atomic_bool *cancelled; // is_cancelled of the enclosing context; NULL: there is none
+    void (*tell)(
+        void *user,
+        const struct ct_diagnostic *diagnostic); // callback for diagnostics; NULL: none
     void *user;
-    size_t ntold;         // diagnostics that have been
-    bool was_interrupted; // work was cancelled: E005, if no diagnostic says more
-    size_t nunseen;       // diagnostics that were not kept
+    size_t ntold;         // diagnostics already passed to it
+    bool was_interrupted; // work was cancelled: E005, unless a diagnostic says more
+    size_t nunseen;       // diagnostics beyond the limit, counted only
 };
 
-/// Put an error into the context. Always returns false, so that `return ct_error(...)` reads well.
+/// Report an error in the context. Always returns false, for use as `return ct_error(...)`.
 bool ct_error(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt, ...)
     __attribute__((format(printf, 4, 5)));
 void ct_warning(struct ct_ctx *ctx, struct ct_mark mark, enum ct_code code, const char *fmt,
                 ...) __attribute__((format(printf, 4, 5)));
-/// A further sentence to the diagnostic just made, with a mark of its own.
+/// Add a note to the last diagnostic, with a position of its own.
 void ct_note(struct ct_ctx *ctx, struct ct_mark mark, const char *fmt, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -1,20 +1,20 @@
 // See decimal.h.
 //
-//     v = c 2^q            round-off interval: all that reads back as v
+//     v = c 2^q            interval: all reals that read back as v
 //     k = floor(log10(2^q))  so that 10^k <= 2^q: the interval holds one or more multiples of 10^k,
 //                          and at most one multiple of 10^(k+1)
 //
-// v 10^-k, four times over, is found from 128 bits of 10^-k in an integer whose last bit collects
-// what lies below ("rounded to odd"), which is enough to compare with the ends of the interval
-// without error (section 9 of the source). The closest multiple of 10^(k+1) in the interval is the
-// answer, else that of 10^k.
+// The number 4 v 10^-k is computed from 128 bits of 10^-k as an integer whose last bit is set if
+// anything was cut off ("rounded to odd"). This is enough to compare it exactly with the ends of
+// the interval (section 9 of the source). The result is the multiple of 10^(k+1) in the interval,
+// else the closest multiple of 10^k.
 #include "base/decimal.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-// Definition: of the powers of ten in the table
+// Definition: range of the powers of ten in the table
 enum { LEAST = -292, MOST = 324 };
 
 static const uint64_t power[MOST - LEAST + 1][2] = {
@@ -54,7 +54,7 @@ static uint64_t multiply(uint64_t a, uint64_t b, uint64_t *low)
     return hh + (lh >> 32) + (hl >> 32) + (middle >> 32);
 }
 
-// floor(g c 2^-128), its last bit set where something was cut off
+// floor(g c 2^-128), with the last bit set if anything was cut off
 static uint64_t round_to_odd(const uint64_t g[2], uint64_t c)
 {
     uint64_t unused, low;
@@ -62,7 +62,8 @@ static uint64_t round_to_odd(const uint64_t g[2], uint64_t c)
     uint64_t high = multiply(g[0], c, &low);
     low += below;
     high += low < below;
-    return high | (low > 1); // g was rounded upwards: the last bit of `low` may be that
+    return high
+         | (low > 1); // g was rounded upwards, so a last bit of 1 in `low` may be round-off
 }
 
 static struct ct_decimal without_zeros(uint64_t digits, int exponent)
@@ -76,7 +77,7 @@ static struct ct_decimal without_zeros(uint64_t digits, int exponent)
 
 static struct ct_decimal shortest(uint64_t c, int q, bool is_power_of_two)
 {
-    const uint64_t open = c & 1; // ends of the interval belong to it where c is even
+    const uint64_t open = c & 1; // the ends of the interval belong to it if c is even
     const int k = is_power_of_two ? log10_three_quarters_pow2(q) : log10_pow2(q);
     const int h = q + log2_pow10(-k) + 1;
     const uint64_t *g = ct_decimal_power(-k);
@@ -113,7 +114,7 @@ struct ct_decimal ct_decimal_shortest(double v)
     return shortest(c, q, !fraction && exponent > 1);
 }
 
-// Decimal digits of n, the first one first; returns how many.
+// Write the decimal digits of n, most significant first; returns their number.
 static int write_digits(char *text, uint64_t n)
 {
     char reversed[20];
@@ -145,7 +146,7 @@ static size_t format_scientific(char *text, const char *digit, int n, int expone
     return (size_t)(p - text);
 }
 
-// ddd000, ddd.ddd or 0.00ddd; point: digits before the point, perhaps negative
+// Format ddd000, ddd.ddd or 0.00ddd; point: digits before the decimal point, perhaps negative.
 static size_t format_plain(char *text, const char *digit, int n, int point)
 {
     char *p = text;
@@ -166,7 +167,7 @@ static size_t copy_word(char *text, const char *word)
 size_t ct_decimal_format(char text[CT_DECIMAL_SIZE], double v)
 {
     enum { LEAST_PLAIN = -4, MOST_PLAIN = 16 }; // Definition: exponents, as of %.17g
-    if (isnan(v))                               // its sign differs between machines
+    if (isnan(v))                               // the sign of a NaN differs between machines
         return copy_word(text, "nan");
     if (isinf(v))
         return copy_word(text, v < 0 ? "-inf" : "inf");

@@ -1,4 +1,4 @@
-// Contexts from outside, and what guards the entry points; see entry.h.
+// Public contexts, and the guards of entry points; see entry.h.
 #include "base/entry.h"
 
 #include "base/guard.h"
@@ -45,9 +45,9 @@ char *ct_ctx_diagnostics(const struct ct_ctx *ctx)
     return ct_print_text(print_diagnostics, ctx);
 }
 
-// ---- diagnostics one by one ---------------------------------------------------------------------------------
+// ---- access to diagnostics ---------------------------------------------------------------------
 
-// Without a diagnostic that says how far it came.
+// Was the work interrupted, without a diagnostic that says how far it came?
 static bool is_silently_interrupted(const struct ct_ctx *ctx)
 {
     bool is_silent = ctx->was_interrupted;
@@ -64,7 +64,7 @@ size_t ct_ctx_count(const struct ct_ctx *ctx)
     return n;
 }
 
-// The notes that follow entry i, a line for each.
+// The notes after diagnostic i, one per line.
 static const char *notes_after(struct ct_ctx *ctx, size_t i)
 {
     const char *text = "";
@@ -118,7 +118,7 @@ bool ct_ctx_diagnostic(struct ct_ctx *ctx, size_t i, struct ct_diagnostic *diagn
         return false;
     if (ct_enter_uninterrupted(ctx, find_diagnostic, &q))
         return true;
-    // behind those that are kept
+    // insert behind the diagnostics that are kept
     const bool is_interrupt
         = is_silently_interrupted(ctx) && !(ctx->no_memory && i + 1 == ct_ctx_count(ctx));
     *diagnostic
@@ -157,7 +157,7 @@ void ct_ctx_cancel(struct ct_ctx *ctx)
         atomic_store(&ctx->is_cancelled, true);
 }
 
-// What has come since the last time.
+// Pass new diagnostics to the callback.
 static void tell(struct ct_ctx *ctx)
 {
     if (!ctx->tell)
@@ -175,7 +175,7 @@ void ct_free(void *text)
     free(text);
 }
 
-// Codes of what only options name.
+// Is it a code that only concerns options?
 static bool is_option(int code)
 {
     return code == CT_E_USAGE || code == CT_E_SUFFIX || code == CT_E_INPUT || code == CT_E_LOAD;
@@ -185,7 +185,7 @@ enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx)
 {
     if (!ctx)
         return CT_FAULT_NONE;
-    if (ctx->no_memory || ctx->was_interrupted) // whatever was said before
+    if (ctx->no_memory || ctx->was_interrupted) // whatever was reported before
         return CT_FAULT_MODEL;
     enum ct_fault fault = ctx->nerror ? CT_FAULT_MODEL : CT_FAULT_NONE;
     for (size_t i = 0; i < ctx->ndiagnostic; i++)
@@ -207,7 +207,7 @@ const char *ct_did_you_mean(const char *name, const char *const *names, size_t n
 
 locale_t ct_locale_enter(void)
 {
-    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // a constant, not made anew
+    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0)); // created once
 }
 
 void ct_locale_leave(locale_t before)
@@ -269,7 +269,8 @@ void ct_options_take(void *to, const void *from, size_t size)
         memcpy(to, from, given > 0 && given < size ? given : size);
 }
 
-// Diagnostics are told by the outermost call alone, when they have come to the caller's context.
+// Only the outermost call passes diagnostics to the callback, after they were copied to the
+// caller's context.
 static bool enter(struct ct_ctx *ctx, bool is_uninterrupted, bool (*work)(void *task),
                   void *task)
 {
@@ -372,7 +373,7 @@ void ct_ctx_hand_over(struct ct_ctx *to, struct ct_ctx *from)
 {
     to->nunseen += from->nunseen;
     to->was_interrupted |= from->was_interrupted;
-    const char *file = NULL, *copy = NULL; // most diagnostics are about the same file
+    const char *file = NULL, *copy = NULL; // most diagnostics concern the same file
     for (size_t i = 0; i < from->ndiagnostic; i++) {
         struct ct_finding d = from->diagnostic[i];
         d.text = ct_arena_strdup(to->model, d.text);

@@ -1,11 +1,11 @@
 // The one non-local exit: out of memory, or interrupted.
 //
-// A public entry point that allocates opens a guard; arenas jump to it when the system refuses
-// memory. Guards nest; each thread has its own. Only arena.c and guard.c know longjmp.
+// A public entry point that allocates opens a guard. Arenas jump to it when the system refuses
+// memory. Guards nest; each thread has its own. Only arena.c and guard.c use longjmp.
 //
-// A guard also knows by which flags its work is cancelled: those of its context, and those of the guards around it. They
-// are polled when arenas grow and once per iteration of long loops. Writers of results poll at accepted steps and stop
-// without a jump.
+// A guard also holds the flags that cancel its work: those of its context and of the enclosing
+// guards. They are polled when arenas grow and once per iteration of long loops. Writers of results
+// poll at accepted steps and stop without a jump.
 #ifndef CT_BASE_GUARD_H
 #define CT_BASE_GUARD_H
 
@@ -17,7 +17,7 @@
 struct ct_guard {
     jmp_buf env;
     struct ct_guard *outer;
-    const atomic_bool *cancelled[2]; // set to cancel the work; NULL: there is none
+    const atomic_bool *cancelled[2]; // flags that cancel the work; NULL: none
     bool is_uninterrupted;           // nothing cancels it
 };
 
@@ -26,9 +26,9 @@ void ct_guard_pop(struct ct_guard *g);
 /// Jump to the innermost guard; aborts if there is none.
 _Noreturn void ct_guard_raise(void);
 
-/// Is the work to be cancelled?
+/// Has the work been cancelled?
 bool ct_guard_is_interrupted(void);
-/// If it is, jump to the innermost guard.
+/// If the work has been cancelled, jump to the innermost guard.
 void ct_guard_poll(void);
 
 /// for (struct ct_guard g; ...) would hide the setjmp; use it as
@@ -38,9 +38,9 @@ void ct_guard_poll(void);
 ///     ... work ...
 ///     ct_guard_pop(&g);
 
-/// Tests only: let the n-th allocation from now fail (0 = never).
+/// For tests: let the n-th allocation from now fail (0: never).
 void ct_guard_fail_after(long n);
-/// Counts one allocation; true if it is the one that must fail.
+/// Count one allocation; true if it is the one that must fail.
 int ct_guard_must_fail(void);
 
 #endif

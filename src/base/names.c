@@ -13,7 +13,7 @@ static size_t hash(const char *s)
     return h;
 }
 
-// The slot of this name, or the free one where it belongs.
+// The slot of this name, or the free slot where it would be stored.
 static struct ct_names_slot *find(const struct ct_names *s, const char *name)
 {
     size_t i = hash(name) & (s->size - 1);

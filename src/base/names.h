@@ -1,7 +1,7 @@
-// A map from names to indices, in an arena.
+// Hash map from names to indices, in an arena.
 //
-// What always holds: a name is found in constant time; names are not copied and must outlive the
-// map. Nothing depends on the order of the table.
+// What always holds: a name is found in constant time. Names are not copied and must outlive the
+// map. No result depends on the order of the table.
 #ifndef CT_BASE_NAMES_H
 #define CT_BASE_NAMES_H
 
@@ -15,9 +15,9 @@ struct ct_names {
     size_t n, size; // size is a power of two, at least twice n
 };
 
-/// The index put under this name, or -1.
+/// The index of a name, or -1.
 int ct_names_get(const struct ct_names *s, const char *name);
-/// Put a name; if it is there already the first index stays.
+/// Add a name; if it exists already, its first index is kept.
 void ct_names_put(struct ct_arena *a, struct ct_names *s, const char *name, int index);
 
 #endif

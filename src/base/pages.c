@@ -1,15 +1,15 @@
-// See pages.h. Linux has the calls; elsewhere the C library's zeroed memory does.
+// See pages.h. The calls exist on Linux; elsewhere calloc is used.
 #define _DEFAULT_SOURCE // MAP_ANONYMOUS; NOLINT(bugprone-reserved-identifier): the C library names it
 #include "base/pages.h"
 
 #include <stdint.h>
 #include <stdlib.h>
 
-// The address sanitizer watches what the C library gives.
+// The address sanitizer checks only memory of the C library.
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__)
 #include <sys/mman.h>
 
-// Definition: pages of the processor and its large ones. Limit: how much is asked for at once.
+// Definition: sizes of pages and of large pages. Limit: how much is populated at once.
 static const size_t page = 1 << 12, large_page = 1 << 21, ahead = 1 << 16;
 
 static size_t round_up(size_t n, size_t to)
@@ -17,7 +17,7 @@ static size_t round_up(size_t n, size_t to)
     return (n + to - 1) / to * to;
 }
 
-// Large pages must lie at multiples of their size: what is too much at either end goes back.
+// Large pages must be aligned to their size: the surplus at either end is returned to the system.
 static void *map_aligned(size_t size, size_t alignment)
 {
     const size_t more = size + alignment - page;
@@ -39,7 +39,7 @@ void *ct_pages_create(size_t size)
     void *p = map_aligned(whole, whole < large_page ? page : large_page);
 #ifdef MADV_HUGEPAGE
     if (p && whole >= large_page)
-        madvise(p, whole, MADV_HUGEPAGE); // refused, pages are small
+        madvise(p, whole, MADV_HUGEPAGE); // if refused, pages are small
 #endif
     return p;
 }
@@ -60,7 +60,7 @@ size_t ct_pages_extend(void *block, size_t size, size_t ready, size_t used)
     (void)block;
     (void)ready;
     (void)used;
-    return size; // page by page, as they are touched
+    return size; // pages are populated when touched
 }
 
 #else

@@ -12,7 +12,7 @@ static size_t hash(int a, int b)
     return (size_t)(h >> 32);
 }
 
-// The slot of this pair, or the free one where it belongs.
+// The slot of this pair, or the free slot where it would be stored.
 static struct ct_pairs_slot *find(const struct ct_pairs *s, int a, int b)
 {
     size_t i = hash(a, b) & (s->size - 1);

@@ -13,17 +13,17 @@
 enum {
     MOST = CT_BEAM_ERROR_COUPLED_MOST,
     SIZE = MOST + CT_BENDING_SHAPES,
-    MOST_BODIES = 40, // Limit: of the time of an estimate; larger systems have that of the beam
+    MOST_BODIES = 40, // Limit: of the time of an estimate; larger systems: beam alone
     MOST_MODES = 16,  // Limit: the same
-    MOST_STEPS = 100, // Limit: of one move
-    PASSES = 4,       // Limit: of the midpoint's forces
+    MOST_STEPS = 100, // Limit: steps of one call of ct_beam_error_coupled_advance
+    PASSES = 4,       // Limit: fixed-point iterations of the midpoint rule
     BASE = 9,  // Definition: angular velocity, velocity, weight per mass; axes of the beam
     MOTION = 6 // Definition: their rates
 };
 
 struct ct_beam_error_coupled {
     int nq, nu, nshape, nmode, nentry;
-    bool is_free;               // its base moves by more than time
+    bool is_free;               // the motion of the base depends on more than time
     const struct ct_tape *tape; // M, Q, q', base, V' with u' = 0, B (6 x nu), g of the modes
     int nout;
     int row[MOST * (MOST + 1) / 2], column[MOST * (MOST + 1) / 2]; // of M
@@ -35,14 +35,14 @@ struct ct_beam_error_coupled {
 
 struct ct_beam_error_coupled_run {
     const struct ct_beam_error_coupled *p;
-    double *value, *work, *out, *q, *u; // q, u: of each model, one after the other
+    double *value, *work, *out, *q, *u; // q, u: of all beam models in turn
     double *rate, *du;                  // q', u' of their last steps
     double largest;                     // |eta|
-    double quick; // how much faster than clamped shapes they may be with a base that yields
+    double quick; // factor on frequencies of clamped shapes for a base that yields
     bool is_lost;
 };
 
-// ---- the scene with rigid beams ---------------------------------------------------------------------------
+// ---- the scene with rigid beams -----------------------------------------------------------------
 
 static struct ct_build *rigid_scene(struct ct_build *b)
 {
@@ -78,7 +78,7 @@ static double initial(const struct ct_build *r, const struct ct_value *v, int pl
     return given ? ct_model_number(r->model, v->e[place]) : 0;
 }
 
-// q and u at the start, as the joints give them. False where turns of a quaternion are given.
+// Find q and u at the start from the joints. False if a quaternion is given by rotations.
 static bool find_start(const struct ct_build *r, double *start)
 {
     const struct ct_equations *e = r->eqs;
@@ -102,7 +102,7 @@ static bool find_start(const struct ct_build *r, double *start)
     return true;
 }
 
-// ---- numbers ----------------------------------------------------------------------------------------------
+// ---- numbers ------------------------------------------------------------------------------------
 
 struct outputs {
     ct_ex *e;
@@ -223,13 +223,13 @@ ct_beam_error_coupled_run_create(struct ct_arena *a, const struct ct_beam_error_
     return r;
 }
 
-// ---- a step -----------------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
-struct scene { // of one model at one instant
+struct scene { // the multibody system of one beam model at one instant
     const double *Q, *rate, *base, *bias, *B;
 };
 
-// Modes are what the time says.
+// Evaluate the system; switches have their values at time t.
 static struct scene look(struct ct_beam_error_coupled_run *r, double t, const double *q,
                          const double *u)
 {
@@ -273,8 +273,9 @@ static void cross_twice(double out[3], const double w[3], const double v[3])
     cross(out, w, once);
 }
 
-// Torque and force on the base that the deflection of a shape asks for, but for x''. V: base; A: its acceleration (al, then
-// that of the origin less the weight, in turning axes complete).
+// Add the torque and force on the base by the deflection of a shape, without the part of x''. V:
+// velocity of the base; A: its angular acceleration, and the acceleration of its origin less
+// gravity, in full although axes turn.
 static void add_reaction(double out[MOTION], const struct ct_beam_mode *s, const double x[2],
                          const double *V, const double A[MOTION])
 {
@@ -286,7 +287,7 @@ static void add_reaction(double out[MOTION], const struct ct_beam_mode *s, const
     cross_twice(radial, V, d);
     for (int k = 0; k < 3; k++)
         c[k] = euler[k] + 2 * coriolis[k] + radial[k];
-    cross(moment, along, c); // of x m
+    cross(moment, along, c); // moment of the deflection's inertia along x
     cross(turned, A, along);
     cross_twice(spread, V, along);
     for (int k = 0; k < 3; k++) {
@@ -294,17 +295,17 @@ static void add_reaction(double out[MOTION], const struct ct_beam_mode *s, const
         out[3 + k] += s->mass[0] * c[k];
         turned[k] = s->mass[0] * A[3 + k] + s->mass[1] * (turned[k] + spread[k]);
     }
-    cross(moment, d, turned); // of what acts on the section
+    cross(moment, d, turned); // moment of the force that acts on the section
     for (int k = 0; k < 3; k++)
         out[k] += moment[k];
 }
 
-struct middle { // of a step
+struct middle { // midpoint of a step
     double u[MOST], du[MOST];
     double x[CT_BENDING_SHAPES][2], dv[CT_BENDING_SHAPES];
 };
 
-// Accelerations at the middle m of a step of h from u, x on: m->du, m->dv.
+// Accelerations at the midpoint m of a step h from u, x: m->du, m->dv.
 static bool accelerate(struct ct_beam_error_coupled_run *r, const struct ct_beam_error_modal *s,
                        int model, double h, const struct scene *now, const double x[][2],
                        struct middle *m)
@@ -363,7 +364,7 @@ static bool accelerate(struct ct_beam_error_coupled_run *r, const struct ct_beam
     return true;
 }
 
-// What the last pass changed of a step of h, against what that changes.
+// Relative change of the velocities of a step h in the last iteration.
 static double unsettled(const struct ct_beam_error_coupled *p, int n, const struct middle *m,
                         const struct middle *before, const double *u, double h)
 {
@@ -381,13 +382,15 @@ static double unsettled(const struct ct_beam_error_coupled *p, int n, const stru
     return fmax(of_base, size > 0 ? change / size : 0);
 }
 
-// One step of a model from t on; false where forces of the middle do not settle.
+// One step of one beam model from t. False if the iteration does not converge.
 static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal *s, int model,
                  double t, double h)
 {
-    // Chosen: see the comments beside
-    const double settled = 1e-5,
-                 allowed = 1e-3; // far below the errors asked for; a tenth of their limit
+    // Chosen: by judgement, as said at each value
+    const double settled
+        = 1e-5,
+        allowed
+        = 1e-3; // converged: far below the errors of interest; accepted: a tenth of their limit
     const struct ct_beam_error_coupled *p = r->p;
     double *q = r->q + model * p->nq, *u = r->u + model * p->nu, q_mid[2 * MOST],
            left = INFINITY;
@@ -434,7 +437,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
     return left <= allowed;
 }
 
-// How much of the shapes' masses the base gives back where it yields to them: sum of p' B M^-1 B' p, next to 1 for a light one.
+// How far the base yields to the shapes: sum of p' B M^-1 B' p, which is near 1 for a light base.
 static double yield(const struct ct_beam_error_coupled_run *r,
                     const struct ct_beam_error_modal *s, const struct scene *now)
 {
@@ -459,8 +462,8 @@ static double yield(const struct ct_beam_error_coupled_run *r,
 void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
                                  struct ct_beam_error_modal *s)
 {
-    // Limit: of the steps; seven times as quick
-    const double most = 0.98; // seven times as quick
+    // Limit: of the number of steps: at most seven times as many
+    const double most = 0.98; // 1/sqrt(1 - 0.98) = 7
     const struct ct_beam_error_coupled *p = r->p;
     memcpy(r->value, p->value, p->nvalue * sizeof *r->value);
     ct_tape_prepare(p->tape, r->value, r->work);
@@ -480,10 +483,10 @@ void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
     ct_beam_error_modal_record(s);
 }
 
-// Shorter steps are not worth their while: what is too fast for them is carried along.
+// Shortest useful step: faster motion need not be resolved.
 static double finest(const struct ct_beam_error_modal *s)
 {
-    // Derived: an error of (2 pi/256)^2 / 24 a step, 2.5e-5
+    // Derived: the midpoint rule errs by (2 pi/256)^2 / 24 = 2.5e-5 per step
     const double per_period = 256;
     double slowest = INFINITY;
     for (int i = 0; i < s->n; i++)
@@ -494,11 +497,11 @@ static double finest(const struct ct_beam_error_modal *s)
 void ct_beam_error_coupled_advance(struct ct_beam_error_coupled_run *r,
                                    struct ct_beam_error_modal *s, double t, double glance)
 {
-    const double from = s->t,
-                 // Derived: an interval that is a whole number of steps but for round-off of
-        // time
+    const double from
+        = s->t,
+        // Derived: 1e-9 exceeds the round-off of times: a whole number of steps stays it
         asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
-                 n = fmin(asked, MOST_STEPS);
+        n = fmin(asked, MOST_STEPS);
     for (double i = 0; i < n && !r->is_lost; i++) {
         for (int m = 0; m < CT_BEAM_MODELS; m++)
             r->is_lost |= !step(r, s, m, from + i / n * (t - from), (t - from) / n);

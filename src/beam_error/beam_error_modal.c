@@ -12,22 +12,22 @@ static void kernel(double h, double W, double c, double *C, double *S)
     const double r2 = W - 0.25 * c * c, r = sqrt(fabs(r2)),
                  decay = c != 0 ? exp(-0.5 * c * h) : 1;
     *C = decay * (r2 > 0 ? cos(r * h) : cosh(r * h));
-    // Derived: the square of it is below the unit round-off
+    // Derived: (1e-8)^2 is below the unit round-off
     *S = decay * (r * h < 1e-8 ? h : (r2 > 0 ? sin(r * h) : sinh(r * h)) / r);
 }
 
-// int_0^h S, which C and S at h give; (1 - C - c S/2)/W cancels where the step is short.
+// int_0^h S from C and S at h. The closed form (1 - C - c S/2)/W cancels for short steps.
 static double kernel_sum(double h, double W, double c, double C, double S)
 {
     double C_half, S_half;
-    // Derived: what the series leaves out is of order (W h^2)^2, 1e-8
+    // Derived: the first neglected term of the series is of order (W h^2)^2 = 1e-8
     if (fabs(W) * h * h > 1e-4)
         return (1 - C - 0.5 * c * S) / W;
     kernel(0.5 * h, W, c, &C_half, &S_half);
     return h / 6 * (4 * S_half + S);
 }
 
-// x'' + c x' + W x = F over h, exactly. x: x, x'
+// Exact solution of x'' + c x' + W x = F over h. x: x, x'.
 static void step_linear(double x[2], double h, double W, double c, double F)
 {
     double C, S;
@@ -37,7 +37,7 @@ static void step_linear(double x[2], double h, double W, double c, double F)
     x[1] = -W * S * place + (C - 0.5 * c * S) * rate + S * F;
 }
 
-// x^2, of what has grown beyond all bounds a number still
+// x^2, bounded so that a diverging amplitude stays finite.
 static double square(double x)
 {
     // Limit: of a number whose square is finite
@@ -45,16 +45,16 @@ static double square(double x)
     return fmin(x * x, most);
 }
 
-// (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h, in pieces whose amplitudes are
-// those of their middles, where it is to second order. Where h is more than one piece and
-// amplitudes do little, with what they do on the mean of a period.
+// Solve (1 + b x^2) x'' + c x' + W x + b x x'^2 + 2 g x^3 = F over h in pieces with nonlinear terms
+// at their midpoints (second order). For small amplitudes and h of more than one piece, their mean
+// over a period is used (averaging).
 static void step_nonlinear(double x[2], double h, double W, double c, double F, double b,
                            double g)
 {
-    // Chosen: pieces of a period
-    enum { PIECES = 16, MOST_PIECES = 64 }; // of a period; at most
+    // Chosen: by judgement
+    enum { PIECES = 16, MOST_PIECES = 64 }; // pieces per period; in all
     const int n = 1 + (int)fmin(MOST_PIECES - 1, h * sqrt(fabs(W)) * PIECES / (2 * CT_PI));
-    // Derived: of the nonlinear part, whose square is left out
+    // Derived: averaging neglects the square of the relative nonlinear part, 1e-6
     const double small = 1e-3, half = 0.5 * h / n,
                  amplitude2 = square(x[0]) + square(x[1]) / fmax(W, DBL_MIN);
     if (n > 1 && W > 0 && (b + 2 * g / W) * amplitude2 < small) {
@@ -99,7 +99,7 @@ double ct_beam_mode_stiffening(const struct ct_beam_mode *s, const double b[9])
     return s->omega2 * (s->turning * (w[1] * w[1] + w[2] * w[2]) - s->axial * pull);
 }
 
-// off (2) += the deflection of a model at a place, by plane.
+// off (2) += deflection of a model at a place along the beam, by plane.
 static void add_deflection(double off[2], const struct ct_beam_error_modal *s, int model,
                            int place)
 {
@@ -121,7 +121,7 @@ void ct_beam_error_modal_record(struct ct_beam_error_modal *s)
     }
 }
 
-// Over a step of h; of no time: w_x' stands for the jump of w_x.
+// Mean rotation of the base over a step h; for h = 0, w_x' is the jump of w_x.
 static struct ct_beam_mode_base_rotation turn_of(const double from[9], const double to[9],
                                                  double h)
 {
@@ -146,7 +146,7 @@ double ct_beam_mode_coupling(const struct ct_beam_error_modal *s, int i,
     return F;
 }
 
-// beside: all shapes of each model
+// Advance shape i of a model; beside: all shapes of each model.
 static void move_shape(struct ct_beam_error_modal *s, int i, double h, const double to[9],
                        const struct ct_beam_mode_base_rotation *w,
                        double beside[][CT_BENDING_SHAPES][2])
@@ -180,7 +180,8 @@ static void move_shape(struct ct_beam_error_modal *s, int i, double h, const dou
                        m == CT_BEAM_MODEL_EXACT ? shape->curvature : 0);
 }
 
-// Where planes meet, once with the other plane as it is, then with its mean over the step.
+// Advance all shapes. If planes are coupled, twice: with the other plane at the start of the step,
+// then with its mean over the step.
 static void move_shapes(struct ct_beam_error_modal *s, double h, const double to[9])
 {
     const struct ct_beam_mode_base_rotation w = turn_of(s->base, to, h);
@@ -217,11 +218,11 @@ void ct_beam_error_modal_reset_base(struct ct_beam_error_modal *s, const double 
     memcpy(s->base, base, sizeof s->base);
 }
 
-// W x + 2 g x^3 = F by Newton's method from W x = F on, which overshoots: it comes down
-// monotonically.
+// Solve W x + 2 g x^3 = F by Newton's method from the start W x = F, which is too large: the
+// iteration decreases monotonically.
 static double static_amplitude(double W, double g, double F)
 {
-    // Limit: of the steps of Newton's method
+    // Limit: of the iterations of Newton's method
     enum { MOST = 60 };
     double x = F / W;
     for (int i = 0; i < MOST && g > 0 && W > 0; i++)
@@ -255,9 +256,8 @@ void ct_beam_error_modal_compare(struct ct_beam_error_modal *s, const double end
 
 double ct_beam_error_modal_error(const struct ct_beam_error_modal *s, enum ct_beam_model model)
 {
-    // Chosen: half of the tenth to which an estimate is told
-    const double tolerated
-        = 0.05; // nothing is known of the error of that part, which is no more than itself
+    // Chosen: half of the 10 % to which an estimate is reported
+    const double tolerated = 0.05; // the error of the unexplained part is at most that part
     const bool is_followed
         = s->unexplained <= fmax(tolerated * s->end_deflection, s->error[CT_BEAM_MODEL_LINEAR]);
     return s->deflection > 0 && is_followed ? s->error[model] / s->deflection : NAN;

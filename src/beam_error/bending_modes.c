@@ -9,18 +9,19 @@
 #include <math.h>
 #include <string.h>
 
-// Definition: as CT_ELEMENT_POINTS. Limit: of inverse iteration, after which a mode is left
-// out
+// Definition: as CT_ELEMENT_POINTS. Limit: of inverse iteration, after which a mode is omitted
 enum { POINTS = 8, MOST_ITERATIONS = 200 };
-// Derived: frequencies converge with the square of shapes, which are good to 1e-6 then
+// Derived: the error of a frequency is the square of that of the shape (Rayleigh quotient), which
+// is then 1e-6
 static const double arrived = 1e-12; // relative change of a frequency
-// Derived: 50 times the first frequency; what it does beyond its static part is 1/2500
+// Derived: 50^2 at 50 times the first frequency: the dynamic part of such a shape is 1/2500 of
+// its static part
 static const double farthest
-    = 2500; // omega^2 over that of the first: what is faster follows at once
+    = 2500; // omega^2 relative to the first: faster shapes respond statically
 
 // ---- numbers along the beam ---------------------------------------------------------------------
 
-struct lump { // a body that a weld holds to a point of the beam
+struct lump { // a body that a weld connects to a point of the beam
     double mass, x;
 };
 
@@ -29,13 +30,13 @@ struct line {
     const struct ct_flexible *f;
     int plane; // 0: along y, 1: along z
     int n,
-        band; // freedoms of this plane; the most by which the numbers of two that meet differ
-    int *number;        // by freedom, -1: fixed or of another kind
+        band;           // number of freedoms in this plane; half bandwidth of its matrices
+    int *number;        // by freedom; -1: fixed, or not in this plane
     double *K, *M;      // lower triangles, A(i, j) at i - j + (band + 1) j
-    double *Kg[2];      // with P1, P2
+    double *Kg[2];      // geometric stiffness with P1, P2
     double *carried[2]; // int shape m dx, int shape m x dx
-    double *
-        beyond; // by element and one more: int m x and int m from its start to the end of the beam  (2 x)
+    // by element and one more: int m x and int m from its start to the end of the beam (2 x)
+    double *beyond;
     double *value; // of symbols
     struct lump *lump;
     size_t nlump;
@@ -68,7 +69,7 @@ static void list_lumps(struct line *s)
                 .x = place[i], .mass = ct_ex_value(s->b->x, m->body[i].mass, s->b->value)};
 }
 
-// P (2, out) = int m x and int m over element e from xi on.
+// P (2, out) = int m x and int m over element e, from xi to its end.
 static void mass_within(const struct line *s, int e, double xi, double P[2])
 {
     const double start = number(s, s->f->element[e].span.start),
@@ -95,7 +96,7 @@ static void sum_masses(struct line *s)
     }
 }
 
-// int_x^L of m x and of m from a place xi of element e, welded masses included.
+// int_x^L of m x and of m, where x is at xi of element e, welded masses included.
 static void mass_beyond(const struct line *s, int e, double xi, double P[2])
 {
     const double here
@@ -110,7 +111,7 @@ static void mass_beyond(const struct line *s, int e, double xi, double P[2])
         }
 }
 
-// Element and xi of a place x.
+// Element and its xi at position x.
 static int element_at(const struct line *s, double x, double *xi)
 {
     int e = 0;
@@ -133,7 +134,8 @@ static void add(struct line *s, double *A, int e, int j, int k, double v)
     A[s->number[p] - s->number[q] + (s->band + 1) * s->number[q]] += opposed ? -v : v;
 }
 
-// A mass at x in element e, where shapes have these values, moves with the base.
+// Add the coupling of a mass at x in element e to the motion of the base; place: shape functions
+// there.
 static void carry(struct line *s, int e, double mass, double x, const double place[4])
 {
     for (int j = 0; j < 4; j++) {
@@ -146,8 +148,8 @@ static void carry(struct line *s, int e, double mass, double x, const double pla
     }
 }
 
-// Bending and shear, at the points that the beam itself takes: one in the middle keeps linear
-// shapes from locking.
+// Bending and shear stiffness at the integration points of the beam itself; one in the middle
+// prevents locking of linear shapes.
 static void add_stiffness(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
@@ -172,7 +174,7 @@ static void add_stiffness(struct line *s, int e)
     }
 }
 
-// Mass and rotary inertia at the points where the beam itself takes them.
+// Mass and rotary inertia at the integration points of the beam itself.
 static void add_mass(struct line *s, int e)
 {
     const struct ct_beam *beam = s->f->beam;
@@ -218,7 +220,7 @@ static void add_element(struct line *s, int e)
     }
 }
 
-// Welded masses move with the shape at their point.
+// Add the welded masses, which move with the shape at their point.
 static void add_lumps(struct line *s)
 {
     for (size_t i = 0; i < s->nlump; i++) {
@@ -257,7 +259,7 @@ static void number_freedoms(struct line *s)
 
 // ---- bending shapes -----------------------------------------------------------------------------
 
-// y (n, out) = A v, and v' A v
+// y (n, out) = A v; returns v' A v.
 static double apply(const struct line *s, double *y, const double *A, const double *v)
 {
     double sum = 0;
@@ -287,8 +289,8 @@ struct found {
     double *v[CT_PLANE_SHAPES], *Mv[CT_PLANE_SHAPES];
 };
 
-// Inverse iteration, K v = M v, across the shapes found before; the next one becomes v[n], not
-// counted. Returns omega^2, 0 if it does not settle. L: the factor of K
+// Inverse iteration, K v = M v, orthogonal to the shapes found before. The next shape is written to
+// v[n] but not counted. Returns omega^2, 0 if it does not converge. L: Cholesky factor of K.
 static double next_shape(const struct line *s, const double *L, struct found *all)
 {
     const int n = s->n;
@@ -319,7 +321,7 @@ static double next_shape(const struct line *s, const double *L, struct found *al
     return 0;
 }
 
-// Matrices of the plane; false where it does not bend.
+// Assemble the matrices of the plane. False if the beam does not bend in it.
 static bool build_plane(struct line *s)
 {
     struct ct_build *b = s->b;
@@ -343,14 +345,14 @@ static bool build_plane(struct line *s)
     return true;
 }
 
-// Freedom i of the plane, two at each node, in its elements' numbering.
+// Freedom i of the plane, two per node, in the numbering of its element.
 static int place_of(int i, int plane, int *element)
 {
     *element = i < 2 ? 0 : i / 2 - 1;
     return (plane ? 6 : 2) + (i < 2 ? i : 2 + i % 2);
 }
 
-// x and x' of the state: phi' M on what the beam does. y: M phi
+// x and x' as expressions of the state: projection phi' M of the beam's deflection. y: M phi.
 static void project(struct ct_build *b, const struct line *s, const double *y, ct_ex state[2])
 {
     struct ct_exs *x = b->x;
@@ -365,7 +367,7 @@ static void project(struct ct_build *b, const struct line *s, const double *y, c
     }
 }
 
-// x and x' of the start that the model gives.
+// x and x' at the start given by the model.
 static void project_start(struct ct_build *b, const struct line *s, const double *y,
                           double start[2])
 {
@@ -383,7 +385,7 @@ static void project_start(struct ct_build *b, const struct line *s, const double
         }
 }
 
-// The sum of the shapes of an element by v at xi.
+// Sum of the shape functions of element e at xi, with the coefficients v.
 static double along(const struct line *s, int e, double xi, const struct ct_shape shape[4],
                     const double *v)
 {
@@ -397,7 +399,7 @@ static double along(const struct line *s, int e, double xi, const struct ct_shap
     return sum;
 }
 
-// int of the squared slope over element e up to xi
+// Integral of the squared slope over element e up to xi.
 static double drawn_in(const struct line *s, int e, double xi, const double *v)
 {
     const double h = number(s, s->f->element[e].span.length);
@@ -409,8 +411,8 @@ static double drawn_in(const struct line *s, int e, double xi, const double *v)
     return sum;
 }
 
-// What far swings do: the mass that is drawn along the beam, and the curvature. See
-// beam_error_modal.h.
+// Coefficients of large deflections: the mass that moves along the beam (b), and the curvature (g).
+// See beam_error_modal.h.
 static void find_amplitudes(const struct line *s, const double *v, struct ct_beam_mode *out)
 {
     const struct ct_beam *beam = s->f->beam;
@@ -438,8 +440,8 @@ static void find_amplitudes(const struct line *s, const double *v, struct ct_bea
     }
 }
 
-// phi sqrt(m) at the points of the elements and at welded masses: products of two shapes add up to
-// integrals.
+// phi sqrt(m) at the integration points and at welded masses, so that integrals of products of two
+// shapes are sums.
 static void sample(const struct line *s, const double *v, struct ct_bending_shape *out)
 {
     const struct ct_beam *beam = s->f->beam;

@@ -13,7 +13,7 @@
 // Limit: of the time of an estimate. Definition: a prime, so that other instants are met
 enum { FEWEST_INSTANTS = 400, MOST_INSTANTS = 8000, OTHER_INSTANTS = 5003 };
 
-// eta of a plane
+// eta of one plane.
 static ct_ex indicator(struct ct_exs *x, const struct ct_base *m, const struct ct_beam_mode *s)
 {
     const ct_ex turning
@@ -74,7 +74,8 @@ void ct_validity_begin(const struct ct_validity *v, const double *start,
 
 double ct_validity_interval(const struct ct_validity *v)
 {
-    // Derived: 32 and 8 instants of a period, of which the largest errs by 0.5 % and 8 %
+    // Derived: sampling a sine at 32 and at 8 instants per period misses its largest value by at
+    // most 0.5 % and 8 % (1 - cos(pi/32), 1 - cos(pi/8))
     const double of_first = 1.0 / 32, of_each = 1.0 / 8;
     double shortest = of_first * 2 * CT_PI / v->omega;
     for (int i = 0; i < v->nshape; i++)
@@ -84,7 +85,7 @@ double ct_validity_interval(const struct ct_validity *v)
 
 // ---- choice -------------------------------------------------------------------------------------
 
-// Modes that depend on time alone, at the time in value.
+// Set the switches that depend on time alone to their values at the time in value.
 static bool set_switches(struct ct_build *b, double *value)
 {
     for (size_t i = 0; i < b->eqs->nswitch; i++) {
@@ -98,13 +99,13 @@ static bool set_switches(struct ct_build *b, double *value)
 }
 
 struct prospect {
-    double eta;                   // largest |indicator|
-    double error[CT_BEAM_MODELS]; // of linear and foreshortened beams, NAN: nothing deflects
+    double eta;                   // largest |eta|
+    double error[CT_BEAM_MODELS]; // of linear and foreshortened beams; NAN: no deflection
 };
 
 enum { ETA, BASE, NOUT = BASE + 9 };
 
-struct ahead { // what is known of the run
+struct ahead { // simulation of the modes before the run
     struct ct_build *b;
     const struct ct_tape *tape; // eta and the base's motion
     double *value, *work;       // of symbols
@@ -130,12 +131,12 @@ static void prepare(struct ahead *p, const struct ct_validity *v)
     p->tape = ct_tape_compile(a, x, out, NOUT, in, slot, n);
     p->work = CT_NEWN(a, double, ct_tape_work(p->tape) + 1);
     ct_tape_prepare(p->tape, p->value, p->work);
-    for (int k = 0; k < NOUT; k++) // the parameters in them have decided something
+    for (int k = 0; k < NOUT; k++) // the parameters in them have decided about the equations
         (void)ct_ex_value(x, out[k], p->value);
 }
 
-// To the time t; modes as they are there, and the jumps of rates that come with them. False: modes
-// are not known.
+// Advance to the time t, with the switches as they are there and the jumps of rates that come with
+// them. False if the switches are not known.
 static bool advance_modes(struct ahead *p, double t)
 {
     struct ct_beam_error_modal *s = &p->swings;
@@ -156,7 +157,7 @@ static bool advance_modes(struct ahead *p, double t)
     return true;
 }
 
-// The same where the base recoils.
+// The same for a base that moves with the beam.
 static bool simulate_coupled(struct ct_build *b, const struct ct_validity *v,
                              const double *start, int n, struct prospect *out)
 {
@@ -176,7 +177,7 @@ static bool simulate_coupled(struct ct_build *b, const struct ct_validity *v,
     return !isnan(out->eta) && !isnan(s.deflection);
 }
 
-// From 0 to the end of the run, in n steps; false where modes are not known.
+// Simulate from 0 to the end of the run in n steps. False if the switches are not known.
 static bool simulate_modes(struct ct_build *b, const struct ct_validity *v, int n,
                            struct prospect *out)
 {
@@ -211,8 +212,9 @@ static bool is_alike(double a, double b)
         || (a > CT_ESTIMATED_ERROR_LIMIT && b > CT_ESTIMATED_ERROR_LIMIT);
 }
 
-// What is ahead; NULL, or why it is not known. Where a run is too long to look at all that may move
-// the beam, two looks that fall on other instants must see the same.
+// Predict indicator and error for the whole run. NULL, or a text that says why they are unknown. If
+// the run is too long for the sampling interval, two simulations with different instants must
+// agree.
 static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
                               struct prospect *out)
 {
@@ -247,7 +249,7 @@ static const char *estimated_error(struct ct_build *b, const struct prospect *p)
                            one_frame);
 }
 
-// Near enough to the truth, or nearer than a foreshortened beam would be.
+// The error of the linear beam is below the limit, or less than that of a foreshortened beam.
 static bool is_better_linear(const struct prospect *p)
 {
     const double linear = p->error[CT_BEAM_MODEL_LINEAR];
@@ -257,7 +259,8 @@ static bool is_better_linear(const struct prospect *p)
     return p->eta <= CT_VALIDITY_LIMIT && (is_near || is_nearer);
 }
 
-// *is_driven becomes false where other trees may show that time alone moves the base.
+// *is_driven becomes false if another choice of trees may show that the motion of the base depends
+// on time alone.
 static bool stays_linear(struct ct_build *b, struct ct_flexible *f, bool *is_driven)
 {
     struct ct_validity v;

@@ -1,42 +1,49 @@
-// When is the linear model of a beam good enough?  (formulation 5.4)
+// src/beam_error estimates the error of linear beam models before and during a run. validity
+// computes a static indicator, decides whether beams of formulation `automatic` stay linear, and
+// records indicators in a run; bending_modes finds the first bending shapes; beam_error_modal
+// integrates these shapes as oscillators with and without the neglected terms; beam_error_coupled
+// does so together with a moving base.
 //
-// The axial force of the beam's rigid motion stiffens or softens its bending. Per unit of the first
-// bending shape phi,
+// This file: the indicator  (formulation 5.4). The axial force of the beam's rigid motion stiffens
+// or softens its bending. For the first bending shape phi,
 //
-//     eta = (w_y^2 + w_z^2) ka - a_x kb,   ka = phi' Kg1 phi / phi' K phi,  kb = phi' Kg2 phi / phi' K phi
-//     Kg1 = int P1 s s' dx, P1(x) = int_x^L m x dx,   Kg2 the same with P2(x) = int_x^L m dx,   s: slopes of the shapes
+//     eta = (w_y^2 + w_z^2) ka - a_x kb
+//     ka = phi' Kg1 phi / phi' K phi,   kb = phi' Kg2 phi / phi' K phi
+//     Kg1 = int P1 s s' dx,   P1(x) = int_x^L m x dx,   s: slopes of the shapes
+//     Kg2 = int P2 s s' dx,   P2(x) = int_x^L m dx
 //
-// with the acceleration a_x of the base less gravity along the beam. eta is the ratio of
-// motion-induced to elastic stiffness, and with it the relative error of a linear beam at rest
-// under its loads. What comes of it in a motion is in beam_error_modal.h.
+// w: angular velocity of the base; a_x: its acceleration less gravity, along the beam. eta is the
+// ratio of motion-induced to elastic stiffness. For a beam at rest under its loads it is the
+// relative error of the linear model. The error in a motion is estimated in beam_error_modal.h.
 #ifndef CT_BEAM_ERROR_VALIDITY_H
 #define CT_BEAM_ERROR_VALIDITY_H
 
 #include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
 
-/// The indicator of a beam, the larger one of its planes of bending; masses welded to its points
-/// count. eta in terms of time, state and accelerations. False where nothing bends, or the first
-/// bending shape cannot be found.
+/// Derive the indicator of a beam: the larger one of its two planes of bending. Masses welded to
+/// its points are included. eta is an expression of time, state and accelerations. False where
+/// nothing bends, or the first bending shape is not found.
 bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
                         struct ct_validity *out);
 
-/// What estimates its error, at the start with x, x' of its shapes.
+/// Start the estimate of the error; start: x, x' of its shapes.
 void ct_validity_begin(const struct ct_validity *v, const double *start,
                        struct ct_beam_error_modal *s);
 
-/// Looks at the base that are nearer in time are passed over: 1/32 of a period of the first shape,
-/// 1/8 of those of others.
+/// Sampling interval of the base motion; closer samples are skipped. It is 1/32 of a period of the
+/// first shape or 1/8 of a period of another one, whichever is less.
 double ct_validity_interval(const struct ct_validity *v);
 
-/// Beams that leave the choice to the program: does each stay below the limit all along, and its
-/// error, too? By body, in b->arena; reasons into the beams. NULL if there is no such beam. A beam
-/// whose motion the drivers do not prescribe, or that carries joints or loads, does not.
-/// *is_driven: other trees would not
-/// show more of them to move as time alone tells.
+/// For beams of formulation `automatic`: do indicator and error of each stay below the limit during
+/// the whole run? Result by body, in b->arena; the reasons are stored in the beams. NULL if there
+/// is no such beam. Never true for a beam whose motion the drivers do not prescribe, or that
+/// carries joints or loads. *is_driven: no other choice of trees would show that the motion of more
+/// beams depends on time alone.
 const bool *ct_validity_choose(struct ct_build *b, bool *is_driven);
 
-/// Indicators of all linear beams into b->eqs->validity, slopes of all beams into b->eqs->bend.
+/// Store the indicators of all linear beams in b->eqs->validity and the slopes of all beams in
+/// b->eqs->bend.
 void ct_validity_monitor(struct ct_build *b);
 
 #endif

@@ -1,8 +1,8 @@
-// Printing a listing as a C function; see c.h.
+// Printing of a listing as a C function; see c.h.
 //
-// Statements are the results of the instructions in the order of the listing; short ones with one
-// reader are inlined. Statement k belongs to function k / split. A value that a later function
-// reads is stored in w[].
+// A statement computes the result of one instruction, in the order of the listing; short
+// expressions with a single reader are inlined. Statement k belongs to function k / split. A value
+// that a later function reads is stored in w[].
 #include "codegen/c.h"
 
 #include "expr/print.h"
@@ -25,16 +25,16 @@ struct writer {
     uint32_t nstatement;
     struct statement {
         const struct ct_instruction *ins;
-        uint32_t result; // which of the instruction's
+        uint32_t result; // index of the result in its instruction
     } * list;
-    uint32_t *crossing; // by value: place in w[], none if only its own part reads it
+    uint32_t *crossing; // by value: index in w[]; none if only its own function reads it
     uint32_t ncrossing;
-    uint32_t *nread, *nread_here; // by value: operands that it is, and of its own part
-    const char **
-        within; // by value: its text, where it stands in the one statement that reads it; else NULL
+    uint32_t *nread, *nread_here; // by value: number of reads in all, and in its own function
+    const char *
+        *within; // by value: its text if inlined in the one statement that reads it, else NULL
     const char **input; // by value of a symbol: i<slot>_<name>
     uint32_t *first_output,
-        *next_output; // by value, by output: 1 + k of the next one, 0 at the end
+        *next_output; // by value, by output: lists of 1 + k; 0 at the end
     size_t split;
     struct text text;
 };
@@ -66,13 +66,13 @@ static void __attribute__((format(printf, 2, 3))) putf(struct writer *w, const c
 const char *ct_c_comment(struct ct_arena *a, const char *s)
 {
     char *copy = ct_arena_strdup(a, s);
-    for (char *c = copy; *c; c++) // `?` begins trigraphs, one of which is a backslash
+    for (char *c = copy; *c; c++) // two `?` start a trigraph, and one trigraph is a backslash
         if (*c == '*' || *c == '\\' || *c == '?' || (unsigned char)*c < ' ' || *c == 0x7f)
             *c = ' ';
     return copy;
 }
 
-// ---- what is needed -----------------------------------------------------------------------------
+// ---- statements and readers of values ----------------------------------------------------------
 
 static bool is_statement(const struct writer *w, uint32_t v)
 {
@@ -136,7 +136,7 @@ static void list_outputs(struct writer *w)
 
 // ---- statements -------------------------------------------------------------------------------
 
-// The text of value v as read by part `part`.
+// The text of value v as read in function number `part`.
 static const char *operand_text(const struct writer *w, uint32_t v, size_t part)
 {
     double number;
@@ -193,7 +193,7 @@ static bool has_label(const struct writer *w, uint32_t v)
 // Inline short sums and products with one reader in the same function.
 static bool stands_within(const struct writer *w, uint32_t v, const char *text)
 {
-    // Layout: characters of an expression that stands where it is used
+    // Layout: length of an expression that is inlined
     enum { LONGEST = 40 };
     return w->nread[v] == 1 && w->crossing[v] == none && !w->first_output[v] && !has_label(w, v)
         && strlen(text) <= LONGEST;
@@ -222,7 +222,7 @@ static void put_statement(struct writer *w, uint32_t k)
 
 // ---- functions --------------------------------------------------------------------------------
 
-// The statements of a part.
+// Range of statements of one function.
 struct range {
     uint32_t from, to;
     bool reads_input, writes_output, uses_w;
@@ -274,7 +274,7 @@ static struct range next_part(const struct writer *w, uint32_t from, unsigned ch
     return r;
 }
 
-// Only the arguments a part needs: an unused one would be a warning.
+// Pass only the arguments that a function needs: an unused one gives a warning.
 static const char *arguments(const struct writer *w, const struct range *r, bool types)
 {
     const char *s = "";
@@ -287,7 +287,7 @@ static const char *arguments(const struct writer *w, const struct range *r, bool
     return s;
 }
 
-// Outputs that are symbols or constants, and the inputs read for them.
+// Print the outputs that are symbols or constants, and the inputs read for them.
 static void put_plain_outputs(struct writer *w)
 {
     for (uint32_t v = 0; v < w->l->nvalue; v++)
@@ -298,7 +298,7 @@ static void put_plain_outputs(struct writer *w)
                             : operand_text(w, v, 0));
 }
 
-// One lane after the other.
+// Print a loop over the lanes.
 static void put_lanes(struct writer *w)
 {
     const char *n = w->o.name;
@@ -352,7 +352,7 @@ static void put_array(struct writer *w, uint32_t table, const char *name, const 
     put(w, "};\n");
 }
 
-// The operations of ct_table_value, in its order.
+// Print the operations of ct_table_value, in the same order.
 static void put_table_function(struct writer *w, bool any_holds)
 {
     const char *n = w->o.name;

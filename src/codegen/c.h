@@ -1,15 +1,16 @@
-// Expressions -> C source: one function of doubles, for export and for checking the tape.
+// Expressions -> C source: one function of doubles, for export and to check the tape.
 //
 //     void name(const double *in, double *out)        in[slot] of the symbols, out[nout]
 //
-// One statement per operation, `const double t12 = t3 * t7;`, in the order of the listing. Every
-// instruction of it is there with the same operands and nothing else, so the bits agree with tape
-// and native code if the compiler neither contracts nor reorders (-ffp-contract=off, no
-// -ffast-math).
+// One statement per operation, `const double t12 = t3 * t7;`, in the order of the listing. The code
+// has exactly the instructions of the listing with the same operands. Its bits therefore agree with
+// tape and native code, if the compiler neither contracts nor reorders operations
+// (-ffp-contract=off, no -ffast-math).
 //
 // What always holds: the same expressions give the same text; C99 without warnings; no globals but
-// constant tables. Functions are kept under `split` statements, because compilers need more than
-// linear time for one function; what crosses a boundary goes through an array on the stack.
+// constant tables. A long body is split into functions of `split` statements, because compile time
+// grows faster than linearly with the length of a function. Values that several functions use are
+// passed in an array on the stack.
 #ifndef CT_CODEGEN_C_H
 #define CT_CODEGEN_C_H
 
@@ -17,13 +18,13 @@
 
 /// All zero: the defaults.
 struct ct_c_options {
-    const char *name;  // of the function; NULL: "evaluate". Helpers start with it
+    const char *name;  // of the function; NULL: "evaluate". Also the prefix of its helpers
     const char *title; // for the comment at the top; NULL: none
     size_t split;      // statements in one function; 0: 800
-    bool is_static;    // the function is local to its file
-    unsigned lanes; // sets of inputs side by side, in[lanes * slot + lane], out likewise; 0: 1
-    /// The text of a symbol behind its input, a C identifier; NULL: ct_c_name of its name. Inputs
-    /// are called i<slot>_<text>, so texts need not differ.
+    bool is_static;    // static linkage
+    unsigned lanes; // SIMD lanes: sets of inputs, in[lanes * slot + lane], out likewise; 0: 1
+    /// Text for a symbol, a C identifier; NULL: ct_c_name of its name. Inputs are called
+    /// i<slot>_<text>, so texts need not differ.
     const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);
     void *data;
 };
@@ -32,13 +33,13 @@ struct ct_c_options {
 const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
                          const struct ct_c_options *options);
 
-/// C source of nout expressions. in[k] is a symbol whose value stands at slot[k] of the input; all
-/// symbols that are needed must be listed. The text lives in a.
+/// C source of nout expressions. in[k] is a symbol whose value is at slot[k] of the input; all
+/// symbols needed must be among them. The text lives in a.
 const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
                           size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
                           const struct ct_c_options *options);
 
-/// s without what would end a comment, or its line, early.
+/// A copy of s that is safe inside a C comment of one line.
 const char *ct_c_comment(struct ct_arena *a, const char *s);
 
 #endif

@@ -19,7 +19,7 @@ static void put_number(struct ct_bytes *c, uint64_t v, int nbyte)
         ct_put(c, (unsigned)(v >> 8 * i & 0xFF));
 }
 
-// ModRM and displacement. R14 as a base needs no SIB byte, as R12 would.
+// Encode ModRM and displacement. R14 as a base needs no SIB byte, R12 would.
 static void put_operand(struct ct_bytes *c, int reg, struct ct_rm rm)
 {
     const unsigned middle = (unsigned)(reg & 7) << 3;
@@ -65,7 +65,7 @@ void ct_put_arithmetic(struct ct_bytes *c, unsigned op, int reg, int vvvv, struc
     ct_put_vex(c, i, c->lanes > 1, reg, vvvv, rm);
 }
 
-// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
+// Bitwise operation on a whole register: a scalar operand must not be in memory.
 void ct_put_bitwise(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm)
 {
     ct_put_vex(c, (struct ct_vex){1, 1, 0, (unsigned char)op}, c->lanes > 1, reg, vvvv, rm);
@@ -109,7 +109,8 @@ void ct_put_store(struct ct_bytes *c, struct ct_rm to, int reg)
 void ct_put_compare(struct ct_bytes *c, int reg, int vvvv, struct ct_rm rm, unsigned predicate)
 {
     assert(rm.reg >= 0
-           || rm.base != CT_RIP); // the byte behind would move a displacement to RIP
+           || rm.base
+                  != CT_RIP); // the immediate byte would shift a displacement relative to RIP
     ct_put_arithmetic(c, 0xC2, reg, vvvv, rm);
     ct_put(c, predicate);
 }
@@ -141,7 +142,7 @@ void ct_put_pop(struct ct_bytes *c, int reg)
     ct_put(c, 0x58 | (unsigned)(reg & 7));
 }
 
-// 64-bit to = from, from among the lower eight
+// 64-bit to = from, for one of the lower eight registers.
 void ct_put_move(struct ct_bytes *c, int to, int from)
 {
     ct_put(c, 0x48 | (to >= 8) | (from >= 8) << 2);
@@ -207,7 +208,7 @@ void ct_put_back_below(struct ct_bytes *c, int reg, int32_t limit, size_t to)
     put_number(c, (uint64_t)to - (uint64_t)(c->n + 4), 4);
 }
 
-// Back to byte `to`, unless RAX, one less, is 0.
+// Decrement RAX and jump back to byte `to` unless it is 0.
 void ct_put_back(struct ct_bytes *c, size_t to)
 {
     put_number(c, 0xC8FF48, 3); // dec rax
@@ -215,8 +216,8 @@ void ct_put_back(struct ct_bytes *c, size_t to)
     put_number(c, (uint64_t)to - (uint64_t)(c->n + 4), 4);
 }
 
-// The constants that are used, and the displacements to them. RIP is that of the next instruction,
-// four bytes behind the place of the displacement.
+// Append the constants in use and set the displacements to them. RIP is the address of the next
+// instruction, four bytes after the displacement.
 void ct_put_pool(struct ct_bytes *c)
 {
     size_t at[CT_NPATTERN] = {0};

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/// General registers by their number; RIP: where the code itself is.
+/// General registers by their number; RIP: the instruction pointer.
 enum {
     CT_RAX,
     CT_RCX,
@@ -45,15 +45,15 @@ struct ct_rm {
     int32_t disp;
 };
 
-/// Bit patterns that instructions read from behind the code, four times each.
+/// Bit patterns of the constant pool after the code, four copies each.
 enum ct_pattern { CT_SIGN_BIT, CT_ALL_BUT_SIGN, CT_ONE, CT_NPATTERN };
 
 struct ct_fixup {
-    size_t at; // of the 32-bit displacement
+    size_t at; // offset of the 32-bit displacement
     enum ct_pattern constant;
 };
 
-/// Code in the making: for one number a register, or four.
+/// Code under construction; a register holds one number or four.
 struct ct_bytes {
     struct ct_arena *arena;
     unsigned char *byte;
@@ -84,17 +84,17 @@ void ct_put_vex(struct ct_bytes *c, struct ct_vex i, bool wide, int reg, int vvv
                 struct ct_rm rm);
 /// Arithmetic on one double (xx..SD) or four (xx..PD).
 void ct_put_arithmetic(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm);
-/// Bitwise operations exist on whole registers only, so a scalar operand must not be in memory.
+/// Bitwise operation on a whole register: a scalar operand must not be in memory.
 void ct_put_bitwise(struct ct_bytes *c, unsigned op, int reg, int vvvv, struct ct_rm rm);
-/// Have a line of memory in the nearest cache, to be written.
+/// Prefetch a cache line for writing.
 void ct_put_fetch(struct ct_bytes *c, struct ct_rm line);
 void ct_put_load(struct ct_bytes *c, int reg, struct ct_rm from);
-/// Four times the number there.
+/// Broadcast one number to four.
 void ct_put_broadcast(struct ct_bytes *c, int reg, struct ct_rm from);
-/// Four numbers from four places. spare: a register that is lost.
+/// Gather four numbers from four addresses. spare: a register that is overwritten.
 void ct_put_gather(struct ct_bytes *c, int reg, int spare, const struct ct_rm from[4]);
 void ct_put_store(struct ct_bytes *c, struct ct_rm to, int reg);
-/// All ones where it holds, else zeros; rm is not in the pool.
+/// All ones where the comparison holds, else zeros; rm is not in the pool.
 void ct_put_compare(struct ct_bytes *c, int reg, int vvvv, struct ct_rm rm, unsigned predicate);
 /// reg = mask ? yes : no, by the sign of each number of mask
 void ct_put_blend(struct ct_bytes *c, int reg, int no, int yes, int mask);
@@ -107,15 +107,16 @@ void ct_put_address(struct ct_bytes *c, int reg, struct ct_rm rm);
 void ct_put_immediate(struct ct_bytes *c, int reg, uint64_t v);
 void ct_put_call(struct ct_bytes *c, uintptr_t function);
 void ct_put_advance(struct ct_bytes *c, int reg, int32_t by);
-/// 64-bit to = from + stride * by, from among the lower eight, by among the upper ones
+/// 64-bit to = from + stride * by; from: one of the lower eight registers, by: one of the upper
+/// eight.
 void ct_put_scaled(struct ct_bytes *c, int to, int from, int by, int32_t stride);
-/// reg = 0, among the upper eight
+/// reg = 0, for one of the upper eight registers.
 void ct_put_zero(struct ct_bytes *c, int reg);
-/// Back to byte `to`, unless RAX, one less, is 0.
+/// Decrement RAX and jump back to byte `to` unless it is 0.
 void ct_put_back(struct ct_bytes *c, size_t to);
-/// Back to byte `to` as long as reg, among the upper eight, is less than limit.
+/// Jump back to byte `to` while reg, one of the upper eight, is less than limit.
 void ct_put_back_below(struct ct_bytes *c, int reg, int32_t limit, size_t to);
-/// The constants that are used, and the displacements to them: behind all code.
+/// Append the constants in use after all code and set the displacements to them.
 void ct_put_pool(struct ct_bytes *c);
 
 #endif

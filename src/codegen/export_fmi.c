@@ -1,4 +1,4 @@
-// The functions of FMI 2.0 and 3.0 by those of an instance (export_fmu.c).
+// The functions of FMI 2.0 and 3.0, in terms of the functions of an instance (export_fmu.c).
 //
 // Templates of C: @ stands for the model's name, $ for the same in capitals.
 //

@@ -1,7 +1,9 @@
-// The source of an FMU around exported C; see export.h. Names and signatures are those of FMI 2.0 and 3.0.
+// The source of an FMU around exported C; see export.h. Names and signatures are those of FMI 2.0
+// and 3.0.
 //
-// One file, which takes NAME.c in: an instance is `in` with its work; values have their index in `in` as reference, then come
-// derivatives of states, outputs, event indicators.
+// The source is one file that includes NAME.c. An instance is `in` with its workspace. The value
+// reference of a value is its index in `in`; then follow derivatives of states, outputs, event
+// indicators.
 //
 // Templates of C: @ stands for the model's name, $ for the same in capitals.
 //
@@ -520,7 +522,7 @@ static void put_flags(struct ct_export_text *t, const char *name, const int *v, 
     ct_export_put(t, ";\n");
 }
 
-// By parameter, inputs among them: may it be set, is it an input?
+// For each parameter, inputs included: can it be set, and is it an input?
 static void put_parameters(struct ct_export_text *t, const struct ct_export *x)
 {
     const size_t n = x->at_q - 1;

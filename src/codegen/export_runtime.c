@@ -1,10 +1,11 @@
-// What exported C has beside its programs; see export.h.
+// Runtime functions of exported C; see export.h.
 //
-//     accelerations   [M -J'; J 0] [u'; lam] = [Q; -gam], by the pivots of the start or by elimination with complete pivoting
+//     accelerations   [M -J'; J 0] [u'; lam] = [Q; -gam], by the pivots of the start or by
+//                     elimination with complete pivoting
 //     multipliers     least norm of J' lam = M u' - Q, by QR with column pivoting
-//     projection      Newton's iteration with corrections of least norm, J d = -phi, then J du = -v
-//     step            classical Runge-Kutta method, then projected; a step that a switch changes in ends just behind the change
-//                     and another one follows
+//     projection      Newton's method with corrections of least norm, J d = -phi, then J du = -v
+//     step            classical Runge-Kutta, then projection; a step in which a switch changes
+//                     ends just after the change, and another step follows
 //
 // Templates of C: @ stands for the model's name, $ for the same in capitals.
 #include "codegen/export.h"
@@ -769,7 +770,7 @@ static const char text_thesmoothstep[]
       "}\n"
       "\n";
 
-// ---- what follows from a state ----------------------------------------------------------------
+// ---- functions of a state ----------------------------------------------------------------------
 
 static const char text_parameters[] = "void @_parameters(double *in)\n"
                                       "{\n"
@@ -835,7 +836,7 @@ static const char text_reactions[]
       "}\n"
       "\n";
 
-// ---- the whole --------------------------------------------------------------------------------
+// ---- entry point -------------------------------------------------------------------------------
 
 static void put(struct ct_export_text *t, const char *s)
 {
@@ -895,7 +896,8 @@ static void put_data(struct ct_export_text *t, const struct ct_export *x)
     ct_export_putf(t, "enum { n_kept = %zu };\n\n", x->rank);
 }
 
-// By speed: its coordinate, or -1 less the first number of the quaternion that three of them turn.
+// Print for each speed its coordinate; for one of the three speeds of a quaternion, -1 minus the
+// index of its first number.
 static void put_places(struct ct_export_text *t, const struct ct_equations *e)
 {
     int *place = CT_NEWN(t->arena, int, e->nu + 1), next = 0;
@@ -982,7 +984,7 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-// Doubles of work for accelerations, less the rates behind them.
+// Doubles of workspace for accelerations, without the rates after them.
 static size_t work_of_accelerate(const struct ct_export *x)
 {
     const size_t n = x->e->nu + x->e->nrow;

@@ -1,4 +1,4 @@
-// Text of exported C under construction, and templates of it.
+// Text of exported C under construction, with substitution in templates.
 #ifndef CT_CODEGEN_EXPORT_TEXT_H
 #define CT_CODEGEN_EXPORT_TEXT_H
 
@@ -14,11 +14,11 @@ struct ct_export_text {
 void ct_export_put(struct ct_export_text *t, const char *s);
 void ct_export_putf(struct ct_export_text *t, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
-/// s with the name in place of each @, in capitals in place of each $.
+/// Append s, with the name in place of each @ and the name in capitals in place of each $.
 void ct_export_put_named(struct ct_export_text *t, const char *s);
-/// The same for parts of a long text, NULL at the end.
+/// The same for the parts of a long text; the last is NULL.
 void ct_export_put_parts(struct ct_export_text *t, const char *const *part);
-/// {1, 2, 3}: n numbers, never an empty list.
+/// Append {1, 2, 3}: n numbers, at least one.
 void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n);
 void ct_export_put_integers(struct ct_export_text *t, const int *v, size_t n);
 /// The whole, which lives in the arena.

@@ -16,29 +16,28 @@
 #include <math.h>
 #include <string.h>
 
-// Instructions from which products and sums are contracted to fused operations: shorter programs
-// keep the bits of the tape.
-// Default: the bits of the tape against shorter programs. Test: native.
+// Number of instructions from which native code fuses products with sums. Shorter programs keep the
+// bits of the tape. Default: speed against equal bits. Test: native.
 static const size_t least_fused = 256;
 
 typedef void (*body_fn)(const double *input, double *out, double *work);
 
 struct ct_native {
     const struct ct_listing *l;
-    size_t lanes, nwork;         // nwork: places
-    uint32_t *slot;              // of values that prepare computes
-    const struct ct_copy *table; // and copies of them
+    size_t lanes, nwork;         // nwork: slots
+    uint32_t *slot;              // slots of values that prepare computes
+    const struct ct_copy *table; // copies of these values
     size_t ntable;
     void *memory;
     size_t nmemory, ncode;
     body_fn body;
     struct ct_native *four;            // of eight lanes, which have no code of their own
-    const struct ct_native_wide *pair; // and their two halves
+    const struct ct_native_wide *pair; // runs the code of four lanes on both halves
 };
 
 // ---- functions that code calls ----------------------------------------------------------------
 
-// One number and four: f(res, arg) and so on, as x86.h says.
+// Functions of one number and of four: f(res, arg) and so on, see x86.h.
 #define ONE_ARGUMENT(f)                                                                        \
     static void f##_1(double *res, const double *a)                                            \
     {                                                                                          \
@@ -159,7 +158,7 @@ static void unmap(void *native)
     f->memory = NULL;
 }
 
-// Copy code to memory of its own and make that executable.
+// Copy code to its own memory and make that executable.
 static bool map(struct ct_native *f, const unsigned char *byte, size_t n)
 {
     // Definition: bytes of the smallest pages
@@ -243,7 +242,7 @@ void ct_native_prepare(const struct ct_native *f, const double *input, double *w
 
 // ---- entries ----------------------------------------------------------------------------------
 
-// The compiler's check covers the system too: registers of 256 bits must be saved by it.
+// The compiler's check includes the operating system: it must save registers of 256 bits.
 bool ct_native_is_available(int lanes)
 {
 #if HAS_X86
@@ -289,12 +288,13 @@ struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *
     const struct ct_x86_calls calls = list_calls(lanes);
     *f = (struct ct_native){.l = l, .lanes = (size_t)lanes};
     place_prologue(a, f);
-    struct ct_arena *scratch = ct_arena_create_under(a); // several times what is kept
+    struct ct_arena *scratch
+        = ct_arena_create_under(a); // temporary data are several times the result
     const struct ct_x86_code code = ct_x86_emit(scratch, l, lanes, f->slot, f->nwork, &calls);
     f->nwork = code.nwork;
     f->ntable = code.ntable;
     f->table = copy_table(a, &code);
-    ct_arena_on_destroy(a, unmap, f); // first: it may run out of memory
+    ct_arena_on_destroy(a, unmap, f); // before the mapping: it may run out of memory
     const bool ok = map(f, code.byte, code.nbyte);
     ct_arena_destroy(scratch);
     return ok ? f : NULL;

@@ -1,15 +1,14 @@
-// Native code: a listing compiled to a function of the running processor.
+// Native code: a listing compiled to a function for the running processor.
 //
 //     listing -> prologue, interpreted, at prepare    body, compiled, at every call
 //
-// Available on x86-64 with AVX under the System V calling convention, where the system gives memory
-// that can be made executable. Memory is writable while code is written to it and executable
-// afterwards, never both.
+// Available on x86-64 with AVX and the System V calling convention, where the system allows
+// executable memory. Memory is writable while code is written and executable afterwards, never
+// both.
 //
-// What always holds: results have the bits of the tape (tape.h) made from the same listing, lane
-// by lane, unless the listing leaves fusing to native code. Evaluation allocates nothing. The
-// function is constant; the work array belongs to the caller and holds the prologue's results
-// between calls.
+// What always holds: results have the bits of the tape (tape.h) of the same listing, in each lane,
+// unless the listing leaves fusing to native code. Evaluation allocates nothing. The function is
+// constant; the work array belongs to the caller and holds the prologue's results between calls.
 #ifndef CT_CODEGEN_NATIVE_H
 #define CT_CODEGEN_NATIVE_H
 
@@ -19,9 +18,9 @@ struct ct_native;
 
 /// Can this processor run native code of 1, 4 or 8 lanes?
 bool ct_native_is_available(int lanes);
-/// Compile for 1, 4 or 8 SIMD lanes, eight as twice four (native_wide.h); l must outlive it. NULL
-/// where native code is not available: use the tape. The code goes with the arena. Cost:
-/// instructions of l.
+/// Compile for 1, 4 or 8 SIMD lanes, eight as twice four (native_wide.h); l must outlive the
+/// result. NULL where native code is not available: use the tape. The code is freed with the arena.
+/// Cost: instructions of l.
 struct ct_native *ct_native_create(struct ct_arena *a, const struct ct_listing *l, int lanes);
 
 /// Number of doubles of the work array, all lanes together.

@@ -1,5 +1,5 @@
-// Eight lanes as two halves of four; see native_wide.h. The work array has a part for each half,
-// then the inputs and outputs of four lanes.
+// Eight lanes as two halves of four; see native_wide.h. The work array holds the workspace of each
+// half, then the inputs and outputs of four lanes.
 #include "codegen/native_wide.h"
 
 #include <string.h>
@@ -8,9 +8,9 @@ enum { HALF = CT_NATIVE_WIDE_LANES / 2 }; // Definition: lanes of a half
 
 struct ct_native_wide {
     const struct ct_native *four;
-    size_t nwork;         // of a half
-    const uint32_t *slot; // inputs that are read  (nslot)
-    size_t nslot, ninput; // ninput: one more than the last of them
+    size_t nwork;         // doubles of the workspace of a half
+    const uint32_t *slot; // slots of inputs that are read (nslot)
+    size_t nslot, ninput; // ninput: one more than the largest slot
     size_t nout;
 };
 
@@ -35,7 +35,7 @@ size_t ct_native_wide_work(const struct ct_native_wide *p)
     return 2 * p->nwork + HALF * (p->ninput + p->nout);
 }
 
-// The inputs of a half, side by side.
+// Copy the inputs of one half to contiguous memory.
 static double *take_half(const struct ct_native_wide *p, const double *input, size_t half,
                          double *work)
 {

@@ -1,8 +1,8 @@
-// Eight lanes of native code: the code of four, run for the lower and for the upper half.
+// Eight lanes of native code: the code for four lanes, run for the lower and for the upper half.
 //
-//     input[8 * slot + lane]  -- half -->  four lanes  -- code -->  four lanes  -->  out[8 * k + lane]
+//     input[8 * slot + lane]  -> half ->  four lanes  -> code ->  four lanes  -> out[8 * k + lane]
 //
-// Vectors of eight numbers would need a processor that has them; four are what the code is for.
+// Vectors of eight numbers need AVX-512; this code needs AVX only.
 #ifndef CT_CODEGEN_NATIVE_WIDE_H
 #define CT_CODEGEN_NATIVE_WIDE_H
 
@@ -13,7 +13,7 @@ enum { CT_NATIVE_WIDE_LANES = 8 };
 
 struct ct_native_wide;
 
-/// Around the code of four lanes made from l, which must live as long.
+/// Wrap the code for four lanes made from l, which must outlive the result.
 struct ct_native_wide *ct_native_wide_create(struct ct_arena *a, const struct ct_native *four,
                                              const struct ct_listing *l);
 /// Number of doubles of the work array.

@@ -1,13 +1,13 @@
-// Loop rerolling: addresses of operands. A repetition becomes a loop if every operand is the row's
-// own, invariant, or affine in the row. Else end rows are dropped, or it stays straight. See
-// reroll.h.
+// Loop rerolling: addresses of operands. A repetition becomes a loop if every operand belongs to
+// the same row, is invariant, or has an address affine in the row. Otherwise irregular rows at the
+// ends are dropped, or the code stays straight. See reroll.h.
 #include "codegen/reroll_layout.h"
 
 #include <string.h>
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- how operands are reached -----------------------------------------------------------------
+// ---- addresses of operands ---------------------------------------------------------------------
 
 static bool is_made_before(const struct ct_repetitions *p, const struct ct_repetition *r,
                            uint32_t v)
@@ -27,7 +27,7 @@ static bool use_stream(struct ct_repetition *r, int kind, uint32_t other, int32_
     return true;
 }
 
-// Operands from the same row and loop invariants.
+// Resolve operands from the same row and loop invariants.
 static void resolve_row_and_fixed(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     for (uint32_t i = 0; i < 3 * r->period; i++)
@@ -84,8 +84,8 @@ static bool resolve_inputs(const struct ct_repetitions *p, struct ct_repetition 
     return use_stream(r, CT_SOURCE_INPUTS, 0, stride);
 }
 
-// May v be stored as result of `other` at a row beyond its ends (peeled value)? *is_new: not there
-// yet.
+// May v be stored as the result of `other` in a row beyond its ends (a peeled iteration)? *is_new:
+// not stored there yet.
 static bool is_edge_free(const struct ct_repetition *other, uint32_t slot, int32_t row,
                          uint32_t v, bool *is_new)
 {
@@ -98,7 +98,7 @@ static bool is_edge_free(const struct ct_repetition *other, uint32_t slot, int32
     return true;
 }
 
-// For an edge at a row.
+// Extend the results to hold an edge at this row.
 static void make_room(struct ct_repetition *r, int32_t row)
 {
     if (-row > r->before)
@@ -117,8 +117,8 @@ static void add_edge(const struct ct_repetitions *p, const struct ct_repetition 
     make_room(other, row);
 }
 
-// Results of one instruction of a repetition with constant row distance; at the ends, values
-// stored in their place.
+// Resolve an operand as results of one instruction of a repetition at constant row distance; values
+// before its first and after its last row are stored beside them.
 static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition *r,
                             uint32_t operand, struct ct_source *out)
 {
@@ -173,7 +173,8 @@ static bool is_same_sequence(const struct ct_repetitions *p, const struct ct_rep
     return true;
 }
 
-// A column of values copied before the loop; all must be computed before it.
+// Resolve an operand as a column of values that are copied before the loop; all must be computed
+// before it.
 static bool resolve_column(const struct ct_repetitions *p, struct ct_repetition *r,
                            uint32_t operand, struct ct_source *out)
 {
@@ -193,7 +194,7 @@ static bool resolve_column(const struct ct_repetitions *p, struct ct_repetition 
 
 // ---- which loops there are --------------------------------------------------------------------
 
-// Number of columns that change with each evaluation, and so are copied in each.
+// Number of columns that change with each evaluation and are copied each time.
 static size_t count_copied(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     size_t n = 0;
@@ -211,7 +212,7 @@ static size_t count_copied(const struct ct_repetitions *p, const struct ct_repet
     return n;
 }
 
-// Does the operand at a row follow the same rule as at the middle row?
+// Does the operand in this row follow the same rule as in the middle row?
 static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition *r,
                      uint32_t operand, int kind, uint32_t row)
 {
@@ -241,7 +242,7 @@ static bool is_alike(const struct ct_repetitions *p, const struct ct_repetition 
     }
 }
 
-// The longest range of rows around the middle in which an operand follows one rule.
+// Find the longest range of rows around the middle in which an operand follows one rule.
 static void regular_rows(const struct ct_repetitions *p, const struct ct_repetition *r,
                          uint32_t operand, uint32_t *first, uint32_t *behind)
 {
@@ -260,7 +261,7 @@ static void regular_rows(const struct ct_repetitions *p, const struct ct_repetit
     }
 }
 
-// Drop irregular rows at the ends for an operand that would be copied or has no address.
+// Drop irregular rows at the ends if an operand would otherwise be copied or has no address.
 static void drop_end_rows(const struct ct_repetitions *p, struct ct_repetition *r,
                           uint32_t operand)
 {
@@ -275,8 +276,8 @@ static uint32_t dropped_rows(const struct ct_repetition *r)
     return r->count - (r->keep_behind - r->keep_first);
 }
 
-// Do copies cost more than straight code for the end rows? A copy is a load and a store; straight
-// code costs about one instruction fetch more than code of a loop.
+// Do copies cost more than straight-line code for the end rows? A copy is a load and a store; an
+// instruction of straight-line code costs about one instruction fetch more than one of a loop.
 static bool copies_cost_more(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     size_t nsaved = 0;
@@ -340,12 +341,12 @@ static void assign_range(const struct ct_repetitions *p, const struct ct_repetit
         p->repetition_of[r->first + k] = to;
 }
 
-// Some operand has no address. Try without irregular end rows, then without the first row, the last
-// one, both; then give up.
+// An operand has no address: try without irregular end rows, then without the first row, the last
+// row, both; then give up.
 static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
 {
     static const struct {
-        unsigned first, less; // rows
+        unsigned first, less; // number of rows
     } without[] = {{1, 1}, {0, 1}, {1, 2}};
     assign_range(p, r, none);
     const uint32_t left = dropped_rows(r);
@@ -369,7 +370,7 @@ static void trim_rows(struct ct_repetitions *p, struct ct_repetition *r)
     assign_range(p, r, (uint32_t)(r - p->repetition));
 }
 
-// Remove the edges that `asker` has added last.
+// Remove the edges that were added last for `asker`.
 static void remove_edges(struct ct_repetition *r, uint32_t asker)
 {
     size_t n = r->nedge;
@@ -393,8 +394,8 @@ static void withdraw_edges(struct ct_repetitions *p, const struct ct_repetition 
             remove_edges(&p->repetition[r->stream[i].other], (uint32_t)(r - p->repetition));
 }
 
-// A repetition reads results of itself and of earlier ones only. When it is trimmed, earlier ones
-// change only by the edges that it has added to them.
+// Resolve all repetitions in order. Each reads results of itself and of earlier ones only. Trimming
+// one changes earlier ones only by the edges that it has added to them.
 static void resolve_all(struct ct_repetitions *p)
 {
     for (size_t i = 0; i < p->nrepetition; i++) {

@@ -1,18 +1,19 @@
-// Loop rerolling: straight-line code that repeats one sequence of operations (elements of a beam,
-// bodies of a chain) becomes a loop. An iteration is called a row.
+// Loop rerolling: straight-line code that repeats a sequence of operations (elements of a beam,
+// bodies of a chain) becomes a loop. One iteration is called a row, a repeated sequence a stretch.
 //
 //     order     ... | body, row 0 | body, row 1 | ... | body, row count - 1 | ...
-//     work      results of a row that something beyond it reads, row after row, `width` places each
+//     work      results that are read outside their row, row after row, `width` slots each
 //
-// Loop distribution separates instructions without loop-carried dependences, which are vectorised
-// over rows (results of one instruction contiguous over rows), from the others, such as running
-// sums. Strip mining keeps results of a distributed loop in the cache.
+// Loop distribution separates instructions without loop-carried dependences from the others, such
+// as running sums. The former are vectorised over rows: results of one instruction are contiguous
+// over rows. Strip mining keeps the results of a distributed loop in the cache.
 //
-// Operands of the body are results of the same row, values that are the same in all rows, or at
+// An operand of the body is a result of the same row, a value that is the same in all rows, or at
 //
 //     place + row * stride     of the inputs or of the work array.
 //
-// Operands that are not, as at the first row of a running sum, are copied there before the loop.
+// Other operands, such as that of the first row of a running sum, are copied to such an address
+// before the loop.
 //
 // What always holds: with and without loops, the same operations act on the same operands.
 #ifndef CT_CODEGEN_REROLL_H
@@ -20,12 +21,12 @@
 
 #include "expr/listing.h"
 
-/// Definition: strides that one loop can have, as many registers are free for them (x86.c).
+/// Definition: strides that one loop can have: so many registers are free for them (x86.c).
 enum { CT_REROLL_STREAMS = 7 };
-/// Definition: rows that are done together, doubles in a vector of 256 bits.
+/// Definition: rows computed together: doubles in a vector of 256 bits.
 enum { CT_ROWS_TOGETHER = 4 };
-/// Instructions that a first-level instruction cache of 32 KiB holds, about 8 bytes each.
-/// Derived: 32 KiB / 8 B
+/// Instructions that fit in a first-level instruction cache. Derived: 32 KiB / 8 B, with about 8
+/// bytes per instruction.
 enum { CT_REROLL_CACHED = 4096 };
 
 enum ct_reach {
@@ -41,51 +42,53 @@ enum ct_reach {
 
 struct ct_operand {
     enum ct_reach reach;
-    // ROW: number of the loop's own instruction; FIXED: value; PLACE: of the work array, for all
-    // rows; NUMBER: one double for all lanes, counted in doubles of the work array; OUT: output;
-    // else the place at row 0, STRIP: of the strip
+    // ROW: index of the instruction in the loop; FIXED: value; PLACE: slot of the work array, for
+    // all rows; NUMBER: index of a double of the work array, the same for all lanes; OUT: output;
+    // else the slot of row 0, in STRIP relative to the strip
     uint32_t at;
     int32_t stride;
 };
 
-/// CT_REACH_NUMBER: place is that of a double
+/// Copy of a value to the work array. is_number: one double for all lanes; slot counts doubles.
 struct ct_copy {
-    uint32_t value, slot; // of the work array
+    uint32_t value, slot; // slot: index in the work array
     bool is_number;
 };
 
-/// Not a place of the work array: the first output that the value is.
+/// In place of a slot: the value is stored as its first output.
 #define CT_REROLL_OUT (CT_VALUE_NONE - 1)
 
 struct ct_loop {
-    uint32_t first, period, count; // places in the order: the first one, of a row; rows
-    uint32_t strip;                // rows of a strip; 0: all
-    bool is_vectorized;            // rows may be done together
-    uint32_t nslot, *slot;         // instructions of a row that are its own, ascending
-    struct ct_operand *operand;    // (3 x nslot)
-    struct ct_operand *result;     // (nslot) where it is kept; CT_REACH_ROW: nowhere
-    struct ct_copy *copy;          // before the loop
+    uint32_t first, period,
+        count;          // first: index in the order; period: instructions of a row; count: rows
+    uint32_t strip;     // rows of a strip; 0: all
+    bool is_vectorized; // rows may be computed together
+    uint32_t nslot, *slot;      // instructions of a row that belong to this loop, ascending
+    struct ct_operand *operand; // (3 x nslot)
+    struct ct_operand
+        *result; // (nslot) where the result is stored; CT_REACH_ROW: in a register only
+    struct ct_copy *copy; // copies made before the loop
     size_t ncopy, copy_cap;
-    // of the first loop of a stretch: places of the strip whose last nbefore rows stand before
-    // those of the next strip
+    // of the first loop of a stretch: slots of the strip whose last nbefore rows are copied in
+    // front of those of the next strip
     uint32_t *carried, ncarried, nbefore;
 };
 
 struct ct_reroll {
-    struct ct_loop *loop; // ascending; two of one stretch follow each other
+    struct ct_loop *loop; // ascending; loops of one stretch are adjacent
     size_t nloop;
-    uint32_t *
-        slot; // by value: where a result of a loop is kept, CT_REROLL_OUT; CT_VALUE_NONE: others
-    struct ct_copy *table; // constants and parameters by row: copied once
+    // by value: slot of a result of a loop, or CT_REROLL_OUT; CT_VALUE_NONE for others
+    uint32_t *slot;
+    struct ct_copy *table; // constants and parameters by row: copied once, at prepare
     size_t ntable, table_cap;
-    uint32_t nwork;   // places of the work array, up to here
-    size_t nstraight; // instructions in no loop
-    size_t nresult;   // of rows that are kept in memory
+    uint32_t nwork;   // size of the work array in slots
+    size_t nstraight; // number of instructions in no loop
+    size_t nresult;   // number of results that are stored in memory
 };
 
-/// The loops of n instructions in the order of their execution. is_alone: by operator, not in
-/// loops. Places of the work array from nwork on are used, each of `lanes` numbers. rows: that can
-/// be done side by side; 1: none. Cost: about n.
+/// Find the loops of n instructions, given in the order of execution. is_alone: by operator: never
+/// part of a loop. Slots of the work array from nwork on are used, of `lanes` numbers each. rows:
+/// that may be computed together; 1: none. Cost: about n.
 struct ct_reroll ct_reroll_find(struct ct_arena *a, const struct ct_listing *l,
                                 const uint32_t *order, uint32_t n,
                                 const bool is_alone[CT_NKIND], uint32_t nwork, uint32_t rows,

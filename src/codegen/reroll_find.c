@@ -1,13 +1,12 @@
-// Detection of repetitions by a rolling hash of operators and distances to near operands; see
-// reroll_layout.h.
+// Detection of repetitions by a rolling hash (Rabin-Karp) of operators and of distances to near
+// operands; see reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// Instructions of the rolling hash; distances to operands within it are part of the hash. Costs
-// time only: ten times as many find the same loops but for rows that are shorter, a tenth leaves
-// more windows to compare.
-// Limit: of the time of the search
+// Window of the rolling hash, in instructions; distances to operands within the window are hashed.
+// It affects the time only: a window ten times as long misses only loops with shorter rows; one a
+// tenth as long gives more windows to compare. Limit: of the time of the search
 enum { WINDOW = 16 };
 
 static bool is_commutative(unsigned op)
@@ -16,7 +15,7 @@ static bool is_commutative(unsigned op)
         || op == CT_OP_FNMA;
 }
 
-// Constants and parameters, inputs, results.
+// Age of v: 0 for constants and parameters, 1 for inputs, then results in the order of execution.
 static uint32_t age(const struct ct_repetitions *p, uint32_t v)
 {
     return p->at[v] != none ? p->at[v] + 2 : p->l->rate[v] == CT_RATE_CALL;
@@ -56,9 +55,9 @@ static void link_windows(struct ct_repetitions *p)
     size_t size = 64;
     while (size < 2 * (size_t)p->n)
         size *= 2;
-    uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // 1 + place, by hash
-    // h = sum of sign[i + k] base^k over the window, moved on by one place
-    // Definition: 2^64 / golden ratio, odd
+    uint32_t *last = CT_NEWN(p->scratch, uint32_t, size); // by hash: 1 + index
+    // h = sum of sign[i + k] base^k over the window, updated for the next index. Definition: 2^64 /
+    // golden ratio, odd
     const uint64_t base = UINT64_C(0x9E3779B97F4A7C15);
     uint64_t h = 0, leaving = 1;
     for (int k = 0; k < WINDOW; k++)
@@ -74,12 +73,12 @@ static void link_windows(struct ct_repetitions *p)
     }
 }
 
-// Derived: instructions that a loop adds to each row at most: strides are added, the end is compared and
-// branched on. What is saved is about as much for each instruction that is not fetched.
+// Instructions that a loop adds to each row. Derived: at most one addition per stride, a comparison
+// and a branch. The gain is about one instruction for each one that is not fetched.
 enum { ADDED = CT_REROLL_STREAMS + 2 };
 
-// The repetition at i that saves most instructions. Rows that the instruction cache does not hold
-// gain nothing by being the same.
+// The repetition at index i that saves most instructions. Rows beyond the size of the instruction
+// cache gain nothing.
 static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t i,
                                         uint32_t *longest)
 {
@@ -88,7 +87,8 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
     while (c > i && c != none && c - i <= CT_REROLL_CACHED) {
         const uint32_t period = c - i;
         uint32_t same = 0;
-        if (best.count && period % best.period == 0) { // saves less than that did
+        if (best.count
+            && period % best.period == 0) { // a multiple of the best period saves less
             c = p->again[c];
             continue;
         }
@@ -107,21 +107,21 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
     return best;
 }
 
-// Are SIMD lanes filled nearly as well (7/8) with fewer rows as before?
+// Do fewer rows fill the SIMD lanes nearly as well (7/8) as before?
 static bool fills_lanes(uint32_t rows, uint32_t before, uint32_t lanes)
 {
     return 8 * (rows / lanes) >= 7 * (before / lanes);
 }
 
-// Choose the boundary between rows with the fewest live values across it. same: instructions that
-// repeat those one row before. Cost: two rows.
+// Choose the boundary between rows with the fewest live values across it. same: number of
+// instructions that equal those one row earlier. Cost: two rows.
 static void choose_row_boundary(const struct ct_repetitions *p, struct ct_repetition *r,
                                 uint32_t same, uint32_t lanes)
 {
     const uint32_t n = r->period, begin = r->first + (r->count / 2 - 1) * n;
     uint32_t *last = CT_NEWN(p->scratch, uint32_t, n);
-    int32_t *across
-        = CT_NEWN(p->scratch, int32_t, 2 * n + 1); // by place: more than at the one before
+    int32_t *across = CT_NEWN(p->scratch, int32_t,
+                              2 * n + 1); // by index: change of the number of live values
     for (uint32_t place = begin; place < begin + 2 * n; place++)
         for (uint32_t k = 0; k < ct_repetition_instruction(p, place)->narg; k++) {
             const uint32_t from = p->at[ct_repetition_operand(p, place, k)];

@@ -1,5 +1,5 @@
-// Memory layout of rerolled loops: live-out results, loop distribution, strip mining, slots of the
-// work array; see reroll_layout.h.
+// Memory layout of rerolled loops: results that are read later, loop distribution, strip mining,
+// slots of the work array; see reroll_layout.h.
 #include "codegen/reroll_layout.h"
 
 static const uint32_t none = CT_VALUE_NONE;
@@ -8,7 +8,7 @@ static const uint32_t none = CT_VALUE_NONE;
 
 // ---- live-out results ------------------------------------------------------------------------
 
-// Does row `row` of `reader` take the operand from where all rows take it?
+// In this row of `reader`, does the operand come from the source that all rows have in common?
 static bool is_taken_in_turn(const struct ct_repetitions *p, const struct ct_repetition *reader,
                              uint32_t operand, int32_t row, const struct ct_repetition *r,
                              uint32_t slot, int32_t its)
@@ -60,9 +60,9 @@ static void find_live_out(const struct ct_repetitions *p)
 
 // ---- vectorisation over rows -------------------------------------------------------------------
 
-// Parts of a distributed loop whose rows are done side by side. Costs time only: on the twelve
-// largest references and systems 6 and 60 give the same loops, 1 gives a tenth fewer.
-// Limit: passes over the instructions of a loop
+// Number of vectorised parts of a distributed loop. It affects the time only: on the twelve largest
+// references and systems, 6 and 60 give the same loops, 1 a tenth fewer. Limit: passes over the
+// instructions of a loop
 enum { MOST_PARTS = 2 };
 
 static bool reads_itself(const struct ct_repetitions *p, const struct ct_repetition *r,
@@ -88,7 +88,7 @@ static unsigned char part_of(const struct ct_repetitions *p, const struct ct_rep
     return part;
 }
 
-// Loop distribution: an instruction that reads results of earlier rows goes into a later part.
+// Loop distribution: an instruction that reads results of earlier rows moves to a later part.
 // Recurrences, such as running sums, and what depends on them end in the last part, which is not
 // vectorised. Cost: at most MOST_PARTS passes over the instructions of a row.
 static void distribute_loop(const struct ct_repetitions *p, struct ct_repetition *r)
@@ -118,7 +118,7 @@ static bool is_late(const struct ct_repetition *r, uint32_t slot)
     return r->part[slot] + 1u == r->npart;
 }
 
-// Operands that need a gather, as their rows are not contiguous.
+// Number of operands that need a gather, because their rows are not contiguous.
 static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_repetition *r)
 {
     uint32_t n = 0;
@@ -134,7 +134,7 @@ static uint32_t count_gathered(const struct ct_repetitions *p, const struct ct_r
     return n;
 }
 
-// Reads between the parts of a distributed loop.
+// Number of reads between the parts of a distributed loop.
 static uint32_t count_crossing_reads(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     uint32_t n = 0;
@@ -149,8 +149,8 @@ static uint32_t count_crossing_reads(const struct ct_repetitions *p, struct ct_r
     return n;
 }
 
-// Rows of a strip: four vectors, which are two cache lines of each result, else three or five, so
-// that the last strip is full or fills a vector. Loops of one or two strips have none.
+// Rows of a strip: four vectors, which are two cache lines of each result; or three or five, so
+// that the last strip is full or fills a vector. A loop of one or two strips is not strip-mined.
 static uint32_t strip_of(uint32_t count, uint32_t lanes)
 {
     static const uint32_t vectors[] = {4, 3, 5};
@@ -162,11 +162,11 @@ static uint32_t strip_of(uint32_t count, uint32_t lanes)
     return 0;
 }
 
-// Derived: cost model of vectorisation in instructions: a gather of four doubles takes five (two pairs of
-// loads and a merge), a value handed between parts two (store and load).
+// Choose between one row and several at a time by a cost model: number of instructions.
 static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
 {
-    // Derived: as above
+    // Derived: instructions: to gather four doubles two pairs of loads and a merge; to pass a value
+    // to the next part, a store and a load
     enum { GATHER = 5, HAND_OVER = 2 };
     for (size_t i = 0; i < p->nrepetition && lanes > 1; i++) {
         struct ct_repetition *r = &p->repetition[i];
@@ -183,7 +183,7 @@ static void choose_lanes(struct ct_repetitions *p, uint32_t lanes)
     }
 }
 
-// ---- places -------------------------------------------------------------------------------------
+// ---- slots of the work array -------------------------------------------------------------------
 
 static uint32_t place_of(const struct ct_repetition *r, uint32_t number, int32_t row)
 {
@@ -216,13 +216,14 @@ static uint32_t odd_rows(uint32_t rows, uint32_t lanes)
     return rows / lanes % 2 == 0 ? rows + lanes : rows;
 }
 
-// Its first row: from there on results stay.
+// First row of the last strip, from which on results stay in memory.
 static uint32_t last_strip(const struct ct_repetition *r)
 {
     return (r->count - 1) / r->strip * r->strip;
 }
 
-// What nobody reads but the next row, before it has its own, and others after the last one.
+// Find results that need one slot only: each is read by the next row, before that row writes its
+// own, and elsewhere only after the last row.
 static void find_passed(const struct ct_repetitions *p, struct ct_repetition *r)
 {
     for (uint32_t slot = 0; slot < r->period; slot++)
@@ -256,7 +257,8 @@ static bool is_output_by_row(const struct ct_repetitions *p, const struct ct_rep
     return true;
 }
 
-// Results that are outputs row by row and that no row reads. nstream: of the loop, so far.
+// Find results that are outputs in each row and that no row reads. nstream: streams of the loop so
+// far.
 static void find_outputs(const struct ct_repetitions *p, struct ct_repetition *r, int nstream)
 {
     int32_t stride[CT_REROLL_STREAMS];
@@ -299,7 +301,8 @@ static bool is_constant(const struct ct_repetitions *p, const struct ct_repetiti
     return true;
 }
 
-// Constants by row are the same in all lanes. Returns the number of columns that are not.
+// Number the columns. Constants by row are the same in all lanes. Returns the number of the other
+// columns.
 static uint32_t number_columns(const struct ct_repetitions *p, struct ct_repetition *r,
                                uint32_t lanes)
 {
@@ -406,7 +409,7 @@ static void add_columns(const struct ct_repetitions *p, const struct ct_repetiti
         }
 }
 
-// Edges of all stretches that this one asks for.
+// Add the copies for edges of all stretches that this one needs.
 static void add_edges(const struct ct_repetitions *p, uint32_t asker, struct ct_loop *loop)
 {
     for (uint32_t i = 0; i <= asker; i++) {
@@ -421,11 +424,12 @@ static void add_edges(const struct ct_repetitions *p, uint32_t asker, struct ct_
     }
 }
 
-// The instructions of one part of a row, or all.
+// Fill a loop with the instructions of one part of a row, or all of them.
 static void fill_loop(const struct ct_repetitions *p, const struct ct_repetition *r,
                       uint32_t part, struct ct_loop *loop)
 {
-    uint32_t *number = CT_NEWN(p->arena, uint32_t, r->period); // of the loop's own
+    uint32_t *number = CT_NEWN(p->arena, uint32_t,
+                               r->period); // by instruction of the row: its index in the loop
     loop->slot = CT_NEWN(p->arena, uint32_t, r->period);
     loop->operand = CT_NEWN(p->arena, struct ct_operand, 3 * r->period);
     loop->result = CT_NEWN(p->arena, struct ct_operand, r->period);
@@ -450,7 +454,7 @@ static void fill_loop(const struct ct_repetitions *p, const struct ct_repetition
     }
 }
 
-// Results of the last rows of a strip that the next one reads.
+// Find the results in the last rows of a strip that the next strip reads.
 static void add_carried(const struct ct_repetitions *p, const struct ct_repetition *r,
                         struct ct_loop *loop)
 {

@@ -1,4 +1,4 @@
-// Repetitions in a program, shared by the files that detect them (reroll_find.c), find the
+// Repetitions in a program; shared by the files that detect them (reroll_find.c), find the
 // addresses of their operands (reroll.c) and lay out their results in memory (reroll_layout.c).
 #ifndef CT_CODEGEN_REROLL_LAYOUT_H
 #define CT_CODEGEN_REROLL_LAYOUT_H
@@ -10,52 +10,55 @@ struct ct_repetitions {
     const struct ct_listing *l;
     const uint32_t *order;
     uint32_t n;
-    uint32_t *at;     // by value: the place in the order that makes it, or none
-    uint64_t *sign;   // by place: what must repeat
-    uint32_t *again;  // by place: the next one whose window has the same hash, or none
-    bool *is_swapped; // by place, see ct_repetition_argument
+    uint32_t *at;     // by value: index in the order of its instruction, or none
+    uint64_t *sign;   // by index: what must be equal in each row
+    uint32_t *again;  // by index: the next one whose window has the same hash, or none
+    bool *is_swapped; // by index, see ct_repetition_argument
     struct ct_repetition *repetition;
     size_t nrepetition, repetition_cap;
-    uint32_t *repetition_of; // the stretch of a place, or none
-    uint32_t *output;        // by value: 1 + the first output that it is, or 0
+    uint32_t *repetition_of; // by index: its stretch, or none
+    uint32_t *output;        // by value: 1 + its first output, or 0
 };
 
-// A result of a repeat that is put where the row before its first or behind its last one would be.
+// A value from outside that is stored as if a row before the first, or after the last one, had
+// computed it (peeled iteration).
 struct ct_repetition_edge {
     int32_t row;
     uint32_t value;
-    uint32_t next;  // 1 + index of the next one of the instruction
-    uint32_t asker; // the repeat that needs it first
+    uint32_t next;  // 1 + index of the next edge of the instruction
+    uint32_t asker; // index of the first repetition that needs it
 };
 
-// A sequence of operands that is copied to places of its own.
+// A column: the values of one operand in all rows, copied to contiguous slots.
 struct ct_repetition_column {
-    uint32_t operand; // 3 slot + k that it is the sequence of
-    bool is_copied;   // in each evaluation
+    uint32_t operand; // operand 3 slot + k whose values these are
+    bool is_copied;   // changes, so it is copied in each evaluation
     bool is_number;   // constants: one double for all lanes
-    uint32_t at;      // among those of its kind
+    uint32_t at;      // index among the columns of its kind
 };
 
-// How an operand is reached, before places are known.
+// Where an operand comes from, before slots are assigned.
 struct ct_source {
     enum {
-        CT_SOURCE_OPEN, // not known yet
+        CT_SOURCE_OPEN, // not resolved yet
         CT_SOURCE_ROW,
         CT_SOURCE_FIXED,
         CT_SOURCE_INPUTS,
         CT_SOURCE_RESULTS,
         CT_SOURCE_COLUMN
     } kind;
-    uint32_t
-        at; // instruction of the body; value; input at row 0; instruction of the other body; column
-    uint32_t other; // CT_SOURCE_RESULTS: repeat
+    // instruction of the body; value; input at row 0; instruction of the other body; column
+    uint32_t at;
+    uint32_t other; // CT_SOURCE_RESULTS: index of the repetition
     int32_t row,
-        // CT_SOURCE_RESULTS: its row at row 0, rows per row; CT_SOURCE_INPUTS: step is the stride
+        // CT_SOURCE_RESULTS: its row for row 0, and its rows per row; CT_SOURCE_INPUTS: step is the
+        // stride
         step;
 };
 
-// Storage of a live-out result: all rows; one strip of rows; one slot for all rows, where the next
-// row has read it before it writes its own; the output that it is, with out_stride between rows.
+// Storage of a result that is read outside its row. ROWS: all rows. STRIP: one strip of rows.
+// PLACE: one slot for all rows, if each row reads it before it writes. OUT: the output itself, with
+// out_stride between rows.
 enum ct_keep { CT_KEEP_ROWS, CT_KEEP_STRIP, CT_KEEP_PLACE, CT_KEEP_OUT };
 
 struct ct_repetition_stream {
@@ -66,12 +69,12 @@ struct ct_repetition_stream {
 
 struct ct_repetition {
     uint32_t first, period, count;
-    uint32_t ncut, whole_first, whole_count; // before it was cut
+    uint32_t ncut, whole_first, whole_count; // before it was split
     bool is_dropped;
     struct ct_source *reach; // (3 x period)
-    bool *escapes;           // (period) read beyond its row, or by another part of it
-    bool *escapes_far;       // (period) read by another stretch, row by row
-    uint32_t *least_row;     // (period) the first one that others read
+    bool *escapes;           // (period) read outside its row, or by another part of the loop
+    bool *escapes_far;       // (period) read by another stretch, in each row
+    uint32_t *least_row;     // (period) first row that is read from outside
     uint32_t *edge_of;       // (period) 1 + the first edge
     struct ct_repetition_edge *edge;
     size_t nedge, edge_cap;
@@ -79,26 +82,27 @@ struct ct_repetition {
     size_t ncolumn, column_cap;
     struct ct_repetition_stream stream[CT_REROLL_STREAMS];
     int nstream;
-    int32_t before, behind;           // rows for edges
+    int32_t before, behind;           // rows reserved for edges
     uint32_t keep_first, keep_behind; // see drop_end_rows
 
-    // rows side by side, see choose_lanes
+    // rows are computed together, see choose_lanes
     bool is_vectorized;
-    unsigned char *part; // (period) the loop that it is in; npart - 1: one row at a time
+    unsigned char
+        *part; // (period) number of its loop; npart - 1: the loop that is not vectorised
     uint32_t npart, nlate;
 
-    // places
-    uint32_t origin;                  // place of row 0
+    // slots
+    uint32_t origin;                  // slot of row 0
     enum ct_keep *keep;               // (period)
     uint32_t *offset;                 // (period) number of the result, or output of row 0
     int32_t *out_stride;              // (period)
-    uint32_t row_stride, slot_stride; // places between rows, between results
+    uint32_t row_stride, slot_stride; // slots between rows, and between results
     uint32_t nresult;
-    uint32_t strip; // rows, 0: all
+    uint32_t strip; // rows of a strip; 0: all
     uint32_t local_origin, local_stride, nlocal;
     uint32_t passed_origin, npassed;
     uint32_t number_origin,
-        nnumber; // columns of constants, one double for all lanes: the first one of row 0; of a row
+        nnumber; // columns of constants, one double for all lanes: index of row 0; doubles per row
 };
 
 static inline const struct ct_instruction *
@@ -107,8 +111,8 @@ ct_repetition_instruction(const struct ct_repetitions *p, uint32_t place)
     return &p->l->ins[p->order[place]];
 }
 
-/// Operand k of an instruction. Commutative operands are put into a canonical order: in the
-/// expression store it depends on age, and may differ between rows.
+/// Operand k of an instruction. Commutative operands are put into a canonical order, because their
+/// order in the expression store depends on age and may differ between rows.
 static inline uint32_t ct_repetition_operand(const struct ct_repetitions *p, uint32_t place,
                                              uint32_t k)
 {
@@ -123,7 +127,7 @@ static inline uint32_t ct_repetition_argument(const struct ct_repetitions *p,
     return ct_repetition_operand(p, r->first + row * r->period + operand / 3, operand % 3);
 }
 
-/// The stretch that makes v, with its row and instruction; NULL if none does.
+/// The stretch that computes v, with its row and instruction; NULL if none.
 static inline struct ct_repetition *ct_repetition_of(const struct ct_repetitions *p, uint32_t v,
                                                      int32_t *row, uint32_t *slot)
 {
@@ -136,12 +140,12 @@ static inline struct ct_repetition *ct_repetition_of(const struct ct_repetitions
     return r;
 }
 
-enum { CT_LEAST_ROWS = CT_ROWS_TOGETHER }; // that fill a vector
+enum { CT_LEAST_ROWS = CT_ROWS_TOGETHER }; // rows that fill a vector
 
-/// All of them, ascending. is_alone, rows: those of ct_reroll_find.
+/// Find all repetitions, ascending. is_alone, rows: as in ct_reroll_find.
 void ct_repetitions_find(struct ct_repetitions *p, const bool is_alone[CT_NKIND],
                          uint32_t rows);
-/// Places of all results that need some, and the loops. Arguments as those of ct_reroll_find.
+/// Assign slots to all results that need one, and make the loops. Arguments as in ct_reroll_find.
 void ct_repetition_lay_out(struct ct_repetitions *p, uint32_t rows, uint32_t lanes,
                            struct ct_reroll *out);
 

@@ -6,7 +6,7 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- where values are -------------------------------------------------------------------------
+// ---- registers and homes of values -------------------------------------------------------------
 
 uint32_t ct_emitter_place_size(const struct ct_emitter *e, unsigned area)
 {
@@ -20,7 +20,7 @@ struct ct_rm ct_emitter_memory(const struct ct_emitter *e, struct ct_home h)
     return ct_in_memory(e->base[h.area], (int32_t)(h.slot * ct_emitter_place_size(e, h.area)));
 }
 
-// Place in the order of the next read of v; none: never again.
+// Index in the order of the next instruction that reads v; none if v is not read again.
 static uint32_t next_use(const struct ct_emitter *e, uint32_t v)
 {
     return e->next[v] < e->start[v + 1] ? e->use[e->next[v]] : none;
@@ -53,7 +53,7 @@ static void leave_register(struct ct_emitter *e, uint32_t v)
     e->reg[v] = -1;
 }
 
-// Reads of v before a place in the order are done.
+// Mark the reads of v before an index in the order as done.
 void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at)
 {
     while (next_use(e, v) < at)
@@ -62,7 +62,7 @@ void ct_emitter_advance_uses(struct ct_emitter *e, uint32_t v, uint32_t at)
         e->until[e->reg[v]] = next_use(e, v);
 }
 
-// The register that is free, or else whose value is read last; -1 if all are pinned.
+// A free register, else the one whose value has the farthest next use; -1 if all are pinned.
 static int best_register(const struct ct_emitter *e)
 {
     const unsigned unused = ~(e->used | e->pinned) & ((1u << CT_NREGISTER) - 1);
@@ -77,7 +77,7 @@ static int best_register(const struct ct_emitter *e)
     return best;
 }
 
-// A register for v, pinned; v = none: for an intermediate result.
+// Allocate a register for v and pin it; v = none: for an intermediate result.
 static int take_register(struct ct_emitter *e, uint32_t v)
 {
     const int r = best_register(e);
@@ -96,7 +96,7 @@ static int take_register(struct ct_emitter *e, uint32_t v)
     return r;
 }
 
-// Four rows that are not side by side.
+// Load four rows that are not contiguous.
 static void gather(struct ct_emitter *e, int r, uint32_t v)
 {
     const int32_t step = e->stream[e->home[v].area - CT_NAREA].stride * (int32_t)e->place_size;
@@ -108,7 +108,7 @@ static void gather(struct ct_emitter *e, int r, uint32_t v)
     ct_put_gather(&e->code, r, take_register(e, none), m);
 }
 
-// v in a register, pinned.
+// Load v into a register and pin it.
 int ct_emitter_load(struct ct_emitter *e, uint32_t v)
 {
     if (e->reg[v] >= 0) {
@@ -125,7 +125,8 @@ int ct_emitter_load(struct ct_emitter *e, uint32_t v)
     return r;
 }
 
-// v as a last operand: a register if it is in one or will be read again before some value that is.
+// v as last operand: a register if v is in one, or if its next use is earlier than that of some
+// value in a register; else memory.
 static struct ct_rm operand(struct ct_emitter *e, uint32_t v)
 {
     if (e->reg[v] < 0 && (!e->layout || e->layout[v] == CT_ROWS_FULL)) {
@@ -137,8 +138,8 @@ static struct ct_rm operand(struct ct_emitter *e, uint32_t v)
     return ct_in_register(ct_emitter_load(e, v));
 }
 
-// Which of two exchangeable operands must be in a register: one that is, or the one read again
-// first.
+// Which of two commutative operands must be in a register: one that already is, else the one with
+// the earlier next use.
 static bool prefer_second(const struct ct_emitter *e, uint32_t a, uint32_t b)
 {
     const bool has_a = e->reg[a] >= 0, has_b = e->reg[b] >= 0;
@@ -154,7 +155,7 @@ void ct_emitter_release(struct ct_emitter *e, const uint32_t *v, uint32_t n)
             leave_register(e, v[k]);
 }
 
-// Pins come off, and values of an instruction that are not read again leave.
+// Unpin the registers of an instruction and free those whose values are not read again.
 void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i)
 {
     e->pinned = 0;
@@ -162,8 +163,8 @@ void ct_emitter_unpin(struct ct_emitter *e, const struct ct_instruction *i)
     ct_emitter_release(e, i->res, i->nres);
 }
 
-// The register of the result, which may be that of an operand: an operand read again is stored
-// before its register is given away, and instructions read before they write.
+// Register of the result. It may be that of an operand: if the operand is read again it is stored
+// first, and instructions read before they write.
 static int result(struct ct_emitter *e, const struct ct_instruction *i)
 {
     ct_emitter_unpin(e, i);
@@ -197,7 +198,7 @@ static void emit_sign_bit(struct ct_emitter *e, const struct ct_instruction *i, 
 enum { AND = 0x54, XOR = 0x57 };
 enum { EQ_OQ = 0x00, NEQ_UQ = 0x04, LT_OQ = 0x11, LE_OQ = 0x12, GE_OQ = 0x1D, GT_OQ = 0x1E };
 
-// The mask of a comparison, all ones or all zeros, keeps 1 or nothing of the number one.
+// AND of the comparison mask (all ones or all zeros) with the bits of 1.0 gives 1 or 0.
 static void emit_comparison(struct ct_emitter *e, const struct ct_instruction *i,
                             unsigned predicate)
 {
@@ -208,7 +209,7 @@ static void emit_comparison(struct ct_emitter *e, const struct ct_instruction *i
     ct_put_bitwise(&e->code, AND, d, d, ct_in_pool(CT_ONE));
 }
 
-// (0 < a) - (a < 0) in ones
+// (0 < a) - (a < 0), each comparison as 0 or 1.
 static void emit_signum(struct ct_emitter *e, const struct ct_instruction *i)
 {
     const int a = ct_emitter_load(e, i->arg[0]), plus = take_register(e, none),
@@ -231,7 +232,8 @@ static void emit_if(struct ct_emitter *e, const struct ct_instruction *i)
     ct_put_blend(&e->code, result(e, i), no, yes, mask);
 }
 
-// Three forms, by which operand the result overwrites. `op` is that of form 132.
+// Fused multiply-add has three forms, by the operand that the result overwrites. `op` is that of
+// form 132.
 //
 //     132: d = d * rm + v      213: d = v * d + rm      231: d = v * rm + d
 static void emit_fused(struct ct_emitter *e, const struct ct_instruction *i, unsigned op)
@@ -260,7 +262,7 @@ static void emit_fused(struct ct_emitter *e, const struct ct_instruction *i, uns
     }
 }
 
-// All registers are lost in a call.
+// Emit a call; all registers are caller-saved.
 static void emit_call(struct ct_emitter *e, const struct ct_instruction *i)
 {
     struct ct_bytes *c = &e->code;
@@ -305,7 +307,7 @@ static void emit_operation(struct ct_emitter *e, const struct ct_instruction *i)
     case CT_OP_DIV:
         emit_binary(e, i, 0x5E, false);
         break;
-    // the second operand where neither is smaller, as a < b ? a : b
+    // the second operand if neither is smaller, as a < b ? a : b
     case CT_OP_MIN:
         emit_binary(e, i, 0x5D, false);
         break;
@@ -356,7 +358,7 @@ static void emit_operation(struct ct_emitter *e, const struct ct_instruction *i)
     }
 }
 
-// Places in the work array of values that are dead now.
+// Free the slots in the work array of values that are dead.
 void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n)
 {
     for (uint32_t k = 0; k < n; k++)
@@ -366,7 +368,7 @@ void ct_emitter_free_slots(struct ct_emitter *e, const uint32_t *v, uint32_t n)
         }
 }
 
-// Results that are outputs are stored at once; the first such place is their home.
+// A result that is an output is stored at once; its first output becomes its home.
 static void claim_output(struct ct_emitter *e, uint32_t v)
 {
     if (e->first_output[v])
@@ -376,7 +378,7 @@ static void claim_output(struct ct_emitter *e, uint32_t v)
 static void store_outputs(struct ct_emitter *e, uint32_t v)
 {
     uint32_t k = e->first_output[v];
-    if (k && e->reg[v] < 0) // a function has written it there
+    if (k && e->reg[v] < 0) // a called function has written it there
         k = e->next_output[k - 1];
     for (; k; k = e->next_output[k - 1])
         ct_put_store(&e->code, ct_emitter_memory(e, (struct ct_home){CT_AREA_OUT, k - 1}),
@@ -450,7 +452,7 @@ static void roll_up(struct ct_emitter *e)
     for (int op = 0; op < CT_NKIND; op++)
         is_alone[op] = e->calls->by_op[op] != 0;
     if (e->norder < CT_REROLL_CACHED)
-        return; // all of it stays in the instruction cache
+        return; // the whole body fits in the instruction cache
     e->reroll
         = ct_reroll_find(e->arena, e->l, e->order, (uint32_t)e->norder, is_alone, e->nfixed,
                          e->calls->rows_together && e->code.lanes == 1 ? CT_ROWS_TOGETHER : 1,
@@ -461,7 +463,7 @@ static void roll_up(struct ct_emitter *e)
     e->nfixed = e->nwork = e->reroll.nwork;
 }
 
-// ---- the whole --------------------------------------------------------------------------------
+// ---- entry point -------------------------------------------------------------------------------
 
 static void place_values(struct ct_emitter *e, const uint32_t *home)
 {
@@ -491,12 +493,12 @@ static void place_values(struct ct_emitter *e, const uint32_t *home)
     }
 }
 
-// Saved for loops; one of them twice, see below.
+// Registers saved for loops; R12 twice, to keep the stack aligned, see emit_entry.
 static const int loop_register[] = {CT_R12, CT_R12, CT_R13, CT_R15};
 
-// The areas are pointed at by the arguments themselves, or by registers that calls leave alone.
-// Three pushes and the return address keep the stack aligned to 16, and so does an even number
-// more.
+// Function prologue. The areas are addressed by the argument registers or, if there are calls, by
+// callee-saved registers. Three pushes and the return address keep the stack aligned to 16 bytes;
+// further pushes come in pairs.
 static void emit_entry(struct ct_emitter *e, bool calls)
 {
     if (calls) {
@@ -514,7 +516,7 @@ static void emit_entry(struct ct_emitter *e, bool calls)
     e->base[CT_AREA_WORK] = calls ? CT_RBX : CT_RDX;
 }
 
-// Outputs that are not stored when they are computed: those of the prologue and of loops.
+// Store the outputs that are not stored when they are computed: those of the prologue and of loops.
 static void copy_outputs(struct ct_emitter *e)
 {
     for (uint32_t k = 0; k < e->l->nout; k++) {
@@ -554,8 +556,8 @@ struct ct_x86_code ct_x86_emit(struct ct_arena *a, const struct ct_listing *l, i
                            .place_size = 8 * (uint32_t)lanes,
                            .width = 1};
     const bool any_call = ct_emitter_order(&e);
-    // Limit: of memory at first, which grows
-    const size_t usual = 10; // bytes of an instruction, a load or store counted in
+    // Limit: initial size of the buffer, which grows
+    const size_t usual = 10; // bytes of an instruction with its share of loads and stores
     e.code.cap = usual * e.norder + 512;
     e.code.byte = CT_NEWN(a, unsigned char, e.code.cap);
     roll_up(&e);

@@ -1,5 +1,5 @@
-// Scheduling of calls: functions and what they need come first, while few values are live. Sines
-// and cosines of all angles that need no other function are one call.
+// Scheduling of calls: calls and their dependences come first, while few values are live. Sines and
+// cosines of all angles that depend on no other function are one call.
 #include "codegen/emitter.h"
 
 #include <string.h>
@@ -16,15 +16,16 @@ static bool is_wave(const struct ct_instruction *i)
     return i->op >= CT_OP_ANGLE_SIN && i->op <= CT_OP_ANGLE_SINCOS;
 }
 
-// Scheduling priority: what angles need, their sines and cosines, other calls and their needs, the
-// rest.
+// Scheduling priority: dependences of angles, their sines and cosines, other calls with their
+// dependences, the rest.
 enum turn { FOR_ANGLES, ANGLES, FOR_CALLS, REST, NTURN };
 
-// Angles are those that no call leads to.
+// Find the angles: arguments of sines and cosines that depend on no call.
 static void find_angles(const struct ct_emitter *e, unsigned char *turn)
 {
     const struct ct_listing *l = e->l;
-    unsigned char *behind = CT_NEWN(e->arena, unsigned char, l->nvalue); // a call, by value
+    unsigned char *behind
+        = CT_NEWN(e->arena, unsigned char, l->nvalue); // by value: it is or depends on a call
     for (size_t i = l->nprologue; i < l->nins; i++) {
         const struct ct_instruction *ins = &l->ins[i];
         bool after = false;
@@ -36,7 +37,7 @@ static void find_angles(const struct ct_emitter *e, unsigned char *turn)
     }
 }
 
-// What calls need comes early; what angles need, earliest.
+// Mark what calls depend on, and with higher priority what angles depend on.
 static void mark_needed(const struct ct_emitter *e, unsigned char *turn)
 {
     const struct ct_listing *l = e->l;
@@ -55,7 +56,7 @@ static void mark_needed(const struct ct_emitter *e, unsigned char *turn)
     }
 }
 
-// By turn, else in the order of the listing.
+// Stable sort by priority, else in the order of the listing.
 bool ct_emitter_order(struct ct_emitter *e)
 {
     const struct ct_listing *l = e->l;
@@ -88,7 +89,7 @@ static const struct ct_instruction *wave(const struct ct_emitter *e, uint32_t k)
 static void sort_waves(struct ct_emitter *e)
 {
     uint32_t *order = e->order + e->first_angle;
-    for (uint32_t i = 1; i < e->nangle; i++) // few, and mostly in order
+    for (uint32_t i = 1; i < e->nangle; i++) // insertion sort: few elements, mostly sorted
         for (uint32_t k = i; k > 0; k--) {
             const struct ct_home *a = &e->home[wave(e, k - 1)->arg[0]],
                                  *b = &e->home[wave(e, k)->arg[0]];
@@ -110,7 +111,7 @@ static bool are_side_by_side(const struct ct_emitter *e)
     return true;
 }
 
-// The angles copied to places side by side.
+// Copy the angles to contiguous slots of the work array.
 static struct ct_home gather_angles(struct ct_emitter *e)
 {
     const struct ct_home first = {CT_AREA_WORK, e->nwork};
@@ -125,7 +126,8 @@ static struct ct_home gather_angles(struct ct_emitter *e)
     return first;
 }
 
-// Sines and cosines where the call has put them; places that no value has become free.
+// The homes of sines and cosines are where the call writes them; slots of unused results become
+// free.
 static void place_waves(struct ct_emitter *e, uint32_t sines, uint32_t cosines)
 {
     for (uint32_t k = 0; k < e->nangle; k++) {
@@ -151,7 +153,7 @@ static void place_waves(struct ct_emitter *e, uint32_t sines, uint32_t cosines)
     }
 }
 
-// One call for all of them.
+// Emit one call for all angles.
 void ct_emitter_angles(struct ct_emitter *e)
 {
     struct ct_bytes *c = &e->code;

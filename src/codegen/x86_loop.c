@@ -1,4 +1,4 @@
-// Machine code of rerolled loops: the body is emitted as a program of its own, whose operands are
+// Machine code of rerolled loops. The body is emitted as a program of its own; its operands are
 // addressed by registers that advance by a stride per row.
 #include "codegen/emitter.h"
 
@@ -17,7 +17,7 @@ struct body {
     struct ct_listing l;
     struct ct_stream stream[CT_REROLL_STREAMS];
     unsigned nstream;
-    int32_t together; // rows
+    int32_t together; // rows per iteration
     uint32_t *slot;   // 1 + value, by hash
     size_t mask;
     struct ct_operand *operand; // by value from period on
@@ -48,7 +48,7 @@ static bool is_same_operand(const struct ct_operand *a, const struct ct_operand 
     return a->reach == b->reach && a->at == b->at && a->stride == b->stride;
 }
 
-// A constant or parameter broadcast to four doubles: copied once.
+// Broadcast a constant or parameter to four doubles in the work array; each is copied once.
 static struct ct_home spread(struct ct_emitter *e, uint32_t value)
 {
     if (e->spread[value] == none) {
@@ -80,7 +80,7 @@ static void place_stream(struct body *b, uint32_t v, const struct ct_operand *o)
         b->e.layout[v] = o->stride == 1 ? CT_ROWS_FULL : CT_ROWS_APART;
 }
 
-// The value that stands for an operand; operands at one place are one.
+// The value that represents an operand; operands at one address are one value.
 static uint32_t value_of(struct body *b, const struct ct_emitter *outer,
                          const struct ct_loop *loop, const struct ct_operand *o)
 {
@@ -136,12 +136,12 @@ static void list_body(struct body *b, const struct ct_emitter *outer,
     memset(b->e.reg, -1, b->l.nvalue);
     b->e.first_output = CT_NEWN(a, uint32_t, b->l.nvalue);
     b->e.free = CT_NEWN(a, uint32_t, b->l.nvalue + 1);
-    b->e.nfixed = b->e.nwork; // values of outside stay where they are
+    b->e.nfixed = b->e.nwork; // values from outside the loop keep their slots
     b->e.nfree = 0;
     ct_emitter_list_uses(&b->e);
 }
 
-// Streams move on by so many rows.
+// Advance the streams by a number of rows.
 static void move_streams(struct body *b, int32_t rows)
 {
     for (unsigned i = 0; i < b->nstream; i++)
@@ -150,7 +150,7 @@ static void move_streams(struct body *b, int32_t rows)
                            * (int32_t)ct_emitter_place_size(&b->e, CT_NAREA + i));
 }
 
-// Streams to their first row, in a strip to that of the strip.
+// Set the streams to their first row, or to the first row of a strip.
 static void start_streams(struct body *b, const struct ct_loop *loop)
 {
     for (unsigned i = 0; i < b->nstream; i++) {
@@ -162,7 +162,7 @@ static void start_streams(struct body *b, const struct ct_loop *loop)
     }
 }
 
-// In SIMD lanes the results of a row fill several cache lines, prefetched by the row before.
+// Prefetch the next row. In SIMD lanes the results of a row fill several cache lines.
 static void fetch_next_row(struct body *b)
 {
     // Definition: bytes of a cache line
@@ -182,7 +182,8 @@ static void fetch_next_row(struct body *b)
     }
 }
 
-// `times` rows, or sets of them, from where the streams are; then they are behind it.
+// Emit `times` rows, or groups of rows, from the present position of the streams, which then stand
+// after them.
 static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t times,
                       bool starts, int32_t back)
 {
@@ -216,7 +217,8 @@ static void emit_rows(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
     e->reroll.table_cap = b.e.reroll.table_cap;
 }
 
-// Four rows at a time; the last four may overlap rows already done, which are computed again.
+// Four rows at a time. The last four may overlap rows already computed, which are then computed
+// again.
 static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop, uint32_t rows)
 {
     const uint32_t times = rows / CT_ROWS_TOGETHER, left = rows % CT_ROWS_TOGETHER;
@@ -229,7 +231,7 @@ static void emit_side_by_side(struct ct_emitter *e, const struct ct_loop *loop, 
     e->code.lanes = lanes;
 }
 
-// Reads within a loop are done; what nobody else reads gives up its place.
+// Mark the reads within a loop as done and free the slots of values that are not read again.
 static void pass_loop(struct ct_emitter *e, const struct ct_loop *loop)
 {
     const uint32_t end = loop->first + loop->period * loop->count;
@@ -249,7 +251,8 @@ static void emit_part(struct ct_emitter *e, const struct ct_loop *loop, uint32_t
         emit_rows(e, loop, rows, true, 0);
 }
 
-// The last rows of a strip before the first of the next one, a whole set at a time.
+// Copy the last rows of a strip in front of the first row of the next one, a whole vector at a
+// time.
 static void carry_over(struct ct_emitter *e, const struct ct_loop *loop)
 {
     const int lanes = e->code.lanes;
@@ -267,7 +270,8 @@ static void carry_over(struct ct_emitter *e, const struct ct_loop *loop)
     e->code.lanes = lanes;
 }
 
-// All parts of a strip before the next strip. R12: bytes of one result by row, up to the strip.
+// Emit the strip-mined loops: all parts of a strip before the next strip. R12: byte offset of the
+// strip within one result.
 static void emit_strips(struct ct_emitter *e, const struct ct_loop *loop,
                         const struct ct_loop *end)
 {
@@ -297,7 +301,7 @@ static void emit_copies(struct ct_emitter *e, const struct ct_loop *loop)
     ct_emitter_spill_all(e);
 }
 
-// The loops of one stretch. Returns the one behind them.
+// Emit the loops of one stretch. Returns the first loop after them.
 const struct ct_loop *ct_emitter_loops(struct ct_emitter *e, const struct ct_loop *loop,
                                        const struct ct_loop *end)
 {

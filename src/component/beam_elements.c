@@ -1,4 +1,4 @@
-// Where the elements of a beam end; see beam.h.
+// Positions of the ends of elements; see beam.h.
 #include "component/beam.h"
 #include "expr/switches.h"
 
@@ -9,7 +9,7 @@ static void divide_evenly(struct ct_exs *x, struct ct_arena *a, struct ct_beam *
     ct_ex *end = CT_NEWN(a, ct_ex, n);
     for (long i = 0; i < n; i++)
         end[i] = ct_ex_scale(x, (double)(i + 1) / (double)n, beam->length);
-    end[n - 1] = beam->length; // without the round-off of the last one
+    end[n - 1] = beam->length; // exact, without round-off
     beam->end = end;
     beam->nelement = (int)n;
 }

@@ -1,4 +1,4 @@
-// Keys that families share, and values of instances by key; see class.h.
+// Keys shared by a family, and values of instances by key; see class.h.
 #include "component/class.h"
 
 #include <assert.h>
@@ -28,7 +28,7 @@ const struct ct_key *ct_family_keys(enum ct_family family, int *nkey)
 
 const char *const *ct_key_choices(struct ct_arena *a, const struct ct_key *key, size_t *n)
 {
-    const char **word = CT_NEWN(a, const char *, strlen(key->unit)); // more than there can be
+    const char **word = CT_NEWN(a, const char *, strlen(key->unit)); // an upper bound
     *n = 0;
     for (const char *p = key->unit; *p; p += *p == '|') {
         const size_t length = strcspn(p, "|");

@@ -59,8 +59,9 @@ void ct_motion_measure_angle(struct ct_motion *m, ct_ex3 n, ct_ex3 across)
         .kind = CT_MEASURE_ANGLE, .about = n, .v = across, .w = across, .from = n};
 }
 
-// e1 = the coordinate axis most across n, made normal to n and of unit length; e2 = n x e1.
-// The search starts behind the axis most along n, so that z gives (x, y), x (y, z) and y (z, x).
+// e1 = the coordinate axis most nearly normal to n, made normal to n and of unit length; e2 = n x
+// e1. The search starts after the axis nearest to n, so that z gives (x, y), x gives (y, z) and y
+// gives (z, x).
 void ct_axes_normal(struct ct_exs *x, ct_ex3 n, const double *value, ct_ex3 *e1, ct_ex3 *e2)
 {
     double v[3];

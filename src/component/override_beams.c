@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const char *const formulations[] = {"auto", "linear", "foreshortening", "force-only",
-                                           "stretch-linear"}; // by ct_beam_formulation
+                                           "stretch-linear"}; // indexed by ct_beam_formulation
 
 bool ct_model_change_beams(struct ct_ctx *ctx, struct ct_model *m, long elements,
                            const char *formulation)

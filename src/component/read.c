@@ -1,5 +1,6 @@
-// A model from its file: version and top keys here, sections in the other read_*.c. Names of all
-// sections are declared before any value is read, so that order within the file does not matter.
+// Read a model file: version and top-level keys here, sections in the other read_*.c. Names of all
+// sections are declared before any value is read, so that the order within the file does not
+// matter.
 #include "component/read.h"
 
 #include <stdlib.h>
@@ -13,7 +14,8 @@ static const char *const top_keys[]
 
 struct group {
     const struct ct_finding *first; // an error or warning; its notes follow
-    struct ct_mark mark; // the first one in the model's own file: a table is used there
+    // first position in the model file itself: for a table, where it is used
+    struct ct_mark mark;
     size_t n, number;
 };
 
@@ -21,7 +23,7 @@ static int compare_groups(const void *a, const void *b)
 {
     const struct group *p = a, *q = b;
     const struct ct_mark *m = &p->mark, *n = &q->mark;
-    if (!m->file != !n->file) // the command line comes first
+    if (!m->file != !n->file) // diagnostics of the command line come first
         return m->file ? 1 : -1;
     if (m->line != n->line)
         return m->line < n->line ? -1 : 1;
@@ -30,7 +32,7 @@ static int compare_groups(const void *a, const void *b)
     return p->number < q->number ? -1 : 1;
 }
 
-// Sections are read in an order of their own; readers go through a file from above.
+// Sort diagnostics by position in the file, because sections are read in another order.
 static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
 {
     const size_t n = ctx->ndiagnostic - from;
@@ -56,7 +58,7 @@ static void sort_diagnostics(struct ct_ctx *ctx, const char *file, size_t from)
             ctx->diagnostic[k++] = group[g].first[i];
 }
 
-// ---- the top of the file -----------------------------------------------------------------------
+// ---- top-level keys ----------------------------------------------------------------------------
 
 static void check_version(struct ct_reader *r)
 {
@@ -71,7 +73,7 @@ static void check_version(struct ct_reader *r)
                  "this program reads version 1 of the format, 'cotree: 1'");
 }
 
-// File name without folder and suffix
+// File name without folder and suffix.
 static const char *stem(struct ct_reader *r)
 {
     const char *slash = strrchr(r->m->file, '/');
@@ -79,13 +81,13 @@ static const char *stem(struct ct_reader *r)
     const char *dot = strrchr(base, '.');
     char *name
         = ct_arena_strndup(r->a, base, dot && dot > base ? (size_t)(dot - base) : strlen(base));
-    for (char *c = name; *c; c++) // as in messages: nothing that steers a terminal
+    for (char *c = name; *c; c++) // replace control characters
         if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
     return name;
 }
 
-// Control characters, of ASCII and behind it (U+0080 to U+009F), but for those in `allowed`.
+// Does text contain control characters, ASCII or U+0080 to U+009F, other than those in `allowed`?
 static bool has_control(const char *text, const char *allowed)
 {
     for (const unsigned char *s = (const unsigned char *)text; *s; s++)
@@ -95,7 +97,7 @@ static bool has_control(const char *text, const char *allowed)
     return false;
 }
 
-// They would steer the terminal where the text is printed.
+// Read a text without control characters, which could steer the terminal where it is printed.
 static void read_plain(struct ct_reader *r, const char *key, const char *allowed,
                        const char **text)
 {
@@ -136,7 +138,8 @@ static void mark_reached(const struct ct_model *m, const struct ct_instance *sel
         reached[m->frame[self->to].body] = true;
 }
 
-// Beside bodies that joints hold one that nothing is attached to is most often forgotten.
+// Warn of a body without attachments in a model whose other bodies have joints: most often an
+// oversight.
 static void warn_of_lone_bodies(struct ct_reader *r)
 {
     const struct ct_model *m = r->m;
@@ -184,12 +187,12 @@ static bool read_model(struct ct_ctx *ctx, const char *file, const struct ct_nod
     return true;
 }
 
-// Errors counted from `nerror`, those of the text before.
+// Finish the model; `nerror` errors existed before this text.
 static bool finish(struct ct_ctx *ctx, const char *file, const struct ct_node *root,
                    size_t nerror, size_t ndiagnostic, const struct ct_set *set, size_t nset,
                    struct ct_model *m)
 {
-    if (root) // also with keys given twice: there may be more to say
+    if (root) // also after duplicate keys: there may be more errors to report
         read_model(ctx, file, root, set, nset, m);
     sort_diagnostics(ctx, file, ndiagnostic);
     return ctx->nerror == nerror;

@@ -1,4 +1,4 @@
-// Beams: the values of the class as struct ct_beam, checked along the axis.
+// Beams: from the values of the class to struct ct_beam, with checks along the axis.
 #include "component/read.h"
 
 #include "base/sort.h"
@@ -9,14 +9,14 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what is asked of single values ------------------------------------------------------------
+// ---- checks of single values -------------------------------------------------------------------
 
 struct work {
     struct ct_reader *r;
     const struct ct_instance *self;
     struct ct_beam *beam;
     double *value; // of all symbols, x among them
-    size_t x;      // its place there
+    size_t x;      // index of x in them
 };
 
 static const struct ct_value *get(const struct work *w, const char *key)
@@ -29,7 +29,7 @@ static bool has(const struct work *w, const char *key)
     return get(w, key)->given;
 }
 
-// 0 where it is not given
+// Value of a scalar key; 0 if it is not given.
 static ct_ex scalar(const struct work *w, const char *key)
 {
     const struct ct_value *v = get(w, key);
@@ -52,7 +52,7 @@ static bool excludes(const struct work *w, const char *a, const char *b)
                     "body '%s': give '%s' or '%s', not both", w->self->name, a, b);
 }
 
-// Does it vary along the beam?
+// Does the value vary along the beam?
 static bool is_along(const struct work *w, const struct ct_value *v, size_t i)
 {
     return ct_ex_kinds(w->r->m->x, v->e[i]) & 1u << CT_SYM_LOCAL;
@@ -106,7 +106,7 @@ static bool check_scalars(const struct work *w)
     return check_density(w) && ok;
 }
 
-// ---- which keys go together --------------------------------------------------------------------
+// ---- combinations of keys ----------------------------------------------------------------------
 
 static unsigned find_known(const struct work *w)
 {
@@ -148,13 +148,13 @@ static bool check_theory(const struct work *w)
         ok = needs(w, "'shear_factor'", why);
     if (!has(w, "G") && !has(w, "nu"))
         ok = needs(w, "'G' or 'nu'", why);
-    if (!has(w, "area") && !has(w, "density")) // else it has been asked for
+    if (!has(w, "area") && !has(w, "density")) // otherwise the missing key has been reported
         ok = needs(w, "'area'", why);
     return ok;
 }
 
-// Quadratic twist and stretch are internal freedoms of an element: reduced integration gives them
-// no stiffness, lumped mass no inertia.
+// Quadratic twist and stretch are internal freedoms of an element. Reduced integration gives them
+// no stiffness and lumped mass no inertia, so these combinations are errors.
 static bool check_quadratic(const struct work *w, const char *key)
 {
     const char *rule = get(w, "mass")->count ? "mass" : "integration";
@@ -166,8 +166,8 @@ static bool check_quadratic(const struct work *w, const char *key)
                     w->self->name, key, rule);
 }
 
-// Foreshortening makes velocity-quadratic forces of the deflections; without them the model would
-// be inconsistent.
+// Foreshortening gives forces that are quadratic in the velocities of deflection. Without them the
+// model would be inconsistent, so this combination is an error.
 static bool check_quadratic_velocity(const struct work *w)
 {
     if (!get(w, "quadratic_velocity")->count || get(w, "formulation")->count == CT_BEAM_LINEAR)
@@ -177,7 +177,8 @@ static bool check_quadratic_velocity(const struct work *w)
                     w->self->name);
 }
 
-// What `deformation` lists must have a stiffness; a beam that may do anything must bend at least.
+// Each listed deformation needs a stiffness; a beam with free choice needs at least bending
+// stiffness.
 static bool check_deformation(const struct work *w, unsigned known)
 {
     static const struct {
@@ -231,7 +232,7 @@ static bool check_ends(const struct work *w, const struct ct_value *v, double le
     return ok;
 }
 
-// Elements also end at the cuts that the list does not have.
+// Add ends of elements at the cuts that the list does not contain.
 static void cut_list(const struct work *w)
 {
     struct ct_beam *beam = w->beam;
@@ -264,16 +265,16 @@ static bool fill_elements(const struct work *w)
     const int n = beam->nelement = (int)v->count;
     ct_ex *end = CT_NEWN(w->r->a, ct_ex, n);
     memcpy(end, v->e, (size_t)n * sizeof *end);
-    end[n - 1] = beam->length; // without the round-off of the last one
+    end[n - 1] = beam->length; // exact, without round-off
     beam->end = end;
     beam->is_even = false;
     return ok;
 }
 
-// ---- the section along the axis ----------------------------------------------------------------
+// ---- section and material along the axis -------------------------------------------------------
 
-// Sample points inside an element for checks of the section; its ends may be jumps or cusps.
-// Limit: of what is checked in advance; the rule of a product of four lines or less.
+// Sample points inside an element for checks of the section; its ends may be jumps or cusps. Limit:
+// number of points; a product of four linear functions is determined by them.
 enum { NSAMPLE = 5 };
 
 static double value_at(const struct work *w, const struct ct_value *v, size_t i, double place)
@@ -293,7 +294,7 @@ static bool wrong_along(const struct work *w, const char *key, size_t i, double 
                     w->self->name, key, what, where, wanted);
 }
 
-// The i-th expression of a key must be finite and positive (strict) or nonnegative along the beam.
+// Check that expression i of a key is finite and positive (strict) or nonnegative along the beam.
 static bool check_along(const struct work *w, const char *key, size_t i, bool strict)
 {
     const struct ct_value *v = get(w, key);
@@ -320,11 +321,12 @@ static bool check_along(const struct work *w, const char *key, size_t i, bool st
     return true;
 }
 
-// Relative error of element-wise quadrature of the key's i-th value, against a finer quadrature.
+// Relative error of element-wise quadrature of value i of the key, compared with a finer
+// quadrature.
 static double quadrature_error(const struct work *w, const struct ct_value *v, size_t i)
 {
-    // Derived: a jump in one of 256 parts is off by 0.4 % of its height, so that the two digits
-    // which are printed hold.
+    // Derived: a jump within one of 256 parts has an error of 0.4 % of its height (1/256), so the
+    // two printed digits are right.
     enum { POINTS = CT_ELEMENT_POINTS, PARTS = 256 };
     double point[POINTS], weight[POINTS], coarse = 0, fine = 0, size = 0, from = 0;
     ct_gauss(POINTS, point, weight);
@@ -351,7 +353,7 @@ static int ascending(const void *context, const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-// Places where a value along the beam jumps or has a kink become ends of elements.
+// Make positions where a value jumps or has a kink ends of elements.
 static void cut_elements(const struct work *w)
 {
     static const char *const keys[]
@@ -397,7 +399,7 @@ static void cut_elements(const struct work *w)
     beam->is_cut = beam->nelement > before;
 }
 
-// Is the value of the key zero all along one of the elements?
+// Does the value of the key vanish on a whole element?
 static bool vanishes(const struct work *w, const char *key)
 {
     const struct ct_value *v = get(w, key);
@@ -418,7 +420,7 @@ static bool vanishes(const struct work *w, const char *key)
     return false;
 }
 
-// Deformations with stiffness; a value of 0 counts as not given.
+// Deformations with stiffness; a value of 0 means not given.
 static unsigned find_stiff(const struct work *w)
 {
     return w->beam->known
@@ -446,7 +448,7 @@ static bool check_nu_along(const struct work *w)
     return true;
 }
 
-// What is a number has been checked.
+// Check material values that vary; constants have been checked.
 static bool check_material(const struct work *w)
 {
     static const char *const keys[] = {"E", "G", "shear_factor", "density"};
@@ -471,8 +473,8 @@ static bool check_section(const struct work *w)
     return ok;
 }
 
-// Exact where the mass per length is a polynomial; else by element, as jumps belong to ends of
-// elements.
+// Mass of the beam: exact if the mass per length is a polynomial; else by quadrature per element,
+// as jumps are at ends of elements.
 static ct_ex integrate_mass(const struct work *w)
 {
     struct ct_exs *x = w->r->m->x;
@@ -554,7 +556,7 @@ static void fill_choices(const struct work *w)
     beam->damping_stiffness = damping->given ? damping->e[1] : CT_EX_ZERO;
 }
 
-// Also when some values are wrong, as there may be more to say about the others.
+// Fill the beam even if some values are wrong, to find further errors.
 static bool fill(struct work *w, struct ct_body *b, bool values_ok)
 {
     struct ct_exs *x = w->r->m->x;

@@ -1,4 +1,4 @@
-// Bodies, their points and the frames both own.
+// Read bodies, their points and the frames of both.
 #include "component/read.h"
 
 #include <math.h>
@@ -13,7 +13,8 @@ static void add_frame(struct ct_reader *r, const char *name, struct ct_mark at, 
     CT_PUSH(r->a, m->frame, m->nframe, m->frame_cap, f);
 }
 
-// All names, also of points that will turn out wrong: what refers to them is not to blame.
+// Declare the names of all points, wrong ones included, so that references to them give no further
+// errors.
 static void declare_points(struct ct_reader *r, int body, const struct ct_node *node)
 {
     const struct ct_node *points = ct_node_get(node, "points");
@@ -23,7 +24,7 @@ static void declare_points(struct ct_reader *r, int body, const struct ct_node *
             continue;
         const char *name
             = ct_arena_printf(r->a, "%s.%s", r->m->body[body].instance.name, p->key);
-        if (ct_model_find_frame(r->m, name) < 0) // a key given twice has been reported
+        if (ct_model_find_frame(r->m, name) < 0) // a duplicate key has been reported
             add_frame(r, name, p->mark, body);
     }
 }
@@ -98,7 +99,7 @@ static bool check_mass(struct ct_reader *r, const struct ct_body *b,
                     b->instance.name, v);
 }
 
-// One rotation in the plane of i and j makes A_ij vanish.  (golub2013, 8.5)
+// Jacobi rotation in the plane of i and j that makes A_ij vanish.  (golub2013, 8.5)
 static void jacobi_rotation(double A[3][3], int i, int j)
 {
     const int k = 3 - i - j;
@@ -121,11 +122,11 @@ static void order(double *a, double *b)
     *a = low;
 }
 
-// Principal moments (3, ascending) of I = [xx yy zz xy xz yz], by Jacobi's rotations: exact where
-// I is diagonal.
+// Principal moments (3, ascending) of I = [xx yy zz xy xz yz] by Jacobi's method; exact for a
+// diagonal I.
 static void principal_moments(const double I[6], double lam[3])
 {
-    enum { SWEEPS = 8 }; // Limit: of Jacobi's sweeps, which converge quadratically
+    enum { SWEEPS = 8 }; // Limit: sweeps of Jacobi's method, which converges quadratically
     double A[3][3] = {{I[0], I[3], I[4]}, {I[3], I[1], I[5]}, {I[4], I[5], I[2]}};
     for (int n = 0; n < SWEEPS; n++)
         for (int k = 2; k >= 0; k--)
@@ -137,8 +138,8 @@ static void principal_moments(const double I[6], double lam[3])
     order(&lam[0], &lam[1]);
 }
 
-// The moments of any mass distribution are sums of squares: none is negative, none exceeds the sum
-// of the other two.
+// Check that the inertia is physical: principal moments are sums of squares, so none is negative,
+// and none exceeds the sum of the other two.
 static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
                           const struct ct_value *given)
 {
@@ -151,9 +152,10 @@ static bool check_inertia(struct ct_reader *r, const struct ct_body *b,
     if (largest == 0)
         return true;
     for (int i = 0; i < 6; i++)
-        I[i] /= largest; // so that cubes neither over- nor underflow
+        I[i] /= largest; // scaled, to avoid overflow and underflow of products
     principal_moments(I, lam);
-    // Derived: moments are copied from data sheets and programs that print six or seven digits
+    // Derived: relative error of data printed with six or seven digits, as in data sheets and other
+    // programs
     const double roundoff = 1e-6 * lam[2];
     if (lam[0] >= -roundoff && lam[2] <= lam[0] + lam[1] + roundoff)
         return true;
@@ -190,7 +192,7 @@ static bool fill_rigid(struct ct_reader *r, struct ct_body *b)
 
 // ---- a body ------------------------------------------------------------------------------------
 
-// What a rigid body has and a particle has not deserves a better word than "unknown key".
+// A key of rigid bodies in a particle gets a message of its own, not "unknown key".
 static bool check_particle_keys(struct ct_reader *r, const struct ct_body *b,
                                 const struct ct_node *node)
 {

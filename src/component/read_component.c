@@ -1,10 +1,10 @@
-// What bodies, joints and forces have in common: names, types and keys checked by the class tables.
+// Common parts of bodies, joints and forces: names, types, and keys checked by the class tables.
 #include "component/read.h"
 
 #include <string.h>
 
-// All components are edges of one linear graph and known by their names in signals, trees and
-// summaries: no two of them, of whatever sort, may share one.
+// All components are edges of one linear graph and are identified by their names in signals, trees
+// and summaries, so all names must differ, across bodies, joints and forces.
 bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p, const char *sort)
 {
     static const char *const taken[] = {"ground", "system", "energy", "constraint"};
@@ -20,7 +20,7 @@ bool ct_read_component_name(struct ct_reader *r, const struct ct_node_pair *p, c
     if (known >= 0) {
         const struct ct_read_place *c = &r->place[known];
         if (strcmp(c->sort, sort) == 0)
-            return false; // a key given twice has been reported
+            return false; // a duplicate key has been reported
         ct_error(r->ctx, p->mark, CT_E_NAME_TWICE,
                  "the %s '%s' has the name of a %s; all components must differ in name", sort,
                  p->key, c->sort);
@@ -111,14 +111,14 @@ bool ct_read_own_values(struct ct_reader *r, struct ct_instance *self,
     int nfamily;
     ct_family_keys(self->cls->family, &nfamily);
     struct ct_value *value
-        = (struct ct_value *)(uintptr_t)self->value; // made by ct_read_alloc_values
+        = (struct ct_value *)(uintptr_t)self->value; // allocated by ct_read_alloc_values
     bool ok = true;
     for (int i = 0; i < self->cls->nkey; i++) {
         const struct ct_key *key = &self->cls->key[i];
         const struct ct_node *v = ct_node_get(node, key->name);
         if (v && key->kind == CT_VALUE_NAMES) {
             ok &= ct_read_value(r, v, key, &value[nfamily + i]);
-            // from here on the joint's own expressions know them
+            // from here on the joint's own expressions may use these names
             const struct ct_value *names = &value[nfamily + i];
             ct_ex *local = CT_NEWN(r->a, ct_ex, names->n);
             for (size_t k = 0; k < names->n; k++)

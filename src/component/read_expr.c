@@ -1,4 +1,4 @@
-// Expressions of the file and the names that are known in them: parameters, signals, frames.
+// Read expressions, and resolve names in them: parameters, signals, frames.
 #include "component/read.h"
 
 #include "base/pi.h"
@@ -47,7 +47,7 @@ bool ct_read_frame(struct ct_reader *r, const struct ct_node *node, int *frame)
 
 // ---- expressions -------------------------------------------------------------------------------
 
-// The one symbol of a signal.
+// The symbol of a signal; one per signal.
 static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark at)
 {
     const int known = ct_names_get(&r->signal, text);
@@ -60,8 +60,8 @@ static ct_ex signal_symbol(struct ct_reader *r, const char *text, struct ct_mark
     return e;
 }
 
-// Inside its own expressions a custom joint's coordinates go by their own names: in its motion
-// they are the arguments, in its efforts what J.q1 ... are elsewhere.
+// In its own expressions a custom joint uses the names of its coordinates: in its motion they are
+// the arguments, in its efforts they mean J.q1 and so on.
 static bool find_joint_coordinate(struct ct_reader *r, const char *name, ct_ex *e,
                                   const char **why, enum ct_name_result *result)
 {
@@ -84,8 +84,8 @@ static bool find_joint_coordinate(struct ct_reader *r, const char *name, ct_ex *
     return false;
 }
 
-// In its section and its points a beam knows its own length, in its section the place along it too;
-// there these names go before parameters.
+// In its section and its points a beam uses its `length`, in its section also the position `x`;
+// there these names hide parameters.
 static bool find_beam_name(struct ct_reader *r, const char *name, ct_ex *e, const char **why,
                            enum ct_name_result *result)
 {
@@ -102,7 +102,7 @@ static bool find_beam_name(struct ct_reader *r, const char *name, ct_ex *e, cons
     if (!is_x && r->flags & (CT_KEY_LENGTH | CT_KEY_SECTION)) {
         const struct ct_value *length = ct_instance_value(r->beam, "length");
         const bool known = length->n && !ct_ex_is_zero(length->e[0]);
-        *e = known ? length->e[0] : CT_EX_ONE; // a wrong one is reported
+        *e = known ? length->e[0] : CT_EX_ONE; // a wrong length has been reported
         *result = CT_NAME_OK;
         return true;
     }
@@ -143,7 +143,7 @@ static enum ct_name_result find_name(void *user, const char *name, ct_ex *e, con
     return CT_NAME_OK;
 }
 
-// Something signals can be about: the names a first part may have.
+// Does something exist that signals can be about, with this first part?
 static bool signal_exists(const struct ct_reader *r, const char *first)
 {
     static const char *const own[] = {"system", "energy", "constraint"};
@@ -159,7 +159,7 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
         return "";
     const char **names = CT_NEWN(r->ctx->scratch, const char *, r->ncomponent + 4);
     size_t n = r->ncomponent;
-    for (size_t i = 0; i < r->component.size; i++) // each goes to its place in the file's order
+    for (size_t i = 0; i < r->component.size; i++) // inserted in the order of the file
         if (r->component.slot[i].name)
             names[r->component.slot[i].index] = r->component.slot[i].name;
     names[n++] = "ground";
@@ -169,8 +169,8 @@ static const char *nearest_subject(struct ct_reader *r, const char *first)
     return ct_read_suggestion(r, first, names, n);
 }
 
-// The point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT; components have one or two
-// letters.
+// Does the point in BODY.POINT.PROPERTY or BODY.POINT.PROPERTY.COMPONENT exist? Components have one
+// or two letters.
 static bool point_exists(struct ct_reader *r, const char *text, struct ct_mark where)
 {
     const char *const dot = strchr(text, '.'), *const next = dot ? strchr(dot + 1, '.') : NULL;
@@ -215,7 +215,8 @@ bool ct_read_number(struct ct_reader *r, ct_ex e, double *value)
     if (kinds & ~(1u << CT_SYM_PARAM))
         return false;
     *value = ct_ex_value(r->m->x, e, r->m->value);
-    return !kinds || r->parameters_ok || isfinite(*value); // else a wrong parameter may be why
+    return !kinds || r->parameters_ok
+        || isfinite(*value); // otherwise a wrong parameter may be the cause
 }
 
 static bool is_same_dimension(const char *a, const char *b)
@@ -226,8 +227,8 @@ static bool is_same_dimension(const char *a, const char *b)
         || ct_unit_parse(b, strlen(b), &v, &at) != CT_UNIT_OK || ct_unit_same(&u, &v);
 }
 
-// A parameter alone, or with a minus sign, has the dimension it was given with. The dimension of
-// other expressions is not known.
+// Check the unit of a parameter alone, or with a minus sign: it has the dimension in which it was
+// given. The dimension of other expressions is unknown.
 static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node,
                                  const char *unit, ct_ex e)
 {
@@ -254,8 +255,8 @@ static bool check_parameter_unit(struct ct_reader *r, const struct ct_node *node
 
 const double ct_read_full_turn = 2 * CT_PI; // Definition: [rad]
 
-// Warn of angles that are probably degrees: a number beyond a full turn without a unit, or a
-// parameter that is such an integer, which no multiple of pi is.
+// Warn of angles that are probably in degrees: a number beyond a full turn without a unit, or a
+// parameter with such a value that is an integer, as no multiple of pi is.
 static void check_degrees(struct ct_reader *r, const struct ct_node *node, ct_ex e)
 {
     double value;
@@ -299,7 +300,7 @@ bool ct_read_expr(struct ct_reader *r, const struct ct_node *node, unsigned flag
     const struct ct_text text
         = {node->text, node->mark, node->is_exact, node->is_plain ? 0 : 1};
     if (!ct_parse(r->ctx, &scope, text, e)) {
-        *e = CT_EX_ZERO; // not the part before the mistake
+        *e = CT_EX_ZERO; // not the valid part before the error
         return false;
     }
     double value;
@@ -347,7 +348,7 @@ bool ct_read_items(struct ct_reader *r, const struct ct_node *node, const struct
     return ok;
 }
 
-// A count decides about the equations: keep account of the parameters in it.
+// Read a count, which determines the structure of the equations: the parameters in it are recorded.
 static bool read_structural_number(struct ct_reader *r, ct_ex e, double *v)
 {
     struct ct_model *m = r->m;

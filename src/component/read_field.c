@@ -1,4 +1,4 @@
-// Fields along a beam: `shapes`, and deflections and rates of `initial`.
+// Read fields along a beam: `shapes`, and deflections and rates of `initial`.
 #include "component/read.h"
 
 #include "expr/quadrature.h"
@@ -20,7 +20,7 @@ static void add(struct ct_value *v, const char **name, const char *own, struct c
     v->e[v->n++] = e;
 }
 
-// Entries u v w rx of a map, each one expression or a list of them.
+// Read entries u v w rx of a map, each one expression or a list of them.
 static bool read_entries(struct ct_reader *r, const struct ct_node *node, unsigned flags,
                          bool is_list, bool is_rate, struct ct_value *v, const char **name)
 {
@@ -115,10 +115,12 @@ static double field_at(const struct field_check *c, ct_ex e, double place)
     return ct_ex_value(c->r->m->x, e, c->value);
 }
 
-// Largest of its values inside and at the ends; not finite if one is not.
+// Largest value of a field inside and at the ends; not finite if one value is not.
 static double size_of(const struct field_check *c, ct_ex e)
 {
-    enum { PLACES = 33 }; // Limit: of the search for the largest value, which is a scale
+    enum {
+        PLACES = 33
+    }; // Limit: sample points for the largest value, which only serves as a scale
     double most = 0;
     for (int i = 0; i < PLACES; i++) {
         const double v = fabs(field_at(c, e, c->length * i / (PLACES - 1)));
@@ -132,7 +134,7 @@ static double size_of(const struct field_check *c, ct_ex e)
 static bool vanishes_at(const struct field_check *c, ct_ex e, double size, double place,
                         const char *what, enum ct_code code)
 {
-    // Derived: round-off, or a shape with coefficients of ten digits
+    // Derived: coefficients given with ten digits leave up to 1e-9 where a shape should vanish
     const double roundoff = 1e-9, v = field_at(c, e, place);
     if (fabs(v) <= roundoff * size)
         return true;

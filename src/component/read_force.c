@@ -1,4 +1,4 @@
-// Forces: everything about them stands in their class tables.
+// Read forces: their class tables contain everything about them.
 #include "component/read.h"
 
 #include <string.h>
@@ -21,8 +21,8 @@ void ct_read_forces_declare(struct ct_reader *r)
     }
 }
 
-// The edge of a force ends at the frame on which it acts: `to`, or the one frame it must have
-// (`at`, `on`).
+// Name of the frame on which a force acts, the end of its edge: `to`, or its only frame (`at`,
+// `on`).
 static const char *name_of_end(const struct ct_component_class *cls)
 {
     const char *name = "to";
@@ -41,7 +41,8 @@ static int frame_under(const struct ct_instance *self, const char *name, struct 
     for (int i = 0; i < self->cls->nkey; i++)
         if (self->cls->key[i].kind == CT_VALUE_FRAME
             && strcmp(self->cls->key[i].name, name) == 0) {
-            *at = self->value[i].mark; // forces have no keys of the family
+            *at = self->value[i]
+                      .mark; // forces have no keys of the family, so key and value indices agree
             return self->value[i].frame;
         }
     return -1;

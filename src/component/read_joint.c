@@ -1,4 +1,4 @@
-// Joints: their frames and own keys first, then what belongs to the coordinates, which those
+// Read joints: frames and own keys first, then the values per coordinate, whose number these
 // decide.
 #include "component/read.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What a speed (or coordinate) is; the unit of everything along it follows.
+// What a speed or coordinate measures; it determines the units of the values per coordinate.
 enum measure { LENGTH, ANGLE, ROTATION, QUATERNION, UNKNOWN };
 
 static const struct {
@@ -35,8 +35,8 @@ struct joint {
     struct ct_value *value; // of self
     const struct ct_node *node;
     bool at_particle;
-    enum measure speed[CT_MAX_COORD]; // per speed
-    int quaternion;                   // number of the first of its four coordinates, or -1
+    enum measure speed[CT_MAX_COORD]; // by speed
+    int quaternion;                   // index of the first of its four coordinates, or -1
 };
 
 static struct ct_value *value_of(const struct joint *j, const char *key)
@@ -44,7 +44,7 @@ static struct ct_value *value_of(const struct joint *j, const char *key)
     return &j->value[ct_instance_value(j->self, key) - j->self->value];
 }
 
-// A gear couples other joints: it has no frames, no coordinates, none of the common keys.
+// A gear couples other joints: it has no frames, no coordinates, and no keys of the family.
 static bool has_frames(const struct ct_component_class *cls)
 {
     for (int i = 0; i < cls->nkey; i++)
@@ -78,7 +78,7 @@ static bool is_particle_frame(const struct ct_reader *r, int frame)
     return frame >= 0 && r->m->body[r->m->frame[frame].body].is_particle;
 }
 
-// What each coordinate measures, from the class's own motion.
+// Find what each coordinate measures, from the motion function of the class.
 static void find_measures(struct ct_reader *r, struct joint *j)
 {
     struct ct_instance *self = j->self;
@@ -107,12 +107,12 @@ static void find_measures(struct ct_reader *r, struct joint *j)
         }
 }
 
-// Beside a particle only the translational part of a joint exists; lengths come first.
+// Next to a particle only the translational part of a joint exists; lengths come first.
 static void drop_rotations(struct joint *j)
 {
     struct ct_instance *self = j->self;
     if (self->local)
-        return; // the coordinates of a custom joint may all move its place
+        return; // all coordinates of a custom joint may move its position
     int n = 0;
     while (n < self->nfree && j->speed[n] == LENGTH)
         n++;
@@ -162,7 +162,7 @@ static bool read_entry(struct ct_reader *r, const struct ct_node *node,
     return ct_read_expr(r, node, key->flags, unit_of(key->name, m), &v->e[i]);
 }
 
-// n values, one alone not in a list; measure: of each
+// Read n values; one value needs no list. measure: of each.
 static bool read_entries(struct ct_reader *r, const struct ct_node *node,
                          const struct ct_key *key, size_t n, const enum measure *measure,
                          const char *wanted, struct ct_value *v)
@@ -185,7 +185,7 @@ static bool read_entries(struct ct_reader *r, const struct ct_node *node,
     return ok;
 }
 
-// A rotation by a quaternion has no angle from which a spring or a driver could act.
+// A rotation by a quaternion has no angle on which a spring or a driver could act.
 static bool check_rotation_entries(struct ct_reader *r, const struct joint *j,
                                    const struct ct_key *key, const struct ct_value *v)
 {
@@ -299,7 +299,7 @@ static bool read_initial(struct ct_reader *r, struct joint *j, const struct ct_n
     return ok;
 }
 
-// ---- a driver and the start it contradicts -----------------------------------------------------
+// ---- start values that contradict a driver -----------------------------------------------------
 
 // Value of an expression of t at t = 0; false if it has none.
 static bool value_at_start(struct ct_reader *r, ct_ex e, double *v)
@@ -316,7 +316,7 @@ static bool check_start(struct ct_reader *r, const struct joint *j, size_t i, co
     if (!given->given || i >= given->n || given->hole[i] || !ct_read_number(r, given->e[i], &v)
         || !value_at_start(r, driven, &d))
         return true;
-    // Derived: a start copied from a computation of the driver, printed with nine digits
+    // Derived: a start value printed with nine digits by a program that computed the driver
     if (fabs(v - d) <= 1e-9 * fmax(1, fabs(d)))
         return true;
     ct_error(r->ctx, given->at[i], CT_E_INITIAL,
@@ -345,7 +345,7 @@ static bool check_driven_start(struct ct_reader *r, const struct joint *j)
 
 // ---- a joint -----------------------------------------------------------------------------------
 
-// Ends on one rigid body never move against each other; on one beam they do.
+// Two ends on one rigid body never move relative to each other; on one beam they do.
 static bool check_two_bodies(struct ct_reader *r, const struct joint *j)
 {
     const struct ct_frame *from = &r->m->frame[j->self->from], *to = &r->m->frame[j->self->to];
@@ -417,7 +417,7 @@ static bool read_joint(struct ct_reader *r, struct ct_instance *self,
         count_coordinates(r, &j);
         ok = read_common(r, &j) && check_driven_start(r, &j);
     } else if (!ok) {
-        self->ncoord = -1; // not known: nobody is told that a coordinate is missing
+        self->ncoord = -1; // unknown: missing coordinates are then not reported
     }
     r->local_of = NULL;
     return ok;
@@ -442,7 +442,7 @@ int ct_read_joint_name(struct ct_reader *r, const char *name, struct ct_mark at)
     return -1;
 }
 
-// `a`, `a.q` or `a.q2`: which joint and coordinate (from 0); reports at the mark.
+// Resolve `a`, `a.q` or `a.q2` to joint and coordinate (from 0); errors are reported at the mark.
 static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mark at,
                             int *joint, int *coordinate)
 {
@@ -455,7 +455,7 @@ static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mar
         return false;
     const struct ct_instance *j = &r->m->joint[*joint];
     if (!j->cls || j->ncoord < 0)
-        return false; // reported there
+        return false; // reported by the callee
     if (j->ncoord == 0)
         return ct_error(r->ctx, at, CT_E_JOINT, "joint '%s' (%s) has no coordinate", name,
                         j->cls->name);
@@ -480,7 +480,7 @@ static bool read_coordinate(struct ct_reader *r, const char *text, struct ct_mar
     return true;
 }
 
-// The names become those that equations give the coordinates.
+// Replace the names by those that equations use for the coordinates.
 static bool check_coupling(struct ct_reader *r, struct ct_value *v)
 {
     const char **name = CT_NEWN(r->a, const char *, v->n);
@@ -494,7 +494,8 @@ static bool check_coupling(struct ct_reader *r, struct ct_value *v)
             joint[i] = -1;
         }
         name[i] = v->name[i];
-        if (joint[i] >= 0 && r->m->joint[joint[i]].ncoord == 1) // where q1 is q
+        if (joint[i] >= 0
+            && r->m->joint[joint[i]].ncoord == 1) // for one coordinate `q1` is `q`
             name[i] = r->m->joint[joint[i]].name;
         for (size_t k = 0; k < i; k++)
             if (joint[i] >= 0 && joint[k] == joint[i] && coordinate[k] == coordinate[i])

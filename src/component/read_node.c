@@ -1,4 +1,4 @@
-// Shapes, keys, words and names of YAML nodes, each checked with a message; see read.h.
+// Check the structure, keys, words and names of YAML nodes, each with a message; see read.h.
 #include "component/read.h"
 
 #include "expr/parse.h"
@@ -7,7 +7,7 @@
 
 bool ct_read_wants_suggestions(const struct ct_reader *r)
 {
-    enum { MOST = 200 }; // Limit: nobody reads more errors
+    enum { MOST = 200 }; // Limit: number of errors with suggestions
     return r->ctx->nerror < MOST;
 }
 

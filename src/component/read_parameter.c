@@ -1,4 +1,5 @@
-// Parameters: names first, then definitions, then values in an order in which each can be computed.
+// Read parameters: names first, then definitions, then values in an order in which each can be
+// computed.
 #include "component/read.h"
 
 #include "expr/parse.h"
@@ -9,15 +10,15 @@
 
 enum dfs_state { UNVISITED, ON_PATH, DONE };
 
-// Parameters in the order of the file, before they are ordered for computing.
+// Parameters in the order of the file, before topological sorting.
 struct work {
     size_t n;
     const struct ct_node **node; // definition; NULL when overridden
-    bool *is_wrong;              // has no value, which has been reported
-    int **use;                   // parameters in the definition of each
+    bool *is_wrong;              // has no value, and this has been reported
+    int **use;                   // parameters that each definition uses
     size_t *nuse;
     enum dfs_state *dfs_state;
-    int *order; // of computing
+    int *order; // topological order
     size_t norder;
 };
 
@@ -38,7 +39,7 @@ static bool add_parameter(struct ct_reader *r, const struct ct_node_pair *p, boo
                         "input another name",
                         p->key);
     if (other >= 0)
-        return false; // a key given twice has been reported
+        return false; // a duplicate key has been reported
     if (ct_names_get(&m->state_index, p->key) >= 0)
         return ct_error(r->ctx, p->mark, CT_E_NAME,
                         "'%s' is a state already: give the %s another name", p->key, sort);
@@ -73,7 +74,8 @@ const struct ct_node *ct_read_with_unit(struct ct_reader *r, const struct ct_nod
     return both;
 }
 
-// The value of an input, `{value: V, unit: U}` or V itself: with the unit, where V has none of its own.
+// The value of an input, `{value: V, unit: U}` or V itself; the unit applies if V has none of its
+// own.
 static const struct ct_node *input_value(struct ct_reader *r, const struct ct_node_pair *p)
 {
     const struct ct_node *node = p->value;
@@ -88,7 +90,7 @@ static const struct ct_node *input_value(struct ct_reader *r, const struct ct_no
     return ct_read_with_unit(r, value ? value : zero, unit);
 }
 
-// The errors since `first` become errors of the command line.
+// Assign the errors since number `first` to the command line.
 static void move_errors_to_command_line(struct ct_reader *r, size_t first, const char *text)
 {
     for (size_t i = first; i < r->ctx->ndiagnostic; i++) {
@@ -159,7 +161,7 @@ static bool report_cycle(struct ct_reader *r, const struct work *w, const int *p
                     text, m->parameter[path[0]].name);
 }
 
-// Depth first from `start` with a stack of our own: a chain may be as long as the file.
+// Depth-first search from `start` with an explicit stack: a chain may be as long as the file.
 static bool visit(struct ct_reader *r, struct work *w, int start, int *path, size_t *next)
 {
     bool ok = true;
@@ -201,7 +203,7 @@ static bool order_parameters(struct ct_reader *r, struct work *w)
     return ok;
 }
 
-// From the order of the file to that of computing; symbols and the map of names follow.
+// Permute the parameters to the topological order, with their symbols and the map of names.
 static void permute(struct ct_reader *r, struct work *w)
 {
     struct ct_model *m = r->m;
@@ -222,7 +224,7 @@ static void permute(struct ct_reader *r, struct work *w)
     w->is_wrong = is_wrong;
 }
 
-// Is a value that is not finite so only because it passes on that of another parameter?
+// Is a value not finite only because another parameter is not?
 static bool is_passed_on(struct ct_model *m, ct_ex definition)
 {
     for (size_t k = ct_ex_walk(m->x, &definition, 1); k-- > 0;) {
@@ -293,7 +295,7 @@ void ct_read_parameters(struct ct_reader *r, const struct ct_set *set, size_t ns
             ok &= ct_read_played_inputs(r, set[k].text, set[k].kind == CT_SET_INPUTS_HELD);
     for (size_t i = 0; i < w.n; i++) {
         w.is_wrong[i] = !ct_read_expr(r, w.node[i], 0, NULL, &r->m->parameter[i].definition);
-        r->m->parameter[i].value = NAN; // until it is known
+        r->m->parameter[i].value = NAN; // until it is computed
         r->m->value[1 + i] = NAN;
     }
     ok &= apply_overrides(r, set, nset, &w);

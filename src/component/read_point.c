@@ -1,16 +1,16 @@
-// Points of bodies: position and orientation in the body frame, on beams along their axis.
+// Read points of bodies: position and orientation in the body frame; on beams, along their axis.
 #include "component/read.h"
 
 #include "component/roundoff.h"
 
-// A point of a beam turns with the section it sits on, which must be one of the beam's.
+// A point of a beam rotates with the section at its position, which must lie on the beam.
 static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct ct_mark at)
 {
     const struct ct_value *length = ct_instance_value(r->beam, "length");
     double x, l;
     if (!length->n || !ct_read_number(r, length->e[0], &l) || !(l > 0)
         || !ct_read_number(r, f->at.e[0], &x))
-        return true; // which has been reported
+        return true; // reported before
     const double roundoff = CT_DATA_ROUNDOFF * l;
     if (x >= -roundoff && x <= l + roundoff)
         return true;
@@ -19,7 +19,7 @@ static bool check_on_beam(struct ct_reader *r, const struct ct_frame *f, struct 
                     l);
 }
 
-// [x, y, z]; on a beam also x alone
+// Read [x, y, z]; on a beam also x alone.
 static bool read_place(struct ct_reader *r, const struct ct_node *node, struct ct_frame *f)
 {
     if (!r->beam)

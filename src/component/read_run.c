@@ -1,4 +1,4 @@
-// What is asked of a run: outputs and simulation.
+// Read outputs and simulation options.
 #include "component/read.h"
 
 #include "component/roundoff.h"
@@ -76,7 +76,7 @@ static bool read_named(struct ct_reader *r, const struct ct_node *node, struct c
     return ct_read_expr(r, value, CT_KEY_STATE, NULL, &o->value) && ok;
 }
 
-// Besides those of the file.
+// Add outputs of the command line to those of the file.
 static void read_more(struct ct_reader *r, const char *text, struct ct_names *names)
 {
     const char *equals = strchr(text, '=');
@@ -121,7 +121,7 @@ void ct_read_outputs(struct ct_reader *r)
 
 // ---- simulation --------------------------------------------------------------------------------
 
-// The methods of the format; a unit test holds them against the registry of integrators.
+// Names of the methods; a unit test compares them with the table of integrators.
 static const char *const methods[] = {"auto",
                                       "dopri5",
                                       "dop853",
@@ -132,7 +132,7 @@ static const char *const methods[] = {"auto",
                                       "hht",
                                       "newmark"};
 
-// A number that may not be below `least`, or not even equal to it.
+// Read a number that must be at least `least`, or greater.
 static bool read_bounded(struct ct_reader *r, const struct ct_node *node, const char *key,
                          const char *unit, double least, bool strict, double *value)
 {
@@ -176,7 +176,7 @@ static bool read_interval(struct ct_reader *r, const struct ct_node *node,
 {
     if (!read_bounded(r, node, "interval", "s", 0, true, &s->interval))
         return false;
-    // 10/0.01 may come out as 1000.0000000000001: that is no further sample
+    // 10/0.01 may give 1000.0000000000001: this is not one more sample
     const double steps = ceil(s->duration / s->interval * (1 - CT_DATA_ROUNDOFF));
     if (!(steps < most_samples))
         return ct_error(r->ctx, node->mark, CT_E_RANGE,
@@ -201,7 +201,7 @@ static bool read_sampling(struct ct_reader *r, const struct ct_node *node,
     return !interval || read_interval(r, interval->value, s);
 }
 
-// A joint or a beam: what has coordinates.
+// Check the name of a joint or a beam: a component that has coordinates.
 static bool check_small(struct ct_reader *r, const char *name, struct ct_mark at)
 {
     const int body = ct_model_find_body(r->m, name);
@@ -209,7 +209,7 @@ static bool check_small(struct ct_reader *r, const char *name, struct ct_mark at
         return ct_read_joint_name(r, name, at) >= 0;
     const struct ct_component_class *cls = r->m->body[body].instance.cls;
     return (body > 0 && !cls)
-        || (cls && cls->body == CT_BODY_BEAM) // one without class has been reported
+        || (cls && cls->body == CT_BODY_BEAM) // a component without class has been reported
         || ct_error(r->ctx, at, CT_E_JOINT, "'%s' is no beam; 'small' lists joints and beams",
                     name);
 }

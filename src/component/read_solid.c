@@ -25,7 +25,7 @@ static const char *const colour_values[COUNT(colour_names)] = {
 };
 #undef COLOR
 
-// "#rgb" and "#rrggbb" as the latter; NULL: neither.
+// Convert "#rgb" to "#rrggbb" and copy "#rrggbb"; NULL for any other text.
 static const char *read_digits(struct ct_arena *a, const char *text)
 {
     const size_t n = strlen(text);
@@ -129,8 +129,8 @@ static bool read_kind(struct ct_reader *r, const struct ct_node *node, struct ct
 
 // ---- one shape --------------------------------------------------------------------------------
 
-// The one key that says what it is; is_wanted: it is asked for where it is missing, else another
-// key may be meant for it.
+// Find the one key that names the kind of shape. is_wanted: report if it is missing; otherwise
+// another key may be a misspelling of it.
 static bool find_kind(struct ct_reader *r, const struct ct_node *node, bool is_wanted,
                       struct ct_solid *s)
 {

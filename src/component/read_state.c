@@ -1,4 +1,4 @@
-// States of the user's own: names first, rates and initial values when all signals have names.
+// Read user-defined states: names first; rates and initial values when all signals have names.
 #include "component/read.h"
 
 #include "expr/parse.h"
@@ -17,7 +17,7 @@ static bool add_state(struct ct_reader *r, const struct ct_node_pair *p)
         return ct_error(r->ctx, p->mark, CT_E_NAME,
                         "'%s' cannot name a state: it has a meaning in expressions", p->key);
     if (ct_names_get(&m->state_index, p->key) >= 0)
-        return false; // a key given twice has been reported
+        return false; // a duplicate key has been reported
     const struct ct_state new = {.name = p->key, .mark = p->mark, .rate_mark = p->mark};
     ct_names_put(r->a, &m->state_index, p->key, (int)m->nstate);
     CT_PUSH(r->a, m->state, m->nstate, m->state_cap, new);

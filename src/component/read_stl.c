@@ -1,7 +1,9 @@
 // See read_stl.h.
 //
-//     text     solid NAME { facet normal x y z  outer loop { vertex x y z } three times endloop endfacet } endsolid NAME
-//     binary   80 bytes, number n of triangles (4), n times: normal (12), corners (36), attribute (2); little-endian
+//     text     solid NAME { facet normal x y z  outer loop { vertex x y z } three times
+//              endloop endfacet } endsolid NAME
+//     binary   80 bytes, number n of triangles (4), n times: normal (12), corners (36),
+//              attribute (2); little-endian
 //
 // A file is binary if its length is the one that its number of triangles asks for: some binary
 // files begin with "solid", too.
@@ -17,7 +19,8 @@
 #include <string.h>
 #include <strings.h>
 
-// Definition: bytes before the triangles and of one, numbers of its corners, of binary STL.
+// Definition: of binary STL: bytes before the triangles, bytes of a triangle, numbers of its
+// corners.
 enum { HEAD = 84, RECORD = 50, CORNERS = 9 };
 static const size_t max_bytes = (size_t)64 << 20; // Limit: with a message
 
@@ -127,7 +130,7 @@ static bool take_numbers(struct scan *s, float out[3])
     return take_number(s, &out[0]) && take_number(s, &out[1]) && take_number(s, &out[2]);
 }
 
-// Normals of degenerate triangles are written as nan by some programs: any three words.
+// Skip three words: some programs write the normals of degenerate triangles as nan.
 static void skip_normal(struct scan *s)
 {
     for (int i = 0; i < 3 && !is_word(s, "outer"); i++)
@@ -163,7 +166,7 @@ static bool read_text(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
     for (skip_blanks(&s); *s.at; skip_blanks(&s)) {
         if (!take_word(&s, "solid"))
             return false;
-        skip_line(&s); // its name
+        skip_line(&s); // name of the solid
         while (!is_word(&s, "endsolid")) {
             if (!take_facet(&s, one.v))
                 return false;
@@ -176,7 +179,7 @@ static bool read_text(struct ct_ctx *ctx, struct ct_arena *a, const char *path,
     return true;
 }
 
-// ---- either -----------------------------------------------------------------------------------
+// ---- text or binary ----------------------------------------------------------------------------
 
 static bool is_text(const char *text, size_t n)
 {

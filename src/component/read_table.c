@@ -1,9 +1,9 @@
 // Functions of time from files: {table: FILE.csv, column: NAME, interpolate: cubic|linear}.
 //
 // The file is CSV with a header; one column is `t`, strictly increasing. `cubic` is the natural
-// spline: twice continuously differentiable, second derivative 0 at both ends. A head may end with
-// the unit of its column, `angle [deg]`; `unit` says it where the head does not, and `scale` is a
-// factor besides.
+// spline: twice continuously differentiable, with second derivative 0 at both ends. A column
+// heading may end with a unit, `angle [deg]`; otherwise `unit` gives it. `scale` is an additional
+// factor.
 #include "component/read.h"
 
 #include "expr/quantity.h"
@@ -49,7 +49,7 @@ static bool read_csv(struct ct_reader *r, struct ct_mark mark, const char *path,
     return false;
 }
 
-// Length of the name in a head: all of `angle`, or of `angle [deg]` what is before the unit.
+// Length of the name in a heading: of `angle`, or of the part before the unit in `angle [deg]`.
 static size_t name_length(const char *head)
 {
     size_t n = strlen(head);
@@ -61,7 +61,7 @@ static size_t name_length(const char *head)
     return n;
 }
 
-// The unit in a head; NULL: there is none.
+// The unit in a heading; NULL: none.
 static const char *unit_in_head(struct ct_arena *a, const char *head)
 {
     const size_t n = name_length(head);
@@ -93,7 +93,7 @@ static bool find_column(struct ct_reader *r, const struct ct_node *node,
                     ct_read_suggestion(r, name, names, csv->nrow ? csv->ncolumn : 0));
 }
 
-// A number with blanks around it and nothing else.
+// Parse a field that is one number, with blanks around it.
 static bool parse_field(const char *text, double *value)
 {
     text += strspn(text, " \t");
@@ -127,7 +127,7 @@ static bool check_increasing(struct ct_reader *r, const struct ct_sheet *csv, si
     return true;
 }
 
-// Runs start at t = 0.
+// Check that the table covers t = 0, where runs start.
 static bool check_start(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
                         const double *x, size_t n)
 {
@@ -175,8 +175,8 @@ static bool is_no_name(const void *user, const char *word)
     return false;
 }
 
-// factor (out): one of the unit in SI units. what: the column; wanted: a unit of its dimension,
-// NULL: any.
+// Read a unit. factor (out): one unit in SI units. what: the column; wanted: a unit of its
+// dimension, NULL: any.
 static bool read_unit(struct ct_reader *r, const char *what, const char *unit,
                       struct ct_mark mark, const char *wanted, double *factor)
 {
@@ -186,7 +186,7 @@ static bool read_unit(struct ct_reader *r, const char *what, const char *unit,
     return ct_quantity_read(r->ctx, &q, factor);
 }
 
-// Times in seconds.
+// Read the times, in seconds.
 static bool read_times(struct ct_reader *r, struct ct_mark mark, const struct ct_sheet *csv,
                        size_t column, double *x)
 {
@@ -241,7 +241,7 @@ static uint32_t add_table(struct ct_reader *r, struct ct_table t)
     return (uint32_t)number;
 }
 
-// What values are multiplied by to be in SI units: as `unit` says, or else the head of the column.
+// Factor from the values to SI units: from `unit`, else from the heading of the column.
 static bool find_factor(struct ct_reader *r, const struct ct_node *node,
                         const struct ct_table *t, const char *wanted, double *factor)
 {
@@ -264,7 +264,7 @@ static bool find_factor(struct ct_reader *r, const struct ct_node *node,
     return true;
 }
 
-// Values that can hardly be radians, in a table that says nothing of its unit.
+// Warn of values that are hardly radians, in a table without a unit.
 static void check_degrees(struct ct_reader *r, const struct ct_node *node,
                           const struct ct_table *t)
 {
@@ -301,7 +301,7 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *
     if (!ok)
         return false;
     t.file = ct_read_path_beside(r, file->text);
-    // one table per file, column and kind, however often it is used
+    // one table per file, column and kind, even if it is used several times
     const char *key = ct_arena_printf(r->ctx->scratch, "%s\n%s\n%d", t.file, t.column, kind);
     int number = ct_names_get(&r->table, key);
     if (number < 0) {
@@ -327,7 +327,7 @@ bool ct_read_table(struct ct_reader *r, const struct ct_node *node, const char *
 
 // ---- tables of inputs --------------------------------------------------------------------------
 
-// The input that a column is about; -1 after an error.
+// Index of the input of a column; -1 after an error.
 static int find_input(struct ct_reader *r, const struct ct_sheet *csv, size_t column)
 {
     const struct ct_model *m = r->m;
@@ -354,7 +354,7 @@ static int find_input(struct ct_reader *r, const struct ct_sheet *csv, size_t co
     return -1;
 }
 
-// y (n) in SI units: the head of the column says its unit, which must be of the input's dimension.
+// y (n): values in SI units. The heading gives the unit, which must have the input's dimension.
 static bool read_played(struct ct_reader *r, const struct ct_sheet *csv, size_t column,
                         const struct ct_parameter *p, double *y)
 {
@@ -378,7 +378,8 @@ static bool read_played(struct ct_reader *r, const struct ct_sheet *csv, size_t 
     return true;
 }
 
-// t (n, out); false where it is missing or does not increase, or where a linear table does not begin at the start.
+// t (n, out): times. False if they are missing or do not increase, or if a linear table starts
+// after t = 0.
 static bool read_played_times(struct ct_reader *r, const struct ct_sheet *csv, bool holds,
                               size_t *column, double *t)
 {
@@ -394,7 +395,8 @@ static bool read_played_times(struct ct_reader *r, const struct ct_sheet *csv, b
         && (holds || check_start(r, csv, *column, t, csv->nrow - 1));
 }
 
-// What the input is: where its table holds, its own value up to the first row.
+// Expression of the input as a function of time; before the first row of a piecewise constant
+// table, its own value.
 static ct_ex play(struct ct_reader *r, const struct ct_table *t, ct_ex own)
 {
     struct ct_exs *x = r->m->x;

@@ -1,4 +1,4 @@
-// Values by kind: from a node of the file to expressions, checked.
+// Read values by kind: from a node of the file to checked expressions.
 #include "component/read.h"
 
 #include "expr/parse.h"
@@ -18,9 +18,9 @@ static bool normalise(struct ct_reader *r, const struct ct_node *node, ct_ex3 *a
         double c;
         constant &= ct_ex_is_const(x, axis->e[i], &c);
         if (!ct_read_number(r, axis->e[i], &v[i]))
-            return true; // a parameter is wrong, which has been said
+            return true; // a wrong parameter, which has been reported
     }
-    // scaled, so that no square over- or underflows
+    // scaled, to avoid overflow and underflow of squares
     const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     if (largest == 0)
         return ct_error(r->ctx, node->mark, CT_E_AXIS,
@@ -63,7 +63,7 @@ static bool read_turn(struct ct_reader *r, const struct ct_node *node, unsigned 
     return ct_read_expr(r, node->item[1], flags, "rad", &turn->angle) && ok;
 }
 
-// [z, a] is one turn, [[z, a], [x, b]] are two; an axis may be a list itself, an angle never is
+// [z, a] is one rotation, [[z, a], [x, b]] are two; an axis may be a list itself, an angle never
 static bool is_one_turn(const struct ct_node *node)
 {
     return node->n == 0 || node->item[0]->kind != CT_NODE_LIST
@@ -112,7 +112,8 @@ static bool read_list(struct ct_reader *r, const struct ct_node *node, const str
     return ct_read_items(r, node, key, v);
 }
 
-// Unit vectors a and b (6 numbers): |a x b|^2 = 1 - (a.b)^2 to round-off of some eps
+// Check unit vectors a and b (6 numbers) for being parallel, by |a x b|^2 = 1 - (a.b)^2, which has
+// a round-off of some eps.
 static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
 {
     double u[6], c = 0;
@@ -121,7 +122,8 @@ static bool check_crossed(struct ct_reader *r, const struct ct_value *v)
             return true;
     for (int i = 0; i < 3; i++)
         c += u[i] * u[3 + i];
-    // Derived: axes that are given with six digits; round-off is some 1e-15
+    // Derived: axes given with six digits have an angle of 1e-6, whose square is 1e-12; round-off
+    // is about 1e-15
     if (1 - c * c > 1e-12)
         return true;
     return ct_error(r->ctx, v->mark, CT_E_AXIS, "the two axes are parallel");
@@ -157,13 +159,13 @@ static bool read_texts(struct ct_reader *r, const struct ct_node *node,
     bool ok = true;
     for (size_t i = 0; i < node->n; i++) {
         v->at[i] = node->item[i]->mark;
-        name[i] = ""; // where there is none
+        name[i] = ""; // not named
         ok &= ct_read_text(r, node->item[i], &name[i]);
     }
     return ok;
 }
 
-// Names of coordinates are new names, seen by the joint's own expressions only.
+// Read names of coordinates: new names, visible in the joint's own expressions only.
 static bool read_new_names(struct ct_reader *r, const struct ct_node *node,
                            const struct ct_key *key, struct ct_value *v)
 {

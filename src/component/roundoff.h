@@ -1,9 +1,9 @@
-// Round-off of what a model computes.
+// Round-off in values computed from model data.
 #ifndef CT_COMPONENT_ROUNDOFF_H
 #define CT_COMPONENT_ROUNDOFF_H
 
-/// Relative error of a number that was computed from others, as 0.1 + 0.2. Derived: 4500 units of
-/// round-off, as of a sum of 45 terms a hundred times as large as the result.
+/// Relative round-off of a number computed from others, such as 0.1 + 0.2. Derived: a sum of 45
+/// terms, each a hundred times as large as the result, has a relative error of 4500 eps = 1e-12.
 #define CT_DATA_ROUNDOFF 1e-12
 
 #endif

@@ -1,4 +1,4 @@
-// The entries of collecting: expand, identities, regroup; see collect.h.
+// Entry points of simplification: expand, identities, regroup; see collect.h.
 #include "expr/collect.h"
 
 #include "expr/collector.h"
@@ -58,13 +58,13 @@ static ct_ex finish(struct ct_collector *c, struct ct_poly p)
 
 // ---- the smallest form --------------------------------------------------------------------------
 
-// Expanding is not always a gain: (a + b)^5 stays. Where it is none, the operator is kept and its
-// operands are collected.
+// Expanding may make an expression longer: (a + b)^5 stays as it is. The operator is then kept, and
+// only its operands are simplified.
 struct descent {
     struct ct_collector *c;
     struct sizes sizes;
-    struct ct_pairs done; // by node: what it was collected to
-    size_t left;          // nodes that may still be tried: a try can take milliseconds
+    struct ct_pairs done; // by node: its simplified form
+    size_t left;          // attempts left: one can take milliseconds
 };
 
 static ct_ex collect_node(struct descent *d, ct_ex e);
@@ -118,7 +118,7 @@ static struct attempt attempt(struct ct_exs *x, ct_ex e,
     return (struct attempt){collect_node(&d, e), c->bundled, c->nangle > 0};
 }
 
-// The smaller of both orders.
+// Simplify with identities early and late (expand.c); the smaller result is taken.
 static struct attempt attempt_both(struct ct_exs *x, ct_ex e,
                                    const struct ct_collect_options *options)
 {
@@ -143,7 +143,8 @@ static bool contains(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n)
     return false;
 }
 
-// By atom: 0 it has none of the symbols, 1 + k it is symbol k, n + 1 it contains one inside.
+// By atom: 0 if it contains no symbol of s, 1 + k if it is symbol k, n + 1 if it contains one of
+// them.
 static size_t *roles_of_atoms(const struct ct_collector *c, const ct_ex *s, size_t n)
 {
     size_t *role = CT_NEWN(c->arena, size_t, c->natom);
@@ -157,7 +158,8 @@ static size_t *roles_of_atoms(const struct ct_collector *c, const ct_ex *s, size
     return role;
 }
 
-// The symbol a term is a coefficient of, n if none, n + 1 if it is not linear.
+// Index of the symbol whose coefficient the term belongs to; n: none; n + 1: the term is not
+// linear.
 static size_t place_of_term(const struct ct_collector *c, uint32_t mono, const size_t *role,
                             size_t n)
 {
@@ -173,7 +175,7 @@ static size_t place_of_term(const struct ct_collector *c, uint32_t mono, const s
     return place;
 }
 
-// By the terms of the expanded polynomial.
+// Linear form from the terms of the expanded polynomial.
 static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_ex *s, size_t n,
                             ct_ex *coefficient, ct_ex *rest)
 {
@@ -195,7 +197,7 @@ static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_e
             }
             nt++;
         }
-        // ct_poly_sum keeps its work space, so each sum gets its own
+        // ct_poly_sum keeps its argument as the result, so each sum gets its own array
         struct ct_term *own = CT_NEWN(c->arena, struct ct_term, nt);
         if (nt)
             memcpy(own, t, nt * sizeof *own);
@@ -204,8 +206,8 @@ static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_e
     return linear;
 }
 
-// By derivatives: where the polynomial is too long to be expanded. False: not linear, nothing is
-// set.
+// Linear form by derivatives, where the polynomial is too long to be expanded. False if e is not
+// linear; nothing is then set.
 static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                                   ct_ex *coefficient, ct_ex *rest,
                                   const struct ct_collect_options *options)
@@ -219,7 +221,8 @@ static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, siz
     }
     if (n)
         memcpy(coefficient, found, n * sizeof *found);
-    *rest = attempt_both(x, ct_ex_subst(x, e, s, zero, n), options).e; // zero: all node 0
+    *rest = attempt_both(x, ct_ex_subst(x, e, s, zero, n), options)
+                .e; // zero: all elements are node 0
     return true;
 }
 
@@ -277,7 +280,8 @@ static size_t list_symbols(struct ct_exs *x, struct ct_arena *arena, ct_ex e,
     return found;
 }
 
-// An equation too long to expand, as linear form in its accelerations; e itself if it is none.
+// Linear form in the accelerations of an equation too long to be expanded; e itself if it is not
+// linear.
 static ct_ex collect_equation(struct ct_exs *x, struct ct_arena *arena, ct_ex e,
                               const struct ct_collect_options *options)
 {

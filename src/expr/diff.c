@@ -1,8 +1,8 @@
 // Walks over the graph: derivatives, substitution, copies between stores.
 //
-// Derivatives are forward mode by one symbol or direction, and reverse mode (gradient). Each walk
-// lists the nodes below its roots in topological order and computes one result per node. Stacks are
-// explicit, as expressions may be deep.
+// Derivatives are in forward mode (by one symbol or one direction) and in reverse mode (gradient).
+// Each walk lists the nodes below its roots in topological order and computes one result per node.
+// Stacks are explicit, because expressions may be deep.
 #include "expr/ex.h"
 
 #include <assert.h>
@@ -35,7 +35,7 @@ size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned 
     reserve_walk(x);
     x->generation++;
     uint32_t *list = x->stack,
-             *pending = x->stack + x->walk_cap; // pending grows behind the list
+             *pending = x->stack + x->walk_cap; // the stack of pending nodes follows the list
     size_t nlist = 0;
     for (size_t r = 0; r < n; r++) {
         size_t npending = 0;
@@ -127,7 +127,7 @@ ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i)
         return ct_ex_div(x, one, a);
     case CT_OP_ABS:
         return ct_ex_fun(x, CT_OP_SIGN, a);
-    case CT_OP_MIN: // the smaller argument's derivative counts; ties go to the second
+    case CT_OP_MIN: // derivative of the smaller argument; of the second if both are equal
         return i ? ct_ex_if(x, ct_ex_fun2(x, CT_OP_LT, a, b), CT_EX_ZERO, one)
                  : ct_ex_if(x, ct_ex_fun2(x, CT_OP_LT, a, b), one, CT_EX_ZERO);
     case CT_OP_MAX:
@@ -159,7 +159,7 @@ static ct_ex chain(struct ct_exs *x, uint32_t id, const ct_ex *d)
     const struct ct_exnode n = x->node[id];
     const uint32_t arg[3] = {n.a, n.b, n.c};
     const ct_ex a = {n.a}, b = {n.b};
-    if (n.op == CT_OP_IF) // keeps one `if`, however deep the derivative
+    if (n.op == CT_OP_IF) // one `if` for all branches, however deep the derivative
         return ct_ex_if(x, a, d[n.b], d[n.c]);
     if (n.op == CT_OP_DIV) { // (a' - (a/b) b') / b
         const ct_ex da = d[n.a], db = d[n.b];
@@ -180,7 +180,7 @@ static ct_ex sweep(struct ct_exs *x, size_t n, ct_ex e, const ct_ex *s, const ct
 {
     const unsigned kinds = kinds_of(x, s, ns);
     const uint32_t *list = x->stack;
-    ct_ex *d = x->memo; // by id; nothing below starts another walk
+    ct_ex *d = x->memo; // by id; no further walk starts below
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
         const uint32_t arg[3] = {node.a, node.b, node.c};
@@ -216,7 +216,8 @@ ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s)
     return ct_ex_diff_along(x, a, &s, &one, 1);
 }
 
-// Share of the i-th argument in the derivative by a node: bar times the partial derivative.
+// Contribution of a node to the adjoint of its i-th argument: its own adjoint `bar` times the
+// partial derivative.
 static ct_ex pass_down(struct ct_exs *x, uint32_t id, int i, ct_ex bar)
 {
     const struct ct_exnode n = x->node[id];
@@ -227,13 +228,13 @@ static ct_ex pass_down(struct ct_exs *x, uint32_t id, int i, ct_ex bar)
              : ct_ex_if(x, (ct_ex){n.a}, i == 1 ? bar : CT_EX_ZERO, i == 2 ? bar : CT_EX_ZERO);
 }
 
-// Backwards, parents before children. Source: Griewank and Walther (2008), 3.2, key griewank2008.
+// Reverse mode: users before operands. Source: Griewank and Walther (2008), 3.2, key griewank2008.
 void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
                     size_t n, ct_ex *out)
 {
     const size_t nnode = ct_ex_walk(x, &a, 1);
-    uint32_t *list
-        = CT_NEWN(scratch, uint32_t, nnode + 1); // building derivatives may walk again
+    uint32_t *list = CT_NEWN(scratch, uint32_t,
+                             nnode + 1); // a copy: building derivatives may start another walk
     memcpy(list, x->stack, nnode * sizeof *list);
     bool *counts = CT_NEWN(scratch, bool, x->nnode); // by id: depends on a symbol
     ct_ex *bar = CT_NEWN(scratch, ct_ex, x->nnode);  // by id
@@ -260,7 +261,7 @@ void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const c
         out[i] = bar[s[i].id];
 }
 
-// The node rebuilt with new arguments, through the public constructors so that the rules apply.
+// Rebuild a node with new arguments through the public constructors, so that the local rules apply.
 static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex b, ct_ex c)
 {
     if (n->op == CT_OP_IF)
@@ -286,7 +287,7 @@ static void subst(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, cons
 {
     const size_t n = ct_ex_walk_kinds(x, a, na, kinds);
     const uint32_t *list = x->stack;
-    ct_ex *image = x->memo; // by id; nothing below starts another walk
+    ct_ex *image = x->memo; // by id; no further walk starts below
     for (size_t k = 0; k < n; k++) {
         const struct ct_exnode node = x->node[list[k]];
         const uint32_t arg[3] = {node.a, node.b, node.c};

@@ -1,11 +1,11 @@
-// Sparse forward-mode automatic differentiation at a point (dual numbers): one walk, each node with
-// its value and the list of its nonzero derivatives.
+// Sparse forward-mode automatic differentiation at a point (dual numbers). One walk computes for
+// each node its value and the list of its nonzero derivatives.
 //
 //     node  ->  value,  [ (direction, derivative), ... ]      ascending directions, zeros left out
 //
-// The walk of jacobian.c with numbers. Derivatives that vanish at the point are not propagated. A
-// list is freed after its last reader, so that memory is that of the live nodes. Source: Griewank
-// and Walther (2008), 3.1 and 7.1, key griewank2008.
+// The same walk as in jacobian.c, with numbers. Derivatives that vanish at the point are not
+// propagated. A list is freed after its last reader, so the memory is that of the live nodes.
+// Source: Griewank and Walther (2008), 3.1 and 7.1, key griewank2008.
 #include "expr/seed.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ struct tangent {
 struct list {
     struct tangent *at;
     uint32_t n;
-    uint8_t size; // room for 2^size
+    uint8_t size; // capacity 2^size
 };
 
 enum { NSIZE = 32 }; // Definition: bits of a length, one list for each power of two
@@ -28,12 +28,12 @@ struct walk {
     struct ct_exs *x;
     struct ct_arena *scratch;
     const double *value;    // by symbol
-    double *v;              // by place
-    struct list *list;      // by place
-    uint32_t *place;        // by id
-    uint32_t *readers;      // by place: nodes and roots still to come
-    void *free[NSIZE];      // lists given up, chained through their first bytes
-    struct tangent *merged; // of the node in hand
+    double *v;              // by index in the walk
+    struct list *list;      // by index in the walk
+    uint32_t *place;        // by id: index in the walk
+    uint32_t *readers;      // by index in the walk: remaining readers (nodes and roots)
+    void *free[NSIZE];      // free lists by size, chained through their first bytes
+    struct tangent *merged; // list of the current node
     size_t nmerged, cap;
 };
 
@@ -122,7 +122,7 @@ double ct_op_partial(enum ct_op op, int i, double a, double b, double v)
         return 1 / a;
     case CT_OP_ABS:
         return ct_op_apply(CT_OP_SIGN, a, 0, 0);
-    case CT_OP_MIN: // ties go to the second
+    case CT_OP_MIN: // the second argument if both are equal
         return (a < b) != i;
     case CT_OP_MAX:
         return (a > b) != i;
@@ -237,7 +237,7 @@ size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_a
                          const double *value, double *fvalue, struct ct_number **out)
 {
     const size_t n = ct_ex_walk(x, f, nf);
-    const uint32_t *id = x->stack; // nothing below walks again
+    const uint32_t *id = x->stack; // no further walk starts below
     struct walk w = {.x = x, .scratch = scratch, .value = value};
     w.v = CT_NEWN(scratch, double, n + 1);
     w.list = CT_NEWN(scratch, struct list, n + 1);
@@ -251,7 +251,7 @@ size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_a
     *out = NULL;
     for (size_t k = 0; k < n; k++) {
         visit(&w, id[k], (uint32_t)k, seed, nseed);
-        for (; next < nf && w.place[f[next].id] <= k; next++) { // a root that is done
+        for (; next < nf && w.place[f[next].id] <= k; next++) { // a root whose node is finished
             const uint32_t place = w.place[f[next].id];
             const struct list *l = &w.list[place];
             fvalue[next] = w.v[place];

@@ -1,4 +1,4 @@
-// Values of operators, tables and whole expressions: what every evaluator must agree with.
+// Values of operators, tables and whole expressions: the reference for every evaluator.
 #include "expr/ex.h"
 
 #include <math.h>
@@ -21,8 +21,8 @@ double ct_op_apply(enum ct_op op, double a, double b, double c)
     return NAN;
 }
 
-// Interval i with x[i] <= at <= x[i + 1]. The search begins where `at` were among equal intervals, and
-// widens by doubling: a constant cost for those, that of a bisection for any others.
+// Find interval i with x[i] <= at <= x[i + 1]. The search starts at the interval that equal spacing
+// would give and widens by doubling: constant cost for equal spacing, that of bisection otherwise.
 static size_t find_interval(const struct ct_table *t, double at)
 {
     const size_t last = t->n - 1;
@@ -47,7 +47,7 @@ static size_t find_interval(const struct ct_table *t, double at)
     return low;
 }
 
-// The last value that counts at `at`.
+// Value of a piecewise constant table at `at`.
 static double held_value(const struct ct_table *t, double at)
 {
     if (t->n == 1 || at >= t->x[t->n - 1])
@@ -85,7 +85,7 @@ double ct_table_value(const struct ct_table *t, uint32_t order, double at)
     }
 }
 
-// From the values of its arguments, by node.
+// Value of a node from the values of its arguments, indexed by node.
 static double value_from(const struct ct_exs *x, uint32_t id, const double *value,
                          const double *number)
 {

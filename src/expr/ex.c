@@ -13,10 +13,10 @@ const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-// Limit: memory of an empty store and of a copy, which is made to grow.
+// Limit: initial memory of an empty store, and of a copy, which is made in order to grow.
 enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
-// Limit: time to walk the list of nodes with one newest operand; further ones are in the hash
-// table, which starts with so many places.
+// Limit: length of the list of nodes with one newest operand, which bounds the time to search it.
+// Further nodes go to the hash table, of this initial size.
 enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
 
 static bool is_node(const struct ct_exnode *m, const struct ct_exnode *n)
@@ -66,7 +66,7 @@ static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
     return k;
 }
 
-// Node, kinds and link grow together.
+// The arrays node, kinds and link grow together.
 static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
 {
     const struct ct_exnode *node = x->node;
@@ -83,7 +83,8 @@ static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
     memcpy(x->link, link, x->nnode * sizeof *link);
 }
 
-// Large stores grow eightfold: the nodes left behind take memory, room that is never used takes none (arena.c).
+// Large stores grow eightfold. Arrays left behind cost memory, but reserved pages that are never
+// touched do not (arena.c).
 static size_t next_cap(size_t cap)
 {
     const size_t large = (size_t)1 << 15; // Limit: of memory, half a megabyte
@@ -112,8 +113,8 @@ static ct_ex intern_in_table(struct ct_exs *x, const struct ct_exnode *n)
     return e;
 }
 
-// Hash consing: the id of an equal node, or of a new one. Lists by newest operand are short and
-// local in memory; a hash table takes what exceeds them.
+// Hash consing: the id of an equal node, or of a new one. Most nodes are found through the short
+// list of their newest operand, which is local in memory; the hash table holds the rest.
 static ct_ex intern(struct ct_exs *x, uint32_t op, uint32_t a, uint32_t b, uint32_t c)
 {
     const struct ct_exnode n = {op, a, b, c};
@@ -170,7 +171,7 @@ ct_ex ct_ex_sym(struct ct_exs *x, enum ct_sym_kind kind, const char *name, uint3
     const struct ct_sym s = {.kind = kind, .name = name, .index = index};
     CT_PUSH(x->arena, x->sym, x->nsym, x->sym_cap, s);
     const struct ct_exnode n = {CT_OP_SYM, (uint32_t)x->nsym - 1, 0, 0};
-    return append(x, &n); // there is none like it
+    return append(x, &n); // no equal node exists
 }
 
 bool ct_ex_is_const(const struct ct_exs *x, ct_ex a, double *v)
@@ -224,7 +225,7 @@ static bool fold(struct ct_exs *x, enum ct_op op, ct_ex a, ct_ex b, ct_ex *out)
         return false;
     const double v = ct_op_apply(op, va, vb, 0);
     if (!isfinite(v))
-        return false; // stays a node: the run sees what the user wrote
+        return false; // not folded: the run reports the operation as the user wrote it
     *out = ct_ex_const(x, v);
     return true;
 }
@@ -301,8 +302,8 @@ ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
     return ct_ex_sub(x, a, ct_ex_mul(x, b, c));
 }
 
-// c * b with a constant c: signs outwards, constants merged, the constant first. k: node of c, or
-// 0.
+// c * b with a constant c: pull out signs, merge constants, put the constant first. k: node of c,
+// or 0.
 static ct_ex scaled(struct ct_exs *x, double c, ct_ex k, ct_ex b)
 {
     if (c < 0)
@@ -335,7 +336,7 @@ ct_ex ct_ex_mul(struct ct_exs *x, ct_ex a, ct_ex b)
         return scaled(x, c, a, b);
     if (ct_ex_is_const(x, b, &c))
         return scaled(x, c, b, a);
-    // constants outwards: (c x) y = c (x y)
+    // pull constants out: (c x) y = c (x y)
     struct ct_exnode n = x->node[a.id];
     if (n.op == CT_OP_MUL && ct_ex_is_const(x, (ct_ex){n.a}, &c))
         return scaled(x, c, (ct_ex){n.a}, ct_ex_mul(x, (ct_ex){n.b}, b));
@@ -428,7 +429,7 @@ ct_ex ct_ex_fun(struct ct_exs *x, enum ct_op op, ct_ex a)
     default:
         break;
     }
-    // b - a and a - b share one sine: the smaller id first
+    // sin(b - a) and sin(a - b) share one node: the difference with the smaller id first
     const struct ct_exnode n = x->node[a.id];
     if (n.op == CT_OP_SUB && n.a > n.b && (op == CT_OP_SIN || op == CT_OP_COS)) {
         const ct_ex turned = intern(x, CT_OP_SUB, n.b, n.a, 0);

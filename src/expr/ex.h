@@ -1,29 +1,30 @@
-// The expression graph: one hash-consed store of nodes (value numbering: common subexpressions are
-// one node).
-//
-// src/expr builds, differentiates, simplifies and evaluates expressions:
+// src/expr builds, differentiates, simplifies, evaluates and prints symbolic expressions. It holds
+// all expressions of a model as one directed acyclic graph. The store is hash-consed: each distinct
+// subexpression is one node, so common subexpressions are found as they are built.
 //
 //     text -> graph      parse, unit, quantity
-//     derivatives        diff (symbolic forward, reverse gradient), jacobian (sparse,
-//                        symbolic), dual (sparse, numeric), pattern (sparsity), scarcity (vertex elimination)
-//     for reading        collect, expand, identity, regroup; fraction; share (names for common
-//                        subexpressions); print, term, notation
-//     for evaluation     listing (linear intermediate code), tape (interpreter), sincos
+//     derivatives        diff (forward and reverse mode, symbolic), jacobian (sparse, symbolic),
+//                        dual (sparse, numeric), pattern (sparsity), scarcity (vertex elimination)
+//     simplification     collect, expand, identity, regroup; normal_form; fraction
+//     printing           share (names for common subexpressions), print, term, notation
+//     evaluation         listing (linear intermediate code), tape (interpreter), sincos, eval
 //     along a symbol     quadrature, switches (jumps and kinks)
 //
-// It knows no mechanics: a symbol is a name, a kind and an index.
+// The folder knows no mechanics: a symbol is a name, a kind and an index.
 //
 //     id   0    1     2      3        4          5
 //          0    1    theta  sin(2)   m        mul(4,3)      children have smaller ids than parents
 //
-// What always holds: equal ids mean equal expressions (up to the local rules below), a node's
-// children have smaller ids, so evaluating is a loop upwards and a reverse derivative the same loop
-// downwards. Constants are told apart by bit pattern, -0 and 0 are the same node; a NaN is never
-// stored as a constant except as the value of an explicit NaN operation at run time.
+// What always holds: equal ids mean equal expressions (up to the local rules below). The operands
+// of a node have smaller ids. Evaluation is therefore a loop over ascending ids, and reverse mode
+// differentiation a loop over descending ids. Constants are compared by bit pattern, except that -0
+// and 0 are the same node. A NaN is never stored as a constant; it can only be the result of an
+// operation at run time.
 //
-// Local rules applied on construction: constants are folded, 0 and 1 vanish, signs are pulled out
-// of products and quotients, commutative operands are ordered by id, x - x = 0, x + x = 2 x, c (d
-// x) = (c d) x, sin(-x) = -sin(x), cos(-x) = cos(x), x - (-y) = x + y. Nothing is expanded.
+// Local rules applied on construction: constants are folded, terms 0 and factors 1 are removed,
+// signs are pulled out of products and quotients, commutative operands are ordered by id, x - x =
+// 0, x + x = 2 x, c (d x) = (c d) x, sin(-x) = -sin(x), cos(-x) = cos(x), x - (-y) = x + y. Nothing
+// is expanded.
 #ifndef CT_EXPR_EX_H
 #define CT_EXPR_EX_H
 
@@ -63,18 +64,18 @@ enum ct_sym_kind {
     CT_SYM_U,      // speed
     CT_SYM_A,      // derivative of a speed
     CT_SYM_LAM,    // multiplier of a constraint row
-    CT_SYM_SWITCH, // 0 or 1: the side of a comparison, constant between events
-    CT_SYM_MEMORY, // value kept from the last accepted step (angle of a chord)
-    CT_SYM_WORK,   // energy.work: a quadrature beside the states
-    CT_SYM_LOCAL, // argument of an expression of its own: coordinate of a custom joint, x of a beam
-    CT_SYM_SEED,   // one number of a direction along which derivatives are taken
-    CT_SYM_SIGNAL, // a signal name not yet resolved; formulate substitutes it
+    CT_SYM_SWITCH, // 0 or 1: which side of a comparison holds; constant between events
+    CT_SYM_MEMORY, // value stored at the last accepted step (e.g. the angle of a chord)
+    CT_SYM_WORK,   // energy.work: an integral computed along with the states
+    CT_SYM_LOCAL,  // local variable: coordinate of a custom joint, position x along a beam
+    CT_SYM_SEED,   // component of a direction along which derivatives are taken
+    CT_SYM_SIGNAL, // name of a signal not yet resolved; src/formulate substitutes its expression
 };
 
 struct ct_sym {
     enum ct_sym_kind kind;
     const char *name; // as printed: "theta.q", "length"
-    uint32_t index;   // its place in the vector of its kind
+    uint32_t index;   // index in the vector of its kind
     struct ct_mark mark;
 };
 
@@ -84,8 +85,9 @@ struct ct_exnode {
     uint32_t op, a, b, c;
 };
 
-/// Linked lists of the nodes that share their newest operand (the one with the largest id), for
-/// hash consing. first: head of this node's list; next: the node before in its own list; 0: none.
+/// Linked lists for hash consing: each list holds the nodes that share their newest operand (the
+/// operand with the largest id). first: head of the list of this node; next: the previous node in
+/// the list that contains this node; 0: none.
 struct ct_exlink {
     uint32_t first, next;
 };
@@ -96,8 +98,8 @@ struct ct_table {
     size_t n;
     const double *x, *y; // x strictly increasing
     const double *m; // slopes at the points (cubic Hermite of the natural spline), NULL: linear
-    bool
-        holds; // y[i] counts from x[i] on, up to the next one; y[0] before, the last one after all
+    // piecewise constant: y[i] from x[i] to x[i + 1]; y[0] before, the last after all
+    bool holds;
 };
 
 struct ct_exs {
@@ -110,14 +112,15 @@ struct ct_exs {
     size_t ntable, table_cap;
     uint16_t *kinds;        // per node: bit set of the kinds of symbols below it
     struct ct_exlink *link; // per node
-    uint32_t
-        *hash; // of constants and what is not linked; open addressing, 0 is free, else id + 1
+    // constants, and nodes in no list; open addressing: 0 free, else id + 1
+    uint32_t *hash;
     size_t hash_size, nhash;
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
-    unsigned char *decided; // by symbol: ct_ex_value has read its value; NULL: not recorded
+    unsigned char
+        *decided;    // by symbol: ct_ex_value has read its value; NULL: reads are not recorded
     size_t ndecided; // number of symbols when recording began; later ones are not recorded
-    // workspace of walks over the graph: a generation stamp and a result per node, a stack
+    // workspace of graph walks: a generation stamp and a result per node, and a stack
     uint32_t *stamp, generation;
     ct_ex *memo;
     uint32_t *stack;
@@ -125,13 +128,13 @@ struct ct_exs {
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
-/// A copy that lives and grows in a; ids are the same. Labels stay behind.
+/// A copy of the store, allocated in a; it can grow, and ids are the same. Labels are not copied.
 struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from);
 
 // ---- leaves ---------------------------------------------------------------------------------
 
 ct_ex ct_ex_const(struct ct_exs *x, double v);
-/// A new symbol each time; keep the handle.
+/// A new symbol at each call, even for an equal name: the caller keeps the handle.
 ct_ex ct_ex_sym(struct ct_exs *x, enum ct_sym_kind kind, const char *name, uint32_t index);
 #define CT_EX_ZERO ((ct_ex){0})
 #define CT_EX_ONE ((ct_ex){1})
@@ -155,7 +158,7 @@ ct_ex ct_ex_scale(struct ct_exs *x, double c, ct_ex a);
 /// a + b c and a - b c
 ct_ex ct_ex_add_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c);
 ct_ex ct_ex_sub_product(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c);
-/// Give a node a name by meaning ("rod.position.x"); the first name stays.
+/// Label a node with a meaningful name ("rod.position.x"). The first label of a node is kept.
 void ct_ex_label(struct ct_exs *x, ct_ex a, const char *name);
 
 // ---- questions ------------------------------------------------------------------------------
@@ -180,8 +183,8 @@ unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
 
 // ---- derivatives, substitution, values ----------------------------------------------------------
 
-/// Nodes below the n roots (each once, children before parents) written to x->stack; returns their
-/// number. The list holds until the next walk. Cost: the nodes below.
+/// Write the nodes below the n roots to x->stack, each once, operands before the nodes that use
+/// them. Returns their number. The list is valid until the next walk. Cost: the nodes below.
 size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
 /// The same, of those nodes alone that have symbols of some of these kinds (ct_ex_kinds) below them.
 size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned kinds);
@@ -193,15 +196,16 @@ ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
 ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
-/// Gradient out[i] = da/ds[i] by n symbols in reverse mode. Cost: nodes below a, whatever n.
+/// Gradient out[i] = da/ds[i] for n symbols in reverse mode. Cost: nodes below a, whatever n is.
 void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const ct_ex *s,
                     size_t n, ct_ex *out);
 /// Derivative of node id by its i-th argument, as an expression of the node and its arguments.
 ct_ex ct_ex_partial(struct ct_exs *x, uint32_t id, int i);
 
 /// Seed of forward differentiation: d(symbol)/d(direction) = value. A symbol may have several. An
-/// inner node may be seeded too: nodes above it then see these directions only, and as a row of f
-/// it has the derivatives that follow from its arguments.
+/// inner node may be seeded too. Nodes above it then use these derivatives in place of those of its
+/// arguments; if the node is itself an entry of f, its row holds the derivatives that follow from
+/// its arguments.
 struct ct_seed {
     ct_ex symbol;
     uint32_t direction;
@@ -218,7 +222,7 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
                       const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                       struct ct_slope **out);
 /// Sparsity pattern of that Jacobian (values 0, *out lives in a) and an estimate of its operations.
-/// Directions count from 0 to ndirection. Cost: nodes below f for every 64 directions.
+/// Directions are numbered from 0 to ndirection - 1. Cost: nodes below f for every 64 directions.
 size_t ct_ex_pattern(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                      const ct_ex *f, size_t nf, const struct ct_seed *seed, size_t nseed,
                      uint32_t ndirection, struct ct_slope **out, double *operations);
@@ -228,8 +232,8 @@ struct ct_number {
     uint32_t row, direction;
     double value;
 };
-/// The Jacobian as numbers at value[k] for symbol k, without new nodes: fvalue (nf, out) and the
-/// nonzero derivatives, by row, then direction. *out lives in a.
+/// The Jacobian as numbers where symbol k has the value value[k]; no new nodes. fvalue (nf, out):
+/// values of f. *out (lives in a): nonzero derivatives, by row, then by direction.
 size_t ct_ex_jacobian_at(struct ct_exs *x, struct ct_arena *scratch, struct ct_arena *a,
                          const ct_ex *f, size_t nf, const struct ct_seed *seeds, size_t nseed,
                          const double *value, double *fvalue, struct ct_number **out);
@@ -250,16 +254,19 @@ typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs
                                ct_ex s);
 ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_leaf_fn leaf,
                    void *data);
-/// Value with value[k] for symbol k (index into x->sym). Slow; for checks, defaults and tests.
+/// Value of a, where value[k] is that of symbol k (index into x->sym). Slow: for checks, defaults
+/// and tests.
 double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value);
-/// out (n) = the values of many that share nodes, each node once.
+/// out (n) = values of n expressions that share nodes; each node is evaluated once.
 void ct_ex_values(struct ct_exs *x, struct ct_arena *scratch, const ct_ex *a, size_t n,
                   const double *value, double *out);
-/// One operator on numbers: what every evaluator must agree with.
+/// Apply one operator to numbers. Every evaluator must give the same value.
 double ct_op_apply(enum ct_op op, double a, double b, double c);
-/// Its derivative by the i-th argument, where its value is v; of all but CT_OP_TABLE.
+/// Partial derivative of an operator by its i-th argument, where v is the operator's value. All
+/// operators but CT_OP_TABLE.
 double ct_op_partial(enum ct_op op, int i, double a, double b, double v);
-/// Value of the order-th derivative of a table at x; NaN outside its range, which one that holds does not have.
+/// Value of the order-th derivative of a table at x. Outside its range: NaN, or the end value of a
+/// piecewise constant table.
 double ct_table_value(const struct ct_table *t, uint32_t order, double x);
 
 // ---- three components --------------------------------------------------------------------------
@@ -279,7 +286,7 @@ ct_ex3 ct_ex33_apply_t(struct ct_exs *x, const ct_ex33 *A, ct_ex3 b);
 ct_ex33 ct_ex33_mul(struct ct_exs *x, const ct_ex33 *A, const ct_ex33 *B);
 ct_ex33 ct_ex33_identity(void);
 ct_ex33 ct_ex33_transpose(const ct_ex33 *A);
-/// Rotation about the unit vector n by the angle a (right-handed): columns are the turned axes.
+/// Rotation about the unit vector n by the angle a (right-handed): columns are the rotated axes.
 ct_ex33 ct_ex33_axis_angle(struct ct_exs *x, ct_ex3 n, ct_ex a);
 
 #endif

@@ -1,19 +1,20 @@
-// Expressions -> polynomials over atoms, upwards over the nodes; see collect.h.
+// Expressions -> polynomials over atoms, operands first; see collect.h.
 //
-// Products distribute over sums and whole powers multiply out. Sums that would outgrow the limit
-// are bundled: simplified, regrouped and from then on one atom.
+// Products are distributed over sums, integer powers are multiplied out. A sum that would exceed
+// the limit is simplified, regrouped and then treated as one atom.
 //
-// Identities can be applied at the end or early, to each sum on the way up. Early, the components
-// of a rotation about parallel axes become cos(a + b) before they are squared, and polynomials
-// stay short; at the end, everything that cancels is there in one form. Neither is always shorter.
+// Identities can be applied at the end, or early, to each sum during expansion. Early, the
+// components of a rotation about parallel axes become cos(a + b) before they are squared, and
+// polynomials stay short. At the end, all cancelling terms are present in one form. Neither order
+// is always shorter, so collect.c tries both.
 #include "expr/collector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// Limit: terms made before expansion stops, which bounds time and memory. Beyond, sums stay as
-// they are.
+// Limit: terms made before expansion stops; bounds time and memory. Beyond it, sums stay as they
+// are.
 static const size_t budget = 1000000;
 
 void ct_collector_init(struct ct_collector *c, struct ct_exs *x, struct ct_arena *arena,
@@ -58,7 +59,7 @@ static struct ct_poly number(struct ct_collector *c, double v)
     return ct_poly_term(&c->ps, v, 0);
 }
 
-// k e as a polynomial with e as it stands, apart from its sign.
+// k e as a polynomial with e as one atom, but for its sign.
 static struct ct_poly opaque(struct ct_collector *c, ct_ex e)
 {
     const struct ct_exnode n = *ct_ex_node(c->x, e);
@@ -72,8 +73,8 @@ static struct ct_poly opaque(struct ct_collector *c, ct_ex e)
 
 // ---- angles -----------------------------------------------------------------------------------
 
-// The smallest node among the atoms of a monomial: symbols are older than what is made of them, so
-// this is the first symbol where there is one.
+// The smallest node among the atoms of a monomial. Symbols are created before the nodes made from
+// them, so this is the first symbol if there is one.
 static uint32_t oldest(const struct ct_collector *c, uint32_t mono)
 {
     uint32_t id = UINT32_MAX;
@@ -127,7 +128,7 @@ struct ct_poly ct_collector_trig(struct ct_collector *c, enum ct_op op, struct c
 
 // ---- sums, products, quotients ------------------------------------------------------------------
 
-// p with its sum as one atom; the content stays outside so that it can still cancel.
+// Replace the sum p by one atom. Its content stays a factor, so that it can still cancel.
 static struct ct_poly bundle(struct ct_collector *c, struct ct_poly p)
 {
     double k;
@@ -154,7 +155,7 @@ static struct ct_poly bounded(struct ct_collector *c, struct ct_poly p)
     return p.n > room(c) ? bundle(c, p) : p;
 }
 
-// sqrt(a)^2 = a: a term with such a power is multiplied out again.
+// sqrt(a)^2 = a: expand a term with such a power again.
 static struct ct_poly reduce_root(struct ct_collector *c, const struct ct_term *t)
 {
     struct ct_poly p = {NULL, 0};
@@ -179,7 +180,7 @@ static struct ct_poly reduce_roots(struct ct_collector *c, struct ct_poly p)
             continue;
         const struct ct_poly old = {(struct ct_term[]){t}, 1};
         p = ct_poly_add(&c->ps, ct_poly_add(&c->ps, p, -1, old), 1, reduced);
-        k = (size_t)-1; // terms have moved; each step removes a square root, so this ends
+        k = (size_t)-1; // terms have moved: start again; each step removes a root
     }
     return p;
 }
@@ -217,7 +218,7 @@ static struct ct_poly multiply(struct ct_collector *c, struct ct_poly a, struct 
 {
     if (largest_exponent(c, a) + largest_exponent(c, b) > LARGEST_EXPONENT)
         return product_as_it_is(c, a, b);
-    // a product of many terms may still collapse, so it may be larger than the limit for a while
+    // a product may collapse later, so it may exceed the limit for a while
     if (a.n * b.n > 16 * room(c)) {
         c->bundled = true;
         a = a.n >= b.n ? bundle(c, a) : a;
@@ -333,8 +334,8 @@ static struct ct_poly expand_node(struct ct_collector *c, ct_ex e)
 struct ct_poly ct_expand(struct ct_collector *c, ct_ex e)
 {
     const size_t n = ct_ex_walk(c->x, &e, 1);
-    uint32_t *id
-        = CT_NEWN(c->arena, uint32_t, n); // the walk's own list holds until the next walk
+    uint32_t *id = CT_NEWN(c->arena, uint32_t,
+                           n); // a copy: the list of a walk is valid until the next walk
     memcpy(id, c->x->stack, n * sizeof *id);
     c->place_of = (struct ct_pairs){0};
     c->nexpanded = 0;

@@ -7,14 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// Numerator times denominator. Derived: [v, 2 v] has at most 0.3e9 such fractions among 4.5e15
-// doubles, so that a number is within 8 of one by chance in one case of 10^6.
+// Limit on numerator times denominator. Derived: [v, 2 v] holds at most 0.3e9 such fractions and
+// 4.5e15 doubles, so a random number lies within 8 doubles of a fraction with probability 10^-6.
 static const double largest_product = 1e9;
 // Default: divisors of beam elements, up to 138600, and few others are shown. Test: fraction.
 static const double largest_divisor = 1e6;
-// Derived: a number that up to sixteen operations give, each of which rounds by half a unit.
+// Derived: the result of up to sixteen operations, each rounded by half a unit in the last place.
 static const double few_roundoffs = 8 * DBL_EPSILON;
-// Derived: an integral over an element is a sum of up to 64 products, and products and sums round.
+// Derived: an integral over an element is a sum of up to 64 products; each product and each sum is
+// rounded by half a unit.
 static const double many_roundoffs = 64 * DBL_EPSILON;
 
 static bool is_short(double v)
@@ -49,7 +50,7 @@ static bool nearest(double v, double tolerance, double *n, double *d)
     return true;
 }
 
-// A divisor of twos and fives alone: the fraction is a decimal, as people type it.
+// True if the divisor has no prime factors but 2 and 5: the fraction is then a finite decimal.
 static bool is_decimal(double divisor)
 {
     while (fmod(divisor, 2) == 0)
@@ -90,9 +91,11 @@ double ct_fraction_tidy(double v)
 int ct_fraction_of_pi(double v, double *n, double *d)
 {
     static const int powers[] = {1, 2, -1, -2};
-    // Derived: the power and the division round, and so do v and what it was computed from.
+    // Derived: four operands are rounded, by up to one unit each: the power, the division, v and
+    // its source.
     const double tolerance = 4 * DBL_EPSILON;
-    // Derived: four powers with 0.6e6 fractions each meet a double by chance in one case of 10^9.
+    // Derived: there are 0.6e6 such fractions for each of four powers, so a random double lies near
+    // one with probability 10^-9.
     const double most = 1000;
     for (size_t i = 0; i < sizeof powers / sizeof *powers && !is_short(v); i++)
         if (nearest(v / pow(CT_PI, powers[i]), tolerance, n, d) && fabs(*n) <= most

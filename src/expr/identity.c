@@ -1,14 +1,14 @@
-// Identities of sines and cosines, where they make a polynomial shorter; see collect.h.
+// Identities of sines and cosines, applied where they make a polynomial shorter; see collect.h.
 //
-// Terms that differ only in sines and cosines form a group (parameters, speeds and the rest are a
-// common factor of it); each group is rewritten by itself, in three ways, and the shortest stays:
+// Terms that differ only in sines and cosines form a group; parameters, speeds and the rest are its
+// common factor. Each group is rewritten in three ways, and the shortest result is kept:
 //
 //     merged     cos^2 a + sin^2 a = 1, cos a cos b + sin a sin b = cos(a - b) and relatives,
-//                on pairs of terms, until none is left
-//     expanded   sums inside sines and cosines first multiplied out, then merged: finds what
-//                cancels between products and functions of sums
+//                on pairs of terms, until no pair is left
+//     expanded   sines and cosines of sums are expanded first, then merged: finds cancellation
+//                between products and functions of sums
 //     harmonics  products as sums, cos a cos b = (cos(a - b) + cos(a + b)) / 2: a normal form, in
-//                which everything that cancels does; pairs 1 + cos 2a become squares again
+//                which all cancelling terms cancel; pairs 1 + cos 2a become squares again
 #include "expr/collector.h"
 
 #include "base/sort.h"
@@ -23,10 +23,10 @@ static const struct ct_atom *atom_at(const struct ct_collector *c, uint32_t mono
     return &c->atom[ct_mono_power(&c->ps, mono, k).atom];
 }
 
-// What a reader has to read: terms, coefficients, factors, powers, and sums inside functions.
+// Measure of length: terms, coefficients, factors, powers, and sums inside functions.
 static size_t length_of_term(const struct ct_collector *c, const struct ct_term *t)
 {
-    // fractions come from product-to-sum formulas, wanted only where the result is much shorter
+    // fractions from product-to-sum formulas count twice: they pay only in a much shorter result
     size_t n = 2 + !ct_same_number(fabs(t->c), 1) + 2 * (t->c != floor(t->c));
     for (size_t k = 0; k < ct_mono_length(&c->ps, t->mono); k++) {
         const struct ct_atom *atom = atom_at(c, t->mono, k);
@@ -54,7 +54,7 @@ static struct ct_poly shorter(const struct ct_collector *c, struct ct_poly a, st
 
 // ---- parts of polynomials ----------------------------------------------------------------------
 
-// Terms in the order of a key; those with one key are treated together.
+// A term with a sort key; terms with equal keys are rewritten together.
 struct keyed {
     uint32_t key;
     struct ct_term t;
@@ -70,7 +70,7 @@ static int by_key(const void *unused, const void *a, const void *b)
 typedef struct ct_poly (*part_fn)(struct ct_collector *c, struct ct_poly part,
                                   const void *data);
 
-// The sum over the parts of p with one key of rewrite(part). k is sorted.
+// The sum of rewrite(part) over the parts of p with equal keys. k is sorted.
 static struct ct_poly rewrite_parts(struct ct_collector *c, struct keyed *k, size_t n,
                                     part_fn rewrite, const void *data)
 {
@@ -129,7 +129,7 @@ static struct ct_poly replace_squares(struct ct_collector *c, struct ct_poly p, 
     return sum;
 }
 
-// One pair k R s^2 + k R c^2 -> k R, or the same polynomial if there is none.
+// Merge one pair k R s^2 + k R c^2 -> k R; p itself if there is none.
 static struct ct_poly merge_square(struct ct_collector *c, struct ct_poly p,
                                    const struct ct_angle *a)
 {
@@ -168,7 +168,7 @@ static struct ct_poly shorten_squares(struct ct_collector *c, struct ct_poly p,
     return shorter(c, shorter(c, merged, cosines), sines);
 }
 
-// The parts of p that differ only in the powers of the sine and cosine of one angle.
+// Merge squares among the terms that differ only in the powers of the sine and cosine of one angle.
 static struct ct_poly squares_of_angle(struct ct_collector *c, struct ct_poly p, uint32_t angle)
 {
     const struct ct_angle a = c->angle[angle];
@@ -201,17 +201,18 @@ static struct ct_poly squares(struct ct_collector *c, struct ct_poly p)
 
 // ---- sums and differences of angles ------------------------------------------------------------
 
-// The atom of the other function of the same angle.
+// The atom of the other function (sine or cosine) of the same angle.
 static uint32_t turned(const struct ct_collector *c, uint32_t atom)
 {
     const struct ct_angle *a = &c->angle[c->atom[atom].angle - 1];
     return c->atom[atom].is_sine ? a->cosine : a->sine;
 }
 
-// k R f(a) g(b) and its partner with both functions turned -> one term, if the coefficients match:
+// Merge k R f(a) g(b) with its partner, in which both functions are exchanged, if the coefficients
+// match:
 //
-//     k cos a cos b + k sin a sin b = k cos(a - b)      k sin a cos b + k cos a sin b = k sin(a + b)
-//     k cos a cos b - k sin a sin b = k cos(a + b)      k sin a cos b - k cos a sin b = k sin(a - b)
+//     k cos a cos b + k sin a sin b = k cos(a - b)     k sin a cos b + k cos a sin b = k sin(a + b)
+//     k cos a cos b - k sin a sin b = k cos(a + b)     k sin a cos b - k cos a sin b = k sin(a - b)
 static bool merge_factors(struct ct_collector *c, struct ct_poly p, const struct ct_term *t,
                           uint32_t f, uint32_t g, const struct ct_term **partner,
                           struct ct_poly *merged)
@@ -233,8 +234,8 @@ static bool merge_factors(struct ct_collector *c, struct ct_poly p, const struct
     return true;
 }
 
-// Looks for a pair from the term with cos a cos b, and from the one with sin a cos b; the other two
-// are their partners.
+// Look for a pair that starts with cos a cos b or sin a cos b; the other two products are the
+// partners.
 static bool merge_term(struct ct_collector *c, struct ct_poly p, const struct ct_term *t,
                        const struct ct_term **partner, struct ct_poly *merged)
 {
@@ -253,7 +254,7 @@ static bool merge_term(struct ct_collector *c, struct ct_poly p, const struct ct
     return false;
 }
 
-// Each term takes part in one merge at most; p is unchanged if there is none.
+// Each term takes part in at most one merge; p itself if there is none.
 static struct ct_poly angles(struct ct_collector *c, struct ct_poly p)
 {
     unsigned char *gone = CT_NEWN(c->arena, unsigned char, p.n);
@@ -299,8 +300,8 @@ static struct turn add_turns(struct ct_polys *ps, struct turn a, struct turn b, 
     return (struct turn){ct_poly_add(ps, sc, sign, cs), ct_poly_add(ps, cc, -sign, ss)};
 }
 
-// Whole multiples up to this are multiplied out: cos(2 q) = cos^2 q - sin^2 q.
-// Limit: of the terms; cos(4 q) has three.
+// Largest multiple that is expanded: cos(2 q) = cos^2 q - sin^2 q. Limit: of the terms; cos(4 q)
+// has three.
 enum { LARGEST_MULTIPLE = 4 };
 
 static struct turn expand_angle(struct ct_collector *c, struct ct_poly argument)
@@ -350,7 +351,7 @@ static struct ct_poly expand_term(struct ct_collector *c, const struct ct_term *
     return p;
 }
 
-// p itself if there is nothing to expand or too much.
+// p itself if there is nothing to expand or the result is too long.
 static struct ct_poly expand_angles(struct ct_collector *c, struct ct_poly p)
 {
     struct ct_poly sum = {NULL, 0};
@@ -375,7 +376,7 @@ struct harmonic {
     struct ct_poly argument;
 };
 
-// w times sine or cosine of `by`: two harmonics of half the amplitude.
+// Product of w with the sine or cosine `by`: two harmonics of half the amplitude.
 static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_atom *f,
                        struct ct_poly by, struct harmonic out[2])
 {
@@ -389,11 +390,11 @@ static void split_wave(struct ct_polys *ps, struct harmonic w, const struct ct_a
         out[1].c = -half;
 }
 
-// Limit: of the factors of a product and the harmonics of a polynomial, for readable results;
-// beyond, products stay.
+// Limit: factors of a product and harmonics of a polynomial, for readable results. Beyond, products
+// stay.
 enum { LARGEST_DEGREE = 6, LARGEST_WAVES = 256 };
 
-// Degree in sines and cosines, or LARGEST_DEGREE + 1 where the product-to-sum form does not apply.
+// Degree in sines and cosines; LARGEST_DEGREE + 1 if the product-to-sum form does not apply.
 static int degree(const struct ct_collector *c, uint32_t mono)
 {
     int n = 0;
@@ -429,7 +430,7 @@ static struct ct_poly waves_of_term(struct ct_collector *c, const struct ct_term
     return sum;
 }
 
-// p itself if it has too many.
+// Product-to-sum form; p itself if it has too many terms.
 static struct ct_poly harmonics(struct ct_collector *c, struct ct_poly p)
 {
     size_t n = 0;
@@ -445,7 +446,8 @@ static struct ct_poly harmonics(struct ct_collector *c, struct ct_poly p)
     return sum;
 }
 
-// k R + k R cos 2a = 2 k R cos^2 a, and with a minus 2 k R sin^2 a: the form leaves such pairs.
+// k R + k R cos 2a = 2 k R cos^2 a, with a minus sign 2 k R sin^2 a: the product-to-sum form leaves
+// such pairs.
 static struct ct_poly halve(struct ct_collector *c, struct ct_poly p, const struct ct_term *t)
 {
     for (size_t i = 0; i < ct_mono_length(&c->ps, t->mono); i++) {
@@ -486,7 +488,8 @@ static struct ct_poly halves(struct ct_collector *c, struct ct_poly p)
 
 // ---- groups -----------------------------------------------------------------------------------
 
-// How much is tried: merging pairs costs little, the other two forms are for what is printed.
+// Which forms are tried. Merging pairs costs little; the other two forms are for printed results
+// only.
 enum effort { EFFORT_MERGE, EFFORT_ALL };
 
 static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum effort effort)
@@ -497,12 +500,12 @@ static struct ct_poly shorten(struct ct_collector *c, struct ct_poly p, enum eff
     const struct ct_poly expanded = expand_angles(c, p);
     if (expanded.t != p.t)
         best = shorter(c, best, merge(c, expanded));
-    // harmonics of the merged form: fewer terms, often within the limit where p is not
+    // also the harmonics of the merged form: it has fewer terms and may be within the limit
     best = shorter(c, best, halves(c, harmonics(c, p)));
     return shorter(c, best, halves(c, harmonics(c, best)));
 }
 
-// The terms carry their common factor; it is taken out and put back.
+// Shorten a group of terms: its common factor is divided out and multiplied back.
 static struct ct_poly shorten_group(struct ct_collector *c, struct ct_poly p,
                                     const void *effort)
 {

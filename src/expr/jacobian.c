@@ -1,11 +1,12 @@
-// Sparse symbolic Jacobians in forward mode: one walk, each node with the list of its derivatives.
+// Sparse symbolic Jacobians in forward mode. One walk computes for each node the list of its
+// derivatives.
 //
 //     node  ->  [ (direction, derivative), ... ]      ascending directions, zeros left out
 //
-// A node's list is the merge of its arguments' lists by the chain rule, so a node costs as much as
-// it has directions: for a chain of n links about n^2 / 2 in all, and equal derivatives are one
-// node of the store. Lists that no later node reads give up their room, as those of partial sums do.
-// Source: Griewank and Walther (2008), 7.1, key griewank2008.
+// The list of a node is the merge of its arguments' lists by the chain rule. A node thus costs as
+// much as the number of its directions: about n^2 / 2 in all for a chain of n links. Equal
+// derivatives are one node of the store. The memory of lists that no later node reads, such as
+// those of partial sums, is reused. Source: Griewank and Walther (2008), 7.1, key griewank2008.
 #include "expr/seed.h"
 
 #include <string.h>
@@ -25,11 +26,11 @@ struct walk {
     struct ct_arena *scratch;
     struct tangent *tangent;
     size_t ntangent, cap;
-    uint32_t *place;   // by id: its place in the order of the walk, plus one
-    struct list *list; // by place: what nodes above it see
-    struct list *own;  // by place: what follows from its arguments
-    uint32_t *nuse;    // by place: nodes that will read its list, and one for each of f
-    size_t full;       // tangents from which on unread lists are removed
+    uint32_t *place;   // by id: index in the walk, plus one
+    struct list *list; // by index: derivatives that its users read (the seeds, if it has any)
+    struct list *own;  // by index: derivatives that follow from its arguments
+    uint32_t *nuse;    // by index: readers of its list, entries of f included
+    size_t full;       // number of tangents beyond which unread lists are removed
 };
 
 static void push(struct walk *w, uint32_t direction, ct_ex value)
@@ -44,7 +45,7 @@ static struct list list_of(const struct walk *w, uint32_t id)
     return w->list[w->place[id] - 1];
 }
 
-// What the seeds of a node say, which are sorted. False: it has none.
+// Set the list of a node from its sorted seeds. False if it has none.
 static bool seed_node(struct walk *w, uint32_t id, const struct ct_seed *seed, size_t nseed)
 {
     size_t k = ct_seeds_find(seed, nseed, id);
@@ -59,7 +60,7 @@ static ct_ex combine(struct ct_exs *x, uint32_t id, const ct_ex *partial, const 
                      int narg)
 {
     const struct ct_exnode n = x->node[id];
-    if (n.op == CT_OP_IF) // keeps one `if`, however deep the derivative
+    if (n.op == CT_OP_IF) // one `if` for all branches, however deep the derivative
         return ct_ex_if(x, (ct_ex){n.a}, d[1], d[2]);
     if (n.op == CT_OP_DIV) // (a' - (a/b) b') / b
         return ct_ex_div(x, ct_ex_sub(x, d[0], ct_ex_mul(x, (ct_ex){id}, d[1])), (ct_ex){n.b});
@@ -123,7 +124,8 @@ static void move(struct walk *w, struct list *l, size_t *to)
     *to += l->n;
 }
 
-// Lists stand in the order of the walk, so that those which are read still move forward.
+// Remove unread lists. Lists are stored in the order of the walk, so those in use only move
+// forward.
 static void remove_unread(struct walk *w, size_t nplace)
 {
     size_t to = 0;
@@ -172,7 +174,7 @@ size_t ct_ex_jacobian(struct ct_exs *x, struct ct_arena *scratch, struct ct_aren
     struct walk w = {.x = x, .scratch = scratch, .full = least_full};
     const size_t n = ct_ex_walk(x, f, nf);
     uint32_t *id = CT_NEWN(scratch, uint32_t, n + 1), most = 0;
-    memcpy(id, x->stack, n * sizeof *id); // building derivatives may walk again
+    memcpy(id, x->stack, n * sizeof *id); // a copy: building derivatives may start another walk
     for (size_t k = 0; k < n; k++)
         most = id[k] > most ? id[k] : most;
     w.place = CT_NEWN(scratch, uint32_t, (size_t)most + 1);

@@ -12,9 +12,9 @@
 
 static const uint32_t none = CT_VALUE_NONE;
 
-// ---- what is counted --------------------------------------------------------------------------
+// ---- counts of operations ----------------------------------------------------------------------
 
-// Comparing and selecting (if, min, abs ...) cost no more than the negation, which is free.
+// Comparison and selection (if, min, abs ...) are not counted: they cost no more than a negation.
 static void count_op(struct ct_tape_counts *n, uint32_t op)
 {
     switch (op) {
@@ -149,7 +149,7 @@ static void number_values(struct lister *s, const ct_ex *out, size_t nout)
     l->rate = CT_NEWN(s->arena, unsigned char, l->nvalue);
     l->is_leaf = CT_NEWN(s->arena, unsigned char, l->nvalue);
     l->input = CT_NEWN(s->arena, uint32_t, l->nvalue);
-    // rates by id reuse the marks, which have done their work
+    // `live` is no longer needed and is reused for the rates by id
     for (uint32_t id = 0; id < s->nid; id++) {
         const uint32_t v = s->value[id], op = s->x->node[id].op;
         if (v == none)
@@ -229,7 +229,8 @@ static void make_instructions(struct lister *s)
 
 // ---- fused multiply-add -----------------------------------------------------------------------
 
-// i = x + p or x - p or p - x with the product p becomes one instruction; which: the operand p is.
+// Replace i = x + p, x - p or p - x, with the product p, by one fused instruction. which: operand
+// of i that is p.
 static void fuse(struct ct_instruction *i, struct ct_instruction *product, uint32_t which)
 {
     const uint32_t other = i->arg[1 - which];
@@ -296,11 +297,12 @@ static void put_prologue_first(struct lister *s)
     memcpy(l->ins + n, body, nbody * sizeof *body);
 }
 
-// Number of angles from which the SIMD kernel is used. Derived: two take as long either way, three
-// 0.6 of the time and four 0.4 (tests/bench/kernels).
+// Number of angles from which the SIMD kernel is used. Derived: measured time relative to single
+// calls: 1 for two angles, 0.6 for three, 0.4 for four (tests/bench/kernels).
 static const size_t several_angles = 3;
 
-// Back ends read all angles of a call before they write results, so nested sines stay single calls.
+// Sines whose argument depends on another sine of the body are found here. They remain single
+// calls, because back ends read all angles of a SIMD call before they write its results.
 static bool *find_separate_angles(struct ct_arena *a, const struct ct_listing *l, size_t *n)
 {
     bool *is_wave = CT_NEWN(a, bool, l->nvalue + 1); // by value: a sine or a cosine
@@ -371,7 +373,7 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     name_angles(a, l, several_angles);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
-    // the points of a table stay where they are, the list of tables may move
+    // the points of a table never move in memory; the list of tables may, so it is copied
     struct ct_table *table = CT_NEWN(a, struct ct_table, x->ntable);
     if (x->ntable)
         memcpy(table, x->table, x->ntable * sizeof *table);

@@ -2,8 +2,8 @@
 //
 //     cos(a + b) = cos a cos b - sin a sin b,   sin^2 a = 1 - cos^2 a
 //
-// An angle is a sum of multiples of monomials. Whole multiples of one are taken apart as well; others are angles of
-// their own.
+// An angle is a linear combination of monomials. An integer multiple of one monomial is expanded to
+// powers as well; other multiples are treated as separate angles.
 #include "expr/normal_form.h"
 
 #include "expr/collector.h"
@@ -97,7 +97,7 @@ static struct pair of_angle(struct ct_normal_store *s, uint32_t i)
     return s->angle[i] = sum;
 }
 
-// A power of a sine or cosine without sums of angles and squares of sines.
+// A power of a sine or cosine, written without sines of sums and without squared sines.
 static struct ct_poly power_of(struct ct_normal_store *s, struct ct_power p)
 {
     struct ct_polys *ps = &s->c.ps;
@@ -138,7 +138,7 @@ static bool is_normal(const struct ct_normal_store *s, struct ct_poly p)
     return true;
 }
 
-// Products of sums of angles have squares of sines, so that this is repeated.
+// Expanding a sum of angles can give new squared sines, so the rewriting is repeated.
 static bool normalise(struct ct_normal_store *s, struct ct_poly *p)
 {
     struct ct_polys *ps = &s->c.ps;

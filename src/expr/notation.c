@@ -71,7 +71,7 @@ const char *ct_latex_quoted(struct ct_arena *a, const char *name)
     return quoted;
 }
 
-// A word: one letter and Greek as mathematics, the rest upright.
+// A word in LaTeX: a single letter or Greek name as a symbol, any other word upright.
 static const char *latex_word(struct ct_arena *a, const char *s, size_t n)
 {
     const char *word = ct_arena_strndup(a, s, n);
@@ -87,8 +87,8 @@ static const char *join_subscript(struct ct_arena *a, const char *first, const c
     return *first ? ct_arena_printf(a, "%s,%s", first, second) : second;
 }
 
-// The part after the last dot is the quantity, with trailing digits and what follows an underscore
-// as subscripts; what stands before the dot is a further subscript; primes are time derivatives.
+// The part after the last dot is the symbol; its trailing digits and the text after an underscore
+// become subscripts. The part before the dot is a further subscript. Primes are time derivatives.
 const char *ct_latex_name(struct ct_arena *a, const char *name)
 {
     size_t n = strlen(name), nprime = 0;
@@ -187,7 +187,7 @@ static bool is_command(const char *s, size_t n, const char *name)
     return strlen(name) == n && !strncmp(s, name, n);
 }
 
-// Of the command of n letters behind the backslash at s, without its arguments.
+// Width of the command of n letters after the backslash at s, without its arguments.
 static double command_width(const char *s, size_t n)
 {
     static const char *const no_width[]
@@ -196,7 +196,7 @@ static double command_width(const char *s, size_t n)
     static const char *const spelled[]
         = {"sin",    "cos",    "tan", "sinh", "cosh", "tanh", "arcsin",
            "arccos", "arctan", "exp", "ln",   "min",  "max"};
-    if (!isalpha((unsigned char)s[0])) // a space or a quoted sign
+    if (!isalpha((unsigned char)s[0])) // a space or an escaped character
         return strchr(",;", s[0]) ? 2.8 : strchr("_#$%&{}", s[0]) ? 5.6 : 0;
     for (size_t i = 0; i < COUNT(no_width); i++)
         if (is_command(s, n, no_width[i]))
@@ -205,7 +205,7 @@ static double command_width(const char *s, size_t n)
         if (is_command(s, n, spelled[i]))
             return 5 * (double)n + 1.7;
     if (is_command(s, n, "left") || is_command(s, n, "right"))
-        return 3; // a larger delimiter than its sign, and a thin space
+        return 3; // a delimiter larger than its character, and a thin space
     if (is_command(s, n, "qquad") || is_command(s, n, "quad"))
         return n == 5 ? 20 : 10;
     return is_command(s, n, "cdot") || is_command(s, n, "times") ? 12.3 : 6.5; // Greek letters
@@ -219,11 +219,12 @@ static double fraction_width(const char **at, const char *end, double size)
     return 2.4 + (above > below ? above : below);
 }
 
-// Up to the end or the brace that closes; is_one: one item, a sign, a command or a group.
+// Width up to the end or to the closing brace; is_one: of one item only (character, command or
+// group).
 static double width_of(const char **at, const char *end, double size, bool is_one)
 {
     const double script
-        = 0.8; // Layout: letters of 7 pt, which are wider for their size than of 10
+        = 0.8; // Layout: letters of 7 pt, which are relatively wider than those of 10
     double width = 0;
     while (*at < end && **at != '}') {
         const char c = *(*at)++;
@@ -261,7 +262,7 @@ size_t ct_latex_width(const char *s, size_t length)
     double width = 0;
     while (at < end) {
         width += width_of(&at, end, 1, false);
-        at += at < end; // a brace without its partner
+        at += at < end; // an unmatched brace
     }
     return (size_t)(width + 0.5);
 }

@@ -38,7 +38,7 @@ struct parser {
     struct ct_text text;
     const char *p;
     int depth;
-    bool names_ok; // false after an unknown name: parsing goes on to find more
+    bool names_ok; // false after an unknown name: parsing continues to find further errors
 };
 
 static void skip_blanks(struct parser *s)
@@ -126,7 +126,7 @@ static bool is_known(const struct ct_scope *s, const char *name)
 
 static void report_unknown_name(struct parser *s, const char *name, const char *start)
 {
-    // Limit: a search compares all names each time, and after so many errors nobody reads on
+    // Limit: a search compares all names each time; after so many errors suggestions are omitted
     enum { MOST_SUGGESTIONS = 200 };
     const char *near = s->ctx->nerror < MOST_SUGGESTIONS
                          ? ct_nearest(name, s->scope->known, s->scope->nknown)
@@ -348,7 +348,7 @@ static bool parse_power(struct parser *s, ct_ex *e)
     return true;
 }
 
-// Every way down to a deeper level passes here.
+// Every deeper level of the grammar passes through here: the depth is counted.
 static bool parse_unary(struct parser *s, ct_ex *e)
 {
     if (!enter(s))
@@ -368,13 +368,13 @@ static bool parse_unary(struct parser *s, ct_ex *e)
     return ok;
 }
 
-// Result of a chain of operators. A chain of n terms is summed in parts of PART, so that it nests
-// no deeper than PART + n / PART instead of n: walks over it recurse.
-// Limit: of that depth; MAX_LENGTH allows n of 8192, so 528 levels.
+// Result of a chain of operators. A chain of n terms is summed in parts of PART terms. The nesting
+// depth is then at most PART + n / PART in place of n, because walks over the result recurse.
+// Limit: of that depth; MAX_LENGTH allows n = 8192, thus 528 levels.
 enum { PART = 16 };
 struct row {
-    ct_ex whole, part; // whole: of the parts that are complete
-    int npart, nterm;  // nterm: in the part that is not
+    ct_ex whole, part; // whole: sum of the completed parts
+    int npart, nterm;  // nterm: terms of the current part
 };
 
 static ct_ex join(struct ct_exs *x, char sign, ct_ex a, ct_ex b)
@@ -385,7 +385,7 @@ static ct_ex join(struct ct_exs *x, char sign, ct_ex a, ct_ex b)
                        : ct_ex_div(x, a, b);
 }
 
-// neutral: '+' or '*', what joins parts.
+// Add the current part to the whole. neutral: '+' or '*', the operator that joins parts.
 static void end_part(struct ct_exs *x, struct row *r, char neutral)
 {
     r->whole = r->npart++ ? join(x, neutral, r->whole, r->part) : r->part;
@@ -468,7 +468,7 @@ static bool parse_comparison(struct parser *s, ct_ex *e)
     if (!parse_sum(s, &b))
         return false;
     *e = ct_ex_fun2(s->scope->x, comparisons[c].op, *e, b);
-    // (1 < x) < 3 is always true: nobody who writes 1 < x < 3 means it
+    // (1 < x) < 3 is always true; the user means a chain of comparisons, so it is an error
     if (scan_comparison(s) >= 0)
         return ct_error(
             s->ctx, mark_at(s, s->p), CT_E_SYNTAX,
@@ -478,7 +478,7 @@ static bool parse_comparison(struct parser *s, ct_ex *e)
 
 // ---- a whole text ------------------------------------------------------------------------------
 
-// YAML's own words for what is not a number
+// Words of YAML for infinity and not-a-number.
 static bool is_infinite_word(const char *text)
 {
     static const char *const word[] = {".inf", ".Inf", ".INF", ".nan", ".NaN", ".NAN"};
@@ -530,7 +530,8 @@ bool ct_parse(struct ct_ctx *ctx, const struct ct_scope *scope, struct ct_text t
     const char *unit;
     if (ct_quantity_split(text.text, &value, &unit))
         return parse_quantity(&s, value, unit, e);
-    if (ct_is_digit(*text.text) && !*unit && isfinite(value)) { // as most texts are
+    if (ct_is_digit(*text.text) && !*unit
+        && isfinite(value)) { // a plain number, the usual case
         *e = ct_ex_const(scope->x, value);
         return true;
     }

@@ -8,7 +8,7 @@
 //     primary    = number | name | name(arguments) | signal | ( comparison )
 //     signal     = name . part { . part } [ in name { . part } ]
 //
-// A text may also be one quantity, a number with a unit. What always holds: the parser knows no
+// A text may also be one quantity: a number with a unit. What always holds: the parser knows no
 // model; names and signals are looked up by the caller's functions. Length and nesting are bounded,
 // so that whoever walks the result may recurse.
 #ifndef CT_EXPR_PARSE_H
@@ -16,38 +16,38 @@
 
 #include "expr/ex.h"
 
-/// A piece of text and where it stands.
+/// A text and its position in the file.
 struct ct_text {
     const char *text;
-    struct ct_mark mark; // of the value, its quote included
-    bool
-        is_exact; // character k stands at column mark.column + offset + k; else errors show mark
-    int offset;   // 1 after a quote
+    struct ct_mark mark; // position of the value, including its quote
+    // character k at column mark.column + offset + k; else errors show mark
+    bool is_exact;
+    int offset; // 1 if the text follows a quote
 };
 
 enum ct_name_result {
     CT_NAME_OK,
-    CT_NAME_UNKNOWN,   // the parser says so and suggests a near one
+    CT_NAME_UNKNOWN,   // the parser reports the error and suggests a similar name
     CT_NAME_FORBIDDEN, // exists, but not here: *why completes "'NAME' cannot be used here: ..."
-    CT_NAME_REPORTED,  // the callback has put an error into the context
+    CT_NAME_REPORTED,  // the callback has reported the error
 };
 
-/// What names mean. All functions may be NULL (no such names).
+/// Resolution of names. Any function may be NULL: no names of that kind are known.
 struct ct_scope {
     struct ct_exs *x;
     void *user;
-    /// A plain name; `t` comes here too.
+    /// Resolve a plain name, including `t`.
     enum ct_name_result (*name)(void *user, const char *name, ct_ex *e, const char **why);
-    /// A signal, text in normal form ("F.velocity.x in B"), its first part and the part after `in`
-    /// (NULL without): make or find its symbol. `where` gives the mark of the first part,
-    /// `where_in` of the other.
+    /// Resolve a signal: find its symbol or make one. text: normal form ("F.velocity.x in B"). Its
+    /// first part and the part after `in` (NULL if absent) are given separately, with their
+    /// positions `where` and `where_in`.
     enum ct_name_result (*signal)(void *user, const char *text, const char *first,
                                   const char *in, struct ct_mark where, struct ct_mark where_in,
                                   ct_ex *e, const char **why);
     /// All plain names, for suggestions.
     const char *const *known;
     size_t nknown;
-    /// Dimension wanted of a quantity, as a unit; NULL: any.
+    /// Unit whose dimension a quantity must have; NULL: any.
     const char *unit;
 };
 
@@ -63,7 +63,7 @@ bool ct_parse_is_signal(struct ct_arena *a, const char *text, const char **norma
 
 /// Letters, digits and _, not starting with a digit.
 bool ct_is_identifier(const char *name);
-/// A word the grammar has taken: t, pi, in, function names.
+/// A reserved word of the grammar: t, pi, in, names of functions.
 bool ct_is_reserved(const char *name);
 
 #endif

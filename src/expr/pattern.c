@@ -1,11 +1,11 @@
 // Sparsity pattern of a Jacobian by propagation of bit sets.
 //
-//     bits(node) = OR of bits(arguments)          a superset: what cancels is not seen
+//     bits(node) = OR of bits(arguments)          a superset: cancellation is not detected
 //
-// A set is a list of words of 64 directions, without those that are zero; a node that adds no direction to those of
-// an argument has the list of that. So time and memory go with the entries of all lists, not with nodes times
-// directions. The same walk counts what a Jacobian by ct_ex_jacobian would take.
-// Source: Griewank and Walther (2008), 7.1, key griewank2008.
+// A set is a list of its nonzero words of 64 directions. A node that adds no direction to those of
+// one argument shares the list of that argument. Time and memory are thus proportional to the
+// entries of all lists, not to nodes times directions. The same walk counts the operations of
+// ct_ex_jacobian. Source: Griewank and Walther (2008), 7.1, key griewank2008.
 #include "expr/ex.h"
 
 #include <stdlib.h>
@@ -15,10 +15,10 @@ enum { WIDTH = 64 }; // Definition: bits of a uint64_t
 
 struct word {
     uint64_t bits;
-    uint32_t block; // of directions: from WIDTH block on
+    uint32_t block; // directions WIDTH block ... WIDTH block + WIDTH - 1
 };
 
-// Words first to first + n of the walk's, their blocks in order.
+// The words first ... first + n - 1 of the walk, blocks in ascending order.
 struct set {
     uint32_t first, n;
 };
@@ -28,9 +28,9 @@ struct walk {
     struct ct_arena *scratch;
     struct word *word;
     size_t nword, word_cap;
-    struct set *seen; // by id: what nodes above it see
-    struct set *own;  // by id: what follows from its arguments
-    bool *is_inner;   // by id: has seeds, but is no symbol
+    struct set *seen; // by id: directions that its users see (the seeds, if it has any)
+    struct set *own;  // by id: directions that follow from its arguments
+    bool *is_inner;   // by id: has seeds, but is not a symbol
     double operations;
 };
 
@@ -59,7 +59,7 @@ static double operations_of(enum ct_op op, uint64_t a, uint64_t b)
     }
 }
 
-// The last set, from `first` on, with one more direction.
+// Add a direction to the last set, which starts at `first`.
 static void add_direction(struct walk *w, size_t first, uint32_t direction)
 {
     const struct word one = {UINT64_C(1) << direction % WIDTH, direction / WIDTH};
@@ -114,7 +114,7 @@ static bool is_within(const struct walk *w, const struct set *a, const struct se
     return true;
 }
 
-// a | b: that of one of them, or a new one.
+// Union of a and b: one of them if it contains the other, else a new set.
 static struct set unite(struct walk *w, const struct set *a, const struct set *b)
 {
     if (is_within(w, b, a))

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: a coefficient is the sum of up to 32 products, each rounded by half a unit: so much of
-// the largest is noise.
+// Derived: a coefficient is the sum of up to 32 products, each rounded by half a unit in the last
+// place: 16 units of the largest.
 static const double noise = 16 * DBL_EPSILON;
 
 static bool is_noise(const struct ct_term *t)
@@ -179,7 +179,7 @@ struct ct_poly ct_poly_sum(struct ct_polys *ps, struct ct_term *t, size_t n)
     return (struct ct_poly){t, kept};
 }
 
-// Both are sorted, so this is a merge; the same rule of cancellation.
+// Merge of the two sorted lists, with the rule of cancellation of ct_poly_sum.
 struct ct_poly ct_poly_add(struct ct_polys *ps, struct ct_poly a, double c, struct ct_poly b)
 {
     if (!b.n || c == 0)

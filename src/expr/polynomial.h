@@ -1,12 +1,13 @@
-// Polynomials with double coefficients over atoms, which are numbers to this file.
+// Polynomials with double coefficients. Their indeterminates are called atoms and are plain numbers
+// here.
 //
 //     3 a^2 b - c^-1      terms   { 3, mono of a^2 b }, { -1, mono of c^-1 }
 //     monomial            powers  (a, 2), (b, 1)         sorted by atom, no exponent 0; interned
 //
-// What always holds: equal monomials have equal numbers, 0 is the monomial without powers; the
-// terms of a polynomial have distinct monomials, ascending, and no coefficient is round-off noise:
-// each carries the size of the largest contribution to it, and what cancelled to a few units in
-// the last place of that is dropped.
+// What always holds: equal monomials have equal numbers; number 0 is the monomial without powers.
+// The terms of a polynomial have distinct monomials in ascending order. No coefficient is round-off
+// noise: each term records its largest contribution, and a sum that cancels to a few units in the
+// last place of that is dropped.
 #ifndef CT_EXPR_POLYNOMIAL_H
 #define CT_EXPR_POLYNOMIAL_H
 
@@ -42,7 +43,8 @@ struct ct_polys {
     size_t nmono, mono_cap;
     uint32_t *hash; // open addressing, 0 is free, else mono + 1
     size_t hash_size;
-    uint32_t *place; // by mono: 1 + its term in the polynomial being made, else 0
+    uint32_t
+        *place; // by mono: 1 + index of its term in the polynomial under construction, else 0
     size_t place_cap;
 };
 
@@ -68,7 +70,8 @@ uint32_t ct_mono_raise(struct ct_polys *ps, uint32_t a, int32_t k);
 // ---- polynomials -------------------------------------------------------------------------------
 
 struct ct_poly ct_poly_term(struct ct_polys *ps, double c, uint32_t mono);
-/// The sum of n terms in any order with any repetitions; t is used as work space and kept.
+/// The sum of n terms in any order; monomials may repeat. t is used as workspace and becomes part
+/// of the result.
 struct ct_poly ct_poly_sum(struct ct_polys *ps, struct ct_term *t, size_t n);
 /// a + c b
 struct ct_poly ct_poly_add(struct ct_polys *ps, struct ct_poly a, double c, struct ct_poly b);
@@ -77,7 +80,7 @@ struct ct_poly ct_poly_mul(struct ct_polys *ps, struct ct_poly a, struct ct_poly
 /// a^k, k >= 0.
 struct ct_poly ct_poly_pow(struct ct_polys *ps, struct ct_poly a, int32_t k);
 bool ct_poly_is_const(struct ct_poly a, double *c);
-/// Equal up to a few units in the last place of the larger.
+/// Are a and b equal up to a few units in the last place of the larger?
 bool ct_same_number(double a, double b);
 
 #endif

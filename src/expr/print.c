@@ -1,7 +1,8 @@
-// Printing expressions; see print.h.
+// Printing of expressions; see print.h.
 //
 // A sum is flattened to terms, a term to a number, factors with exponents and a denominator
-// (term.h); both lists are sorted and written. Everything else is written as it stands.
+// (term.h). Both lists are sorted and printed. All other nodes are printed in their given
+// structure.
 #include "expr/print.h"
 
 #include "expr/fraction.h"
@@ -11,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// How tightly the surroundings bind: parentheses go around what binds less.
+// Precedence of the context: operators of lower precedence get parentheses.
 enum level { LEVEL_ANY, LEVEL_SUM, LEVEL_FACTOR, LEVEL_BASE };
 
 static void emit(struct ct_printer *pr, ct_ex e, enum level level);
@@ -116,7 +117,7 @@ static const char *take_factors(struct ct_printer *pr, double number, int pi,
     return s;
 }
 
-// Factors as they stand in a \frac, which groups: a single one needs no parentheses.
+// Remove the parentheses of a single factor: inside a \frac it needs none.
 static const char *without_group(struct ct_arena *a, const char *s, const struct ct_factors *f)
 {
     static const char open[] = "\\left(", close[] = "\\right)";
@@ -126,7 +127,7 @@ static const char *without_group(struct ct_arena *a, const char *s, const struct
     return is_group ? ct_arena_strndup(a, s + first, n - first - last) : s;
 }
 
-// Too wide for a line that is indented.
+// Is the text wider than an indented line?
 static bool is_wide(const struct ct_printer *pr, const char *s)
 {
     // Layout: [pt], about what stands left of a term
@@ -134,7 +135,7 @@ static bool is_wide(const struct ct_printer *pr, const char *s)
     return ct_latex_width(s, strlen(s)) + indent > line;
 }
 
-// A fraction in LaTeX. One with a part wider than a line is printed as a product, which can be
+// A fraction in LaTeX. If a part is wider than a line it is printed as a product, which can be
 // broken.
 static void emit_fraction(struct ct_printer *pr, const struct ct_term *t)
 {
@@ -246,7 +247,7 @@ static const char *latex_function(uint32_t op)
     case CT_OP_LOG:
         return "\\ln";
     default:
-        return NULL; // the name with a backslash
+        return NULL; // the name with a backslash is printed
     }
 }
 
@@ -272,7 +273,8 @@ static const char *take(struct ct_printer *pr, uint32_t id)
     return s;
 }
 
-// Cases cannot be broken: those wider than a line are written as in a model file, if(a, b, c).
+// An `if` in LaTeX. Cases cannot be broken, so those wider than a line are printed as in a model
+// file, if(a, b, c).
 static void emit_cases(struct ct_printer *pr, const struct ct_exnode *n)
 {
     const bool comparison = is_comparison(ct_ex_node(pr->x, (ct_ex){n->a})->op);
@@ -287,7 +289,7 @@ static void emit_cases(struct ct_printer *pr, const struct ct_exnode *n)
                               is_true, comparison ? "" : " \\neq 0", then, otherwise));
 }
 
-// A root cannot be broken: one wider than a line is written as a power.
+// A root in LaTeX. It cannot be broken, so one wider than a line is printed as a power.
 static void emit_root(struct ct_printer *pr, uint32_t id)
 {
     const char *s = take(pr, id);
@@ -340,7 +342,7 @@ static void emit_power(struct ct_printer *pr, const struct ct_exnode *n, enum le
     close_group(pr, level == LEVEL_BASE);
 }
 
-// Where a fraction of a power of pi stands alone it is a term.
+// Print a lone number that is a fraction of a power of pi.
 static bool emit_pi(struct ct_printer *pr, double v, enum level level)
 {
     struct ct_term t = {.negative = v < 0, .number = fabs(v), .divisor = 1};
@@ -394,7 +396,7 @@ static const char *symbol_text(const struct ct_printer *pr, const struct ct_sym 
 // Limit: of the stack, for parentheses within parentheses; deeper ones are printed as "...".
 enum { DEEPEST = 500 };
 
-// Is e printed as a sum of products, of one too?
+// Is e printed as a sum of products, or as a single product?
 static bool has_terms(const struct ct_printer *pr, ct_ex e)
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, e);
@@ -435,7 +437,8 @@ static void emit(struct ct_printer *pr, ct_ex e, enum level level)
 
 // ---- C ----------------------------------------------------------------------------------------
 
-// Operands in parentheses unless they are names, calls or numbers: no rule of precedence to know.
+// C text. Operands get parentheses unless they are names, calls or numbers, so that precedence
+// plays no part.
 static const char *c_text(struct ct_printer *pr, ct_ex e, bool operand)
 {
     const struct ct_exnode *n = ct_ex_node(pr->x, e);

@@ -21,24 +21,26 @@ enum ct_print_style { CT_PRINT_TEXT, CT_PRINT_LATEX, CT_PRINT_C };
 /// How to print. All zero: text, symbols by their names.
 struct ct_print {
     enum ct_print_style style;
-    /// The text of a symbol in this style; NULL: its name, ct_latex_name of it, ct_c_name of it.
+    /// The text of a symbol in this style; NULL: its name, made valid by ct_latex_name or
+    /// ct_c_name.
     const char *(*symbol)(void *data, struct ct_arena *a, const struct ct_sym *s);
     /// A name to print instead of a node, or NULL to print the node (see share.h).
     const char *(*node)(void *data, ct_ex e);
-    /// Symbols of a product in ascending rank, then as created (masses before lengths, say).
+    /// Rank of a symbol: symbols of a product stand in ascending rank (masses before lengths, say),
+    /// then in the order of creation.
     int (*rank)(void *data, const struct ct_sym *s);
     void *data;
-    /// Items (operators and operands) after which the rest is `...`; 0: 20000; 500 parentheses
-    /// within each other are cut in any case. A graph of n nodes can be a tree of 2^n: name shared
-    /// nodes first (share.h).
+    /// Items (operators and operands) after which the rest is printed as `...`; 0: 20000.
+    /// Parentheses nested more than 500 deep are cut in any case. A graph of n nodes can unfold to
+    /// a tree of 2^n: name shared nodes first (share.h).
     size_t limit;
-    /// Halves, quarters, eighths of parameters as fractions: m*l^2/4, not 0.25*m*l^2; a term
-    /// without a parameter keeps its decimal, as its number comes from data: 1.5*x'', not 3*x''/2.
-    /// Of other numbers those that are exactly the double nearest to a small fraction
-    /// (fraction.h): 13*m/35. Reads back to the same value up to round-off, not to the same nodes.
-    /// Text and LaTeX.
+    /// Print simple fractions in place of decimals. In terms with a parameter: halves, quarters,
+    /// eighths, m*l^2/4 in place of 0.25*m*l^2. A term without a parameter keeps its decimal,
+    /// because its number comes from data: 1.5*x'', not 3*x''/2. Other numbers: those that are the
+    /// double nearest to a small fraction (fraction.h): 13*m/35. The text reads back to the same
+    /// value up to round-off, but not to the same nodes. Text and LaTeX.
     bool fractions;
-    /// No number comes from data: halves are fractions in every term.
+    /// Fractions in terms without a parameter as well: no number comes from data.
     bool no_data;
     /// Width of a line of LaTeX [pt]; 0: CT_LATEX_LINE.
     size_t line;
@@ -47,7 +49,7 @@ struct ct_print {
 /// e as text; p may be NULL. The text and all work space live in a.
 const char *ct_ex_text(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                        const struct ct_print *p);
-/// The same without asking p->node for e itself: the right side of a definition of e.
+/// As ct_ex_text, but p->node is not asked for e itself: the right side of a definition of e.
 const char *ct_ex_text_body(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                             const struct ct_print *p);
 
@@ -57,8 +59,8 @@ struct ct_print_term {
     bool is_subtracted; ///< the term is -value
     const char *text;   ///< with its sign: " + m*g", " - m*g", the first one "m*g" or "-m*g"
 };
-/// The terms of e in the order in which ct_ex_text prints them; their texts joined are its text. One that is no sum
-/// is one term. Returns their number. The list lives in a. Text and LaTeX.
+/// The terms of e in the order in which ct_ex_text prints them; their texts joined are its text. An
+/// e that is no sum is one term. Returns their number. The list lives in a. Text and LaTeX.
 size_t ct_ex_terms(struct ct_arena *a, const struct ct_exs *x, ct_ex e,
                    const struct ct_print *p, struct ct_print_term **term);
 
@@ -70,16 +72,16 @@ const char *ct_number_c(struct ct_arena *a, double v);
 /// LaTeX of a name: crank.q -> q_{\mathrm{crank}}, theta1'' -> \ddot{\theta}_{1}, mass ->
 /// \mathrm{mass}
 const char *ct_latex_name(struct ct_arena *a, const char *name);
-/// A name with a backslash before what LaTeX takes for itself.
+/// A name with a backslash before each character that has a meaning in LaTeX.
 const char *ct_latex_quoted(struct ct_arena *a, const char *name);
-/// Width of LaTeX mathematics (length) on the page [pt], in Computer Modern of 10 pt, to a few per
-/// cent.
+/// Estimated width of a LaTeX formula (length characters of s) on the page [pt], in Computer Modern
+/// of 10 pt, to a few per cent.
 size_t ct_latex_width(const char *s, size_t length);
-/// Layout: width of a line [pt], that of the class article at 10 pt, 345 pt; a fraction with a part that
-/// is wider is printed as a product.
+/// Layout: width of a line [pt], that of the class article at 10 pt; a wider fraction is printed as
+/// a product.
 enum { CT_LATEX_LINE = 345 };
-/// A C identifier from a name: characters that are not allowed become _, a prime becomes d.
-/// Different names can become the same identifier: telling them apart is the caller's.
+/// A C identifier from a name: characters that C does not allow become _, a prime becomes d.
+/// Different names can give the same identifier; the caller must tell them apart.
 const char *ct_c_name(struct ct_arena *a, const char *name);
 
 /// C text of one operator on operands that are identifiers or in parentheses. Not for leaves and

@@ -12,8 +12,8 @@ enum { CT_GAUSS_MOST = 32 };
 /// estimate.
 void ct_gauss(int n, double point[], double weight[]);
 
-/// Degree of f as a polynomial in the symbol s, -1 if it is not written as one. Cost: nodes below
-/// f.
+/// Degree of f as a polynomial in the symbol s; -1 if f is not written as a polynomial. Cost: nodes
+/// below f.
 int ct_ex_degree(struct ct_exs *x, ct_ex f, ct_ex s);
 
 /// Integral of f over s from a to b with n points; exact if the degree of f is below 2 n.

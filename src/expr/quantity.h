@@ -9,13 +9,14 @@ struct ct_quantity {
     const char *text, *unit;
     struct ct_mark mark;
     const char *wanted; // a unit of the dimension that is wanted; NULL: any
-    /// Does an expression know this word? Then an operator is missing before it.
+    /// Is the word a name that expressions know? Then the error is a missing operator, not a wrong
+    /// unit.
     bool (*is_name)(const void *user, const char *word);
     const void *user;
 };
 
-/// Split a text into its number and its unit, which may turn out to be unknown. False if the text
-/// is no quantity; *unit is then where its number ends.
+/// Split a text into its number and its unit; whether the unit is known is not checked. False if
+/// the text is no quantity; *unit is then the end of its number.
 bool ct_quantity_split(const char *text, double *value, const char **unit);
 /// value (in and out): the number, in SI units. Errors: E114, E118 to E120.
 bool ct_quantity_read(struct ct_ctx *ctx, const struct ct_quantity *q, double *value);

@@ -1,7 +1,8 @@
-// Polynomials -> expressions for reading; see collect.h.
+// Polynomials -> factored expressions for reading; see collect.h.
 //
-// What all terms share goes outside. Of the rest, the atom is chosen that saves most factors when
-// it is pulled out of the terms that contain it, and both parts are treated the same way.
+// The content common to all terms is pulled out first. In the rest, the atom that saves most
+// factors is pulled out of the terms that contain it; quotient and remainder are then treated in
+// the same way.
 #include "expr/collector.h"
 #include "expr/fraction.h"
 
@@ -12,7 +13,7 @@
 
 // ---- content ----------------------------------------------------------------------------------
 
-// The exponent two terms share: the one nearer to zero if the signs agree.
+// Common exponent of two powers: the one nearer to zero if the signs agree.
 static int32_t common_exponent(int32_t a, int32_t b)
 {
     if ((a > 0) != (b > 0) || a == 0 || b == 0)
@@ -55,7 +56,7 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
         const struct ct_term *t = &p->t[i];
         q.t[i] = (struct ct_term){t->c / *k, t->size / fabs(*k),
                                   ct_mono_times(&c->ps, t->mono, out)};
-        // what was equal up to round-off is now exactly 1
+        // coefficients that were equal up to round-off become exactly 1
         if (ct_same_number(fabs(q.t[i].c), 1))
             q.t[i].c = q.t[i].c < 0 ? -1 : 1;
     }
@@ -64,7 +65,7 @@ void ct_poly_content(struct ct_collector *c, struct ct_poly *p, double *k, uint3
 
 // ---- products -----------------------------------------------------------------------------------
 
-// 0.04409999999999999 is 0.0441: the decimal of 12 digits where it differs by round-off noise only.
+// 0.04409999999999999 becomes 0.0441: a decimal of 12 digits that differs by round-off only.
 static double without_noise(double k)
 {
     char s[32];
@@ -73,8 +74,8 @@ static double without_noise(double k)
     return ct_same_number(rounded, k) ? rounded : k;
 }
 
-// 0.3333333333333333 is 1/3: a fraction with small terms, if the decimals are long. *divisor is 1
-// otherwise.
+// 0.3333333333333333 becomes 1/3: a fraction of small integers, if the decimal is long. Otherwise
+// *divisor is 1.
 static double as_fraction(double k, double *divisor)
 {
     *divisor = 1;
@@ -115,12 +116,12 @@ static ct_ex product(struct ct_collector *c, double k, uint32_t mono, ct_ex body
 // ---- choice of the atom to group by ------------------------------------------------------------
 
 struct choice {
-    bool worth; // at all
+    bool worth; // it is worth pulling out
     uint32_t atom;
-    int32_t sign;  // of its exponents
-    bool forced;   // it leads an equation
+    int32_t sign;  // sign of its exponents
+    bool forced;   // it is a leading atom of an equation
     bool uniform;  // the same power in all terms
-    size_t saving; // factors no longer written
+    size_t saving; // number of factors saved
 };
 
 static unsigned kind_of_atom(const struct ct_collector *c, uint32_t atom)
@@ -129,7 +130,8 @@ static unsigned kind_of_atom(const struct ct_collector *c, uint32_t atom)
     return s ? 1u << s->kind : 0;
 }
 
-// An equation is read as the coefficients of its accelerations and multipliers.
+// Leading atoms of an equation are accelerations and multipliers: it is printed as their
+// coefficients.
 static bool leads(const struct ct_collector *c, uint32_t atom)
 {
     return kind_of_atom(c, atom) & (1u << CT_SYM_A | 1u << CT_SYM_LAM);
@@ -148,7 +150,7 @@ static size_t weight(const struct ct_collector *c, uint32_t mono)
     size_t n = 0;
     for (size_t k = 0; k < ct_mono_length(&c->ps, mono); k++) {
         const struct ct_power p = ct_mono_power(&c->ps, mono, k);
-        // a function or a sum is longer than a symbol
+        // a function or a sum counts as longer than a symbol
         n += (size_t)abs(p.exponent) + (kind_of_atom(c, p.atom) == 0);
     }
     return n;
@@ -173,7 +175,8 @@ static struct choice weigh(struct ct_collector *c, struct ct_poly p, struct ct_p
     }
     ch.saving = n > 1 ? (n - 1) * weight(c, common) : 0;
     ch.forced = leads(c, by.atom);
-    // l1^2 + 2*l1*l2*c reads better than l1*(l1 + 2*l2*c): one symbol does not pay the parentheses
+    // l1^2 + 2*l1*l2*c reads better than l1*(l1 + 2*l2*c): saving one symbol is not worth
+    // parentheses
     ch.worth = ch.forced || ch.saving > 1 || (ch.saving == 1 && ch.uniform);
     return ch;
 }
@@ -215,8 +218,8 @@ static struct choice choose(struct ct_collector *c, struct ct_poly p)
 
 // ---- shared sums --------------------------------------------------------------------------------
 
-// Groups are made atom by atom, so one sum can become a factor of several: l3*(m3 + m4) +
-// l2*(m3 + m4)*cos(q3). Equal sums are one node, and that node is pulled out.
+// Groups are made atom by atom, so the same sum can become a factor of several terms: l3*(m3 + m4)
+// + l2*(m3 + m4)*cos(q3). Equal sums are one node, and that node is pulled out.
 
 static bool has_factor(const struct ct_exs *x, ct_ex e, ct_ex f)
 {
@@ -241,7 +244,7 @@ static ct_ex without_factor(struct ct_exs *x, ct_ex e, ct_ex f)
     return ct_ex_mul(x, (ct_ex){n.a}, without_factor(x, (ct_ex){n.b}, f));
 }
 
-// sum = f part + rest, term by term.
+// Split a sum by a factor: sum = f part + rest, term by term.
 static void split_sum(struct ct_exs *x, ct_ex sum, bool negative, ct_ex f, ct_ex *part,
                       ct_ex *rest)
 {
@@ -256,7 +259,7 @@ static void split_sum(struct ct_exs *x, ct_ex sum, bool negative, ct_ex f, ct_ex
     *to = negative ? ct_ex_sub(x, *to, term) : ct_ex_add(x, *to, term);
 }
 
-// `left` bounds the search, since a bundled sum can be a graph with more paths than nodes.
+// `left` bounds the search: a bundled sum can be a graph with more paths than nodes.
 static bool is_factor_of_term(const struct ct_exs *x, ct_ex sum, ct_ex f, size_t *left)
 {
     const struct ct_exnode *n = ct_ex_node(x, sum);
@@ -269,7 +272,7 @@ static bool is_factor_of_term(const struct ct_exs *x, ct_ex sum, ct_ex f, size_t
     return has_factor(x, sum, f);
 }
 
-// A factor of the product e that is a sum and also a factor of a term of `sum`; false if none.
+// Find a factor of the product e that is a sum and also a factor of a term of `sum`; false if none.
 static bool find_shared(const struct ct_exs *x, ct_ex e, ct_ex sum, ct_ex *f, size_t *left)
 {
     const struct ct_exnode *n = ct_ex_node(x, e);

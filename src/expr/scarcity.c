@@ -8,7 +8,8 @@
 
 #include <string.h>
 
-// Vertices at one side of another, some of them eliminated meanwhile.
+// Neighbours of a vertex on one side (predecessors or successors); some may have been eliminated
+// since.
 struct side {
     uint32_t *v;
     size_t n, cap;
@@ -82,10 +83,12 @@ struct reading {
     const struct ct_exs *x;
     const struct ct_seed *seed; // sorted
     size_t nseed;
-    uint32_t *vertex; // by id: of a node that depends on a seed; 0: it does not, or is a symbol
+    uint32_t
+        *vertex; // by id: vertex of a node that depends on a seed; 0 for others and for symbols
 };
 
-// Edges from what node id is, or from the columns of its seeds. False: it depends on none.
+// Add the edges to node id from its arguments, or from the columns of its seeds. False if it
+// depends on no seed.
 static bool add_edges(struct ct_scarcity *s, const struct reading *r, uint32_t id, uint32_t to)
 {
     if (r->x->node[id].op != CT_OP_SYM) {
@@ -139,7 +142,7 @@ struct ct_scarcity *ct_scarcity_create(struct ct_exs *x, struct ct_arena *a, con
 
 // ---- elimination -------------------------------------------------------------------------------
 
-// Those that are left.
+// Remove eliminated vertices from a list of neighbours.
 static void sweep_out(const struct ct_scarcity *s, struct side *side)
 {
     size_t n = 0;
@@ -181,7 +184,7 @@ void ct_scarcity_thin(struct ct_scarcity *s, long most)
     }
 }
 
-// ---- what is left ------------------------------------------------------------------------------
+// ---- remaining vertices ------------------------------------------------------------------------
 
 size_t ct_scarcity_nodes(const struct ct_scarcity *s, struct ct_arena *a, ct_ex **node)
 {
@@ -197,7 +200,8 @@ size_t ct_scarcity_entries(const struct ct_scarcity *s, struct ct_arena *a, int 
                            int **column)
 {
     const uint32_t first = s->ncolumn, last = first + s->nnode, end = last + s->nf;
-    int *number = CT_NEWN(a, int, end + 1), nleft = 0; // as a column; rows of f come before
+    int *number = CT_NEWN(a, int, end + 1),
+        nleft = 0; // by vertex: its column; rows of f come first
     size_t n = 0, row_cap = 0, column_cap = 0;
     *row = *column = NULL;
     for (uint32_t v = 0; v < last; v++)

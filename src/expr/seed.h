@@ -6,7 +6,8 @@
 
 /// A copy of n seeds by symbol and then by direction; lives in a.
 const struct ct_seed *ct_seeds_sorted(struct ct_arena *a, const struct ct_seed *seed, size_t n);
-/// The first of n sorted seeds whose symbol is node id, or where it would be.
+/// Index of the first of n sorted seeds whose symbol is node id; if there is none, where it would
+/// be.
 size_t ct_seeds_find(const struct ct_seed *seed, size_t n, uint32_t id);
 
 #endif

@@ -1,7 +1,8 @@
 // Choice of shared subexpressions; see share.h.
 //
-// Two sweeps per definition: upwards the length of each node's text, downwards how often that text
-// is printed; a name counts as short text, and what is below it is printed once.
+// Two sweeps per definition. The upward sweep finds the length of each node's text, where a named
+// node counts as the length of its name. The downward sweep finds how often the text is printed,
+// where the text below a named node is printed once.
 #include "expr/share.h"
 
 #include "base/names.h"
@@ -39,7 +40,7 @@ static int noperand(const struct sharing *s, size_t k)
 
 // ---- lengths ----------------------------------------------------------------------------------
 
-// Characters an operator adds to those of its operands, parentheses of products guessed.
+// Characters that an operator adds to those of its operands; parentheses of products are estimated.
 static double own_length(const struct sharing *s, uint32_t id)
 {
     const struct ct_exnode *n = &s->x->node[id];
@@ -127,9 +128,9 @@ static double worth_of(const struct sharing *s, size_t k)
     return saving_of(s, k) * (s->meaning[k] ? 2 : 1);
 }
 
-// Graphs of more nodes than this get many names at a time: all that save half as much as the best.
-// Those that others make useless are taken back at the end.
-// Limit: one name at a time costs the square of the nodes.
+// In graphs of more nodes than this several names are chosen per sweep: all that save at least half
+// as much as the best. Names that others make useless are removed at the end. Limit: one name at a
+// time costs the square of the nodes.
 enum { LARGE_GRAPH = 1000 };
 
 // Names the node that saves most; ties go to the older one. Returns how many were named.
@@ -157,7 +158,7 @@ static size_t choose(struct sharing *s, size_t most)
     return n;
 }
 
-// A definition that later ones left with a single use is taken back.
+// Remove a definition that, after later choices, is used only once.
 static bool drop_useless(struct sharing *s)
 {
     bool any = false;
@@ -243,8 +244,8 @@ static void list_nodes(struct sharing *s, const ct_ex *root)
         s->root[k] = place[root[k].id];
 }
 
-// All that has a meaning and two users. Lengths are finite from then on: paths through a recursion can be more than
-// numbers count.
+// Name all labelled nodes with two users. This keeps the lengths finite: the unfolded text of a
+// recursion can exceed the range of double.
 static void choose_names(struct sharing *s)
 {
     unsigned char *users = CT_NEWN(s->work, unsigned char, s->n + 1);

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// Derived: beyond this n = 2 a/pi exceeds the 20 bits for which the reduction is exact.
+// Derived: n = 2 a/pi has at most 20 bits below 1.6e6; the reduction is exact for such n.
 static const double largest = 1e6;
 
 // Adding 1.5 * 2^52 rounds to an integer, which the last bits of the sum then hold.
@@ -158,8 +158,8 @@ WIDE static inline bool has_large(four angle)
     return _mm256_movemask_pd((four)((angle <= largest) & (angle >= -largest))) != ALL;
 }
 
-// Elementwise load: callers have just stored single doubles, from which a vector load cannot be
-// forwarded by the store buffer.
+// Load element by element: callers have just stored single doubles, and a vector load that spans
+// several stores cannot be forwarded from the store buffer.
 WIDE static inline four gather(const double *a, size_t n)
 {
     return (four){a[0], a[n > 1 ? 1 : 0], a[n > 2 ? 2 : 0], a[n > 3 ? 3 : 0]};
@@ -173,7 +173,7 @@ WIDE static inline void scatter(double *v, four lanes, size_t n)
         v[i] = lanes[i];
 }
 
-// n <= LANES. True if angles are beyond the range.
+// At most LANES angles. Returns true if some are beyond the range.
 WIDE static inline bool few(const double *a, double *s, double *c, size_t n)
 {
     const four angle = gather(a, n);
@@ -202,7 +202,7 @@ WIDE static bool four_by_four(const double *a, double *s, double *c, size_t n)
 
 void ct_sincos_many(const double *a, double *s, double *c, size_t n)
 {
-    if (!is_wide() || four_by_four(a, s, c, n)) // angles beyond the range are done again
+    if (!is_wide() || four_by_four(a, s, c, n)) // angles beyond the range are computed again
         one_by_one(a, s, c, n);
 }
 

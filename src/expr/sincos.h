@@ -4,10 +4,10 @@
 
 #include <stddef.h>
 
-/// s = sin(a), c = cos(a), each within 0.8 units in the last place. a [rad]: any; beyond 1e6 those
-/// of the C library.
+/// s = sin(a), c = cos(a), each within 0.8 units in the last place. a [rad]; for |a| > 1e6 the
+/// functions of the C library are used.
 void ct_sincos(double a, double *s, double *c);
-/// The same for n angles, four at once where the processor can (AVX2). s, c and a must not overlap.
+/// The same for n angles, four at a time on processors with AVX2. s, c and a must not overlap.
 void ct_sincos_many(const double *a, double *s, double *c, size_t n);
 
 #endif

@@ -6,10 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-// Width of an interval that is a place, as part of the whole. Derived: 16 units of round-off, what
-// about ten operations of interval arithmetic leave, are 0x1p-48.
+// Width of an interval that is accepted as a root, relative to the whole interval. Derived: about
+// ten operations of interval arithmetic leave 16 units of round-off, 16 * 2^-52 = 0x1p-48.
 static const double least = 0x1p-48;
-// Limit: of the search for one argument; a simple root takes about 100. Beyond, the caller is told.
+// Limit: of the search for one argument; a simple root takes about 100. Beyond it the function
+// returns -1.
 enum { MOST_INTERVALS = 20000 };
 
 struct interval {
@@ -30,7 +31,7 @@ static bool has_zero(struct interval a)
     return !(a.low > 0 || a.high < 0);
 }
 
-// Values of an operator that is monotone in each argument between their ends.
+// Range of an operator that is monotone in each argument: its values at the ends of the intervals.
 static struct interval corners(enum ct_op op, struct interval a, struct interval b)
 {
     const double v[] = {ct_op_apply(op, a.low, b.low, 0), ct_op_apply(op, a.low, b.high, 0),
@@ -59,7 +60,7 @@ static struct interval power(struct interval a, struct interval b)
     return is_whole || a.low > 0 ? corners(CT_OP_POW, a, b) : any;
 }
 
-// sin and cos change no faster than their argument.
+// Range of sin or cos by the Lipschitz constant 1.
 static struct interval wave(enum ct_op op, struct interval a)
 {
     const double half = (a.high - a.low) / 2, v = ct_op_apply(op, a.low + half, 0, 0);
@@ -130,9 +131,9 @@ struct search {
     const uint32_t *node; // below the argument, children first
     size_t n;
     const double *value;
-    struct interval *at; // by node of the store
+    struct interval *at; // range of each node of the store
     double least;
-    int left; // intervals that may still be looked at
+    int left; // intervals that may still be tested
     double *place;
     int nplace, most;
 };
@@ -169,7 +170,7 @@ static bool put(struct search *w, double place)
     return true;
 }
 
-// Halves first what lies lower: places come ascending. Depth: at most 48.
+// Bisection, lower half first, so that roots come in ascending order. Depth: at most 48.
 static bool find_roots(struct search *w, double low, double high)
 {
     if (w->left-- == 0)
@@ -177,7 +178,7 @@ static bool find_roots(struct search *w, double low, double high)
     const struct interval v = enclose(w, (struct interval){low, high});
     const double middle = low + (high - low) / 2;
     if (!has_zero(v) || (v.low == 0 && v.high == 0))
-        return true; // nothing switches where it is 0 throughout
+        return true; // identically 0 on the interval: no switching point
     if (high - low <= w->least) {
         const bool again = w->nplace && fabs(middle - w->place[w->nplace - 1]) <= 4 * w->least;
         if (again)
@@ -189,7 +190,7 @@ static bool find_roots(struct search *w, double low, double high)
 
 // ---- all arguments -----------------------------------------------------------------------------
 
-// What changes its sign where a node switches; zero: nothing does.
+// The function whose sign change is a switching point of the node; zero if there is none.
 static ct_ex argument(struct ct_exs *x, uint32_t id)
 {
     const struct ct_exnode n = x->node[id];
@@ -214,7 +215,8 @@ static bool find_places(struct search *w, struct ct_exs *x, struct ct_arena *scr
 {
     const uint32_t at = x->node[w->s.id].a;
     value[at] = from;
-    const double start = ct_ex_value(x, g, value); // which also keeps account of its parameters
+    const double start
+        = ct_ex_value(x, g, value); // this also records the parameters that were read
     if (ct_ex_degree(x, g, w->s) == 1) {
         value[at] = to;
         const double end = ct_ex_value(x, g, value),

@@ -1,12 +1,13 @@
-// Jumps and kinks of an expression along a symbol: between them it is smooth, and quadrature
-// converges.
+// Points where an expression jumps or has a kink as a function of one symbol. Between them it is
+// smooth, so that quadrature converges.
 #ifndef CT_EXPR_SWITCHES_H
 #define CT_EXPR_SWITCHES_H
 
 #include "expr/ex.h"
 
-/// Places closer than this part of the whole are one. Default: a short element is stiff and costs
-/// steps, and places have round-off. Test: switches.
+/// Switching points closer than this part of the interval are merged. Default: below it, an element
+/// between two points is so stiff that it costs steps; above it, distinct points are lost. Test:
+/// switches.
 #define CT_SAME_PLACE 1e-9
 
 /**
@@ -15,11 +16,12 @@
  *
  * A linear difference is solved directly. Any other is enclosed by bisection with interval
  * arithmetic (Moore, Kearfott and Cloud 2009, chapter 5): no root is missed, and roots closer than
- * the smallest interval count as one.
+ * the smallest interval are merged.
  *
- * value  in    of all symbols but s; entry of s: work
- * place  out   ascending; points closer than 1e-9 (to - from) to each other are one, to an end none
- * most         room in place
+ * value  in    values of all symbols; the entry of s is workspace
+ * place  out   points, ascending; points closer than 1e-9 (to - from) are merged, and points that
+ *              close to an end are omitted
+ * most   in    capacity of place
  *
  * Returns their number, -1 if there are more than `most` or the bisection exceeds its limit.
  * Cost: nodes below f, about 100 times for a difference of higher degree.

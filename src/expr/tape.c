@@ -59,7 +59,7 @@ static double cosine(double a)
     return c;
 }
 
-// A slot of several lanes need not be aligned to more than a number.
+// Several lanes; aligned to a single number only.
 #define SLOT(lanes) double __attribute__((vector_size(8 * (lanes)), aligned(8), may_alias))
 typedef SLOT(4) slot4;
 typedef SLOT(8) slot8;
@@ -175,9 +175,9 @@ struct compiler {
     uint32_t *order; // scheduled instructions, the prologue's first
     size_t norder;
     uint32_t *nuse;        // by value: reads still to come, while slots are given out
-    unsigned char *keep;   // by value: its slot is never given to another
+    unsigned char *keep;   // by value: its slot is never reused
     uint32_t *slot;        // by value
-    uint32_t *free, nfree; // slots to be used again, last in first out
+    uint32_t *free, nfree; // free slots, last in first out
     uint32_t nslot;
 };
 
@@ -192,7 +192,8 @@ static void enqueue(struct compiler *c, struct queue *q, uint32_t i)
     q->tail = i;
 }
 
-// Emit instruction i; readers before `to` that were waiting only for it become ready.
+// Emit instruction i. Later instructions (below `to`) whose last missing argument it was become
+// ready.
 static void emit(struct compiler *c, struct queue *q, uint32_t i, size_t to)
 {
     const struct ct_instruction *ins = &c->l->ins[i];
@@ -246,7 +247,7 @@ static void give_up_slot(struct compiler *c, uint32_t v)
         c->free[c->nfree++] = c->slot[v];
 }
 
-// Outputs last to the end, constants and parameters from prepare on, and so do results of the
+// Mark the values whose slots are never reused: outputs, constants, parameters, and results of the
 // prologue that the body reads.
 static void mark_kept(struct compiler *c)
 {
@@ -283,8 +284,9 @@ static struct copy *take_inputs(struct compiler *c, enum ct_rate rate, size_t *n
     return copy;
 }
 
-// Arguments are given up before the results ask, so that a result may overwrite an argument: each
-// loop reads what it needs before it writes, and a run is executed in this order.
+// Assign slots. Those of arguments are freed before the result asks for one, so that a result may
+// overwrite an argument. This is safe: each loop reads its arguments before it writes, and a run is
+// executed in this order.
 static void give_slots(struct compiler *c, size_t from, size_t to)
 {
     for (size_t k = from; k < to; k++) {
@@ -331,7 +333,7 @@ static uint32_t *write_record(const struct compiler *c, const struct ct_instruct
     return p;
 }
 
-// Does place k of the order start a run of the part that begins at `from`?
+// Does the instruction at index k of the order start a run of the part that begins at `from`?
 static bool starts_run(const struct compiler *c, size_t k, size_t from)
 {
     return k == from || c->l->ins[c->order[k - 1]].op != c->l->ins[c->order[k]].op;

@@ -2,18 +2,19 @@
 //
 //     inputs (values of symbols)  ->  prologue (parameters only)  ->  body  ->  outputs
 //
-// The prologue is run when parameters change, the body at every call. Instructions are scheduled
-// into runs of equal operations, each run one tight loop, because a mixed stream costs several
-// times more in dispatch.
+// The prologue runs when parameters change, the body at every call. Instructions are sorted into
+// runs of equal operations. Each run is one tight loop, because dispatch of a mixed stream costs
+// several times more.
 //
-// Several sets of inputs are evaluated at once in SIMD lanes, 1, 4 or 8 numbers for each one,
+// Several sets of inputs can be evaluated at once in SIMD lanes: 1, 4 or 8 numbers take the place
+// of one,
 //
 //     input[lanes * slot + lane],   out[lanes * k + lane],   work: lanes * ct_tape_work
 //
-// and each lane has the bits it has alone.
+// Each lane gives the same bits as an evaluation of that set alone.
 //
-// What always holds: evaluation allocates nothing; a tape is constant, the work array belongs to
-// the caller and holds the prologue's results between calls; same inputs, same bits.
+// What always holds: evaluation allocates nothing. A tape is constant. The work array belongs to
+// the caller and holds the results of the prologue between calls. Same inputs, same bits.
 #ifndef CT_EXPR_TAPE_H
 #define CT_EXPR_TAPE_H
 

@@ -57,8 +57,8 @@ static int compare_symbols(const struct ct_printer *pr, uint32_t a, uint32_t b)
     return r ? r : compare_number(a, b);
 }
 
-// By structure, so that the order does not follow the accidents of construction; by id where
-// nothing near the top decides.
+// Compare by structure, so that the order does not depend on the order of construction. By id if
+// the nodes near the top are equal.
 static int compare_nodes(const struct ct_printer *pr, ct_ex a, ct_ex b, int depth)
 {
     const struct ct_exnode *m = ct_ex_node(pr->x, a), *n = ct_ex_node(pr->x, b);
@@ -88,7 +88,7 @@ static int compare_bases(const struct ct_printer *pr, const struct ct_factor *a,
     return r ? r : compare_nodes(pr, a->e, b->e, 8);
 }
 
-// Of parameters the linear ones come first: m*l^2, not l^2*m.
+// Parameters with exponent 1 come first: m*l^2, not l^2*m.
 static int compare_factors(const void *context, const void *va, const void *vb)
 {
     const struct ct_factor *a = va, *b = vb;
@@ -200,7 +200,7 @@ void ct_term_split_pi(struct ct_term *t)
     }
 }
 
-// 0.75 -> 3/4: powers of two do not round.
+// 0.75 -> 3/4: exact, since the divisor is a power of two.
 static void split_fraction(struct ct_term *t)
 {
     double divisor = 1;
@@ -212,8 +212,7 @@ static void split_fraction(struct ct_term *t)
     t->divisor *= divisor;
 }
 
-// Does a parameter stand in the term? Else its number comes from data, and keeps the digits of
-// these.
+// Does the term contain a parameter? If not, its number comes from data and keeps its digits.
 static bool has_parameter(const struct ct_printer *pr, const struct ct_term *t)
 {
     unsigned kinds = 0;
@@ -233,7 +232,7 @@ static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
         t.number = ct_fraction_tidy(t.number);
         ct_term_split_pi(&t);
     }
-    // a number alone stays a short decimal
+    // a term that is only a number stays a short decimal
     if (pr->p.fractions && t.above.n && t.divisor == 1 && !t.pi
         && (pr->p.no_data || has_parameter(pr, &t)))
         split_fraction(&t);
@@ -245,8 +244,8 @@ static struct ct_term make_term(struct ct_printer *pr, ct_ex e, bool negative)
     return t;
 }
 
-// Terms of one class by their factors: from the last one, where the speed or acceleration stands,
-// and from the first one in the other classes. Numbers alone come last.
+// Compare terms of one class by their factors: from the last factor, which is the speed or
+// acceleration; in other classes from the first. Plain numbers come last.
 static int compare_terms(const void *context, const void *va, const void *vb)
 {
     const struct ct_printer *pr = context;
@@ -277,7 +276,7 @@ struct summand {
     bool negative;
 };
 
-// Sums may be nested deeper than calls can be.
+// With an explicit stack: sums may be nested deeper than the call stack allows.
 static void flatten_sum(struct ct_printer *pr, struct ct_terms *t, ct_ex e)
 {
     struct summand *wait = NULL, next = {e, false};
@@ -311,8 +310,8 @@ static size_t count_class(const struct ct_terms *t, enum ct_term_class class)
     return n;
 }
 
-// x - x0 rather than -x0 + x; but it does not leave others of its kind behind speeds, and forces of
-// constraint stay last.
+// Move a positive term to the front: x - x0 in place of -x0 + x. Terms of its class stay before
+// those with speeds, and constraint forces stay last.
 static void lead_with_positive(struct ct_terms *t)
 {
     size_t k = 0;

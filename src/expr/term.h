@@ -1,10 +1,10 @@
-// Products and sums taken apart for printing: what stands where in a formula for people.
+// Sums split into terms and products split into factors, sorted for printing.
 //
 //     sum    term + term - term ...            sorted: accelerations, speeds, coordinates, ...
 //     term   number pi^k above / (divisor below)   above, below: lists of factors in order
 //
-// What always holds: the order follows the structure of the expressions, not that of their
-// construction.
+// What always holds: the order depends on the structure of the expressions, not on the order in
+// which they were constructed.
 #ifndef CT_EXPR_TERM_H
 #define CT_EXPR_TERM_H
 
@@ -15,14 +15,14 @@ struct ct_printer {
     struct ct_arena *arena;
     const struct ct_exs *x;
     struct ct_print p;
-    uint32_t body; ///< printed although it has a name
+    uint32_t body; ///< printed in full although it has a name
     size_t left;   ///< items that may still be printed
     size_t depth;  ///< of nested groups
     char *s;       ///< the text so far
     size_t n, cap;
 };
 
-/// Kinds of factors in the order in which they stand.
+/// Classes of factors, in the order of printing.
 enum ct_factor_class {
     CT_FACTOR_PARAM,
     CT_FACTOR_PARAM_SUM,
@@ -47,7 +47,7 @@ struct ct_factors {
     size_t n, cap;
 };
 
-/// Kinds of terms in the order in which they stand.
+/// Classes of terms, in the order of printing.
 enum ct_term_class {
     CT_TERM_ACCELERATION,
     CT_TERM_SPEED,
@@ -63,7 +63,7 @@ struct ct_term {
     bool is_subtracted; ///< the term is -e
     bool negative;
     double number, divisor;
-    int pi; ///< its exponent
+    int pi; ///< exponent of pi
     struct ct_factors above, below;
     enum ct_term_class class;
 };
@@ -76,14 +76,14 @@ struct ct_terms {
 /// The name to print instead of e, or NULL.
 const char *ct_printer_name(const struct ct_printer *pr, ct_ex e);
 
-/// A whole number other than 0 and at most 99 in size as exponent, or 0.
+/// The integer exponent that e is, not 0 and at most 99 in size; 0 if e is none.
 int ct_whole_exponent(const struct ct_exs *x, ct_ex e);
 
-/// The terms of e as they stand; one term where e is no sum. Each item met is taken off pr->left.
+/// The terms of e in their present order; one term where e is no sum. Each item visited is counted
+/// in pr->left.
 struct ct_terms ct_terms_of_sum(struct ct_printer *pr, ct_ex e);
 
-/// 6.283185307179586 -> 2 pi: takes a power of pi out of the number; pi stays 0 where there is
-/// none.
+/// Split a power of pi from the number: 6.283185307179586 -> 2 pi. pi stays 0 if there is none.
 void ct_term_split_pi(struct ct_term *t);
 
 #endif

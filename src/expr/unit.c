@@ -12,7 +12,7 @@ static const struct {
     const char *name;
     struct ct_unit unit;
 } units[] = {
-    // Definition: SI units, their decimal multiples and usual others
+    // Definition: SI units, their decimal multiples, and other common units
     {"m", {1, 1, 0, 0}},
     {"mm", {1e-3, 1, 0, 0}},
     {"cm", {1e-2, 1, 0, 0}},
@@ -178,7 +178,7 @@ const char *ct_unit_nearest(const char *text)
     memcpy(name, text, k); // NOLINT(bugprone-not-null-terminated-result): name is zeroed
     const char *names[COUNT(units)];
     size_t n = 0;
-    // two letters are no slip in three: inches are no minutes
+    // a slip of two letters in three is none: `in` is not suggested as `min`
     for (size_t i = 0; i < COUNT(units); i++)
         if (k > 2 || strlen(units[i].name) <= k)
             names[n++] = units[i].name;
@@ -210,7 +210,8 @@ size_t ct_number_parse(const char *text, double *value)
         if (power)
             n += 1 + sign + power;
     }
-    // strtod reads the locale's point; its result is correctly rounded, ours would not be
+    // strtod depends on the locale's decimal point, but it rounds correctly; so the text is
+    // converted for it
     enum { LONGEST = 400 }; // Limit: of the stack; more digits than a double has exponents
     char copy[LONGEST + 1];
     const size_t used = n < LONGEST ? n : LONGEST;

@@ -13,26 +13,26 @@
 #include <stddef.h>
 
 struct ct_unit {
-    double si;    // one of it in SI units
-    int m, kg, s; // exponents
+    double si;    // one unit in SI units
+    int m, kg, s; // exponents of m, kg and s
 };
 
 enum ct_unit_result {
     CT_UNIT_OK,
     CT_UNIT_SYNTAX,   // not a product of units; *at is the offending character
     CT_UNIT_UNKNOWN,  // no unit of that name; it starts at *at
-    CT_UNIT_EXPONENT, // an exponent that is no small integer; at *at
+    CT_UNIT_EXPONENT, // an exponent that is not a small integer, at *at
 };
 
 /// A unit expression: all n characters of text. "" is the number one.
 enum ct_unit_result ct_unit_parse(const char *text, size_t n, struct ct_unit *unit, size_t *at);
 
 bool ct_unit_same(const struct ct_unit *a, const struct ct_unit *b);
-/// The unit nearest to a misspelt one that starts text, or NULL.
+/// Nearest known unit to a misspelt one at the start of text, or NULL.
 const char *ct_unit_nearest(const char *text);
 
-/// Length of the decimal number that starts text (digits with an optional point and exponent, no
-/// sign); 0 if there is none. *value is infinite when it is too large.
+/// Length of the decimal number at the start of text (digits with an optional point and exponent,
+/// no sign); 0 if there is none. *value is infinite if it overflows.
 size_t ct_number_parse(const char *text, double *value);
 
 #endif

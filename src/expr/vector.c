@@ -104,11 +104,12 @@ ct_ex33 ct_ex33_transpose(const ct_ex33 *A)
     return T;
 }
 
-// A quarter turn is meant exactly: cos(pi/2) is 0, not 6e-17.
+// Round a sine or cosine of a quarter turn to the exact value: cos(pi/2) is 0, not 6e-17.
 static ct_ex exact_quarter(struct ct_exs *x, ct_ex e)
 {
     double v;
-    // Derived: an angle of up to 8 quarter turns is rounded by 2 eps quarter turns, its sine by half
+    // Derived: an angle of up to 8 quarter turns is below 16, so its round-off is at most 4 eps;
+    // near its zeros a sine or cosine changes by as much
     const double roundoff = 4 * DBL_EPSILON;
     if (ct_ex_is_const(x, e, &v) && fabs(v - round(v)) < roundoff)
         return ct_ex_const(x, round(v));

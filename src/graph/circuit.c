@@ -1,8 +1,8 @@
 // Fundamental circuits by the path method of formulation 3.2: no elimination, no arithmetic.
 //
-// Both ends of a chord are walked up to their common ancestor. With sg(v) = +1 where the parent
-// edge points away from ground, its entry of B_t is -sg on the way up from the head and +sg on
-// the way down to the tail.
+// Both ends of a chord are followed up to their common ancestor. Let sg(v) = +1 where the parent
+// edge of v points away from ground. The entry of B_t is then -sg on the way up from the head and
+// +sg on the way down to the tail.
 #include "graph/graph.h"
 
 static int common_ancestor(const struct ct_tree *t, int a, int b)
@@ -28,7 +28,7 @@ int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, in
         branch[k] = t->parent_edge[v];
         sign[k] = (signed char)-t->sign[v];
     }
-    // the way down to the tail is found upwards, so it is filled from the end
+    // the path down to the tail is found from its end, so it is filled backwards
     for (int v = tail, k = n - 1; v != top; v = t->parent[v], k--) {
         branch[k] = t->parent_edge[v];
         sign[k] = (signed char)t->sign[v];
@@ -56,7 +56,7 @@ void ct_circuits_derive(struct ct_arena *a, const struct ct_graph *g, const stru
     count_columns(g, t, branch, sign, start);
 
     int *next = ct_incidence_create(a, t->nchord, g->nedge, start, Bf);
-    for (int k = 0; k < t->nchord; k++) { // ascending, so the rows of a column come out sorted
+    for (int k = 0; k < t->nchord; k++) { // ascending: the rows of a column come out sorted
         const int c = t->chord[k], n = ct_tree_circuit(g, t, c, branch, sign);
         Bf->row[next[c]] = k;
         Bf->value[next[c]++] = 1;

@@ -24,7 +24,7 @@ void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struc
     count_columns(t, &Bf, start);
 
     int *next = ct_incidence_create(a, t->nbranch, g->nedge, start, Af);
-    for (int i = 0; i < t->nbranch; i++) { // ascending, so the rows of a column come out sorted
+    for (int i = 0; i < t->nbranch; i++) { // ascending: the rows of a column come out sorted
         const int e = t->branch[i];
         Af->row[next[e]] = i;
         Af->value[next[e]++] = 1;

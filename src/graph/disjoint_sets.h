@@ -1,8 +1,9 @@
-// Connected components of nodes by union and find: disjoint sets with path halving.
+// Connected components of a graph by union-find: disjoint sets with path halving.
 //
-//     up:  [ 0 0 1 3 3 ]     pieces {0 1 2} and {3 4}; up[v] == v stands for its piece
+//     up:  [ 0 0 1 3 3 ]     sets {0 1 2} and {3 4}; up[v] == v: v represents its set
 //
-// What always holds: a piece is represented by its smallest node, so ground's piece is 0.
+// What always holds: a set is represented by its smallest node, so node 0 represents that of
+// ground.
 #ifndef CT_GRAPH_DISJOINT_SETS_H
 #define CT_GRAPH_DISJOINT_SETS_H
 
@@ -15,14 +16,14 @@ struct ct_disjoint_sets {
 
 void ct_disjoint_sets_init(struct ct_arena *a, int nnode, struct ct_disjoint_sets *p);
 
-/// Every node on its own again.
+/// Make every node a set of its own.
 void ct_disjoint_sets_reset(struct ct_disjoint_sets *p);
 
-/// The smallest node of v's piece. Cost O(log nnode), amortised.
+/// The smallest node of v's set. Cost O(log nnode), amortised.
 int ct_disjoint_sets_find(struct ct_disjoint_sets *p, int v);
 
-/// Join the pieces of both ends; false if they were one already (the edge would close a
-/// circuit).
+/// Unite the sets of both ends of an edge. False if they are the same set: the edge would close a
+/// circuit.
 bool ct_disjoint_sets_union(struct ct_disjoint_sets *p, struct ct_edge edge);
 
 #endif

@@ -1,19 +1,20 @@
-// How many spanning trees there are, and all of them in turn.
+// Counting and enumeration of spanning trees.
 //
-// Counting: the matrix-tree theorem (Kirchhoff 1847, key kirchhoff1847) says det(A A') is the
-// number of trees. It is evaluated as a resistor network: nodes are eliminated one by one by
-// the star-mesh transformation, and the pivots are the total conductances met. This is Gaussian
-// elimination with the diagonal rebuilt from the off-diagonals, so nothing is ever subtracted.
+// Counting: by the matrix-tree theorem (Kirchhoff 1847, key kirchhoff1847) the number of trees is
+// det(A A'). It is evaluated like a resistor network: nodes are eliminated one by one by the
+// star-mesh transformation; the pivots are the total conductances at the eliminated nodes. This is
+// Gaussian elimination in which the diagonal is recomputed from the off-diagonal entries, so
+// nothing is ever subtracted.
 //
-// Enumerating: each edge in turn is taken and then left out, and a choice is followed only if a
-// tree can still come of it, so no work is spent on dead ends.
+// Enumeration: each edge in turn is taken and then left out. A choice is followed only if it can
+// still be completed to a tree, so there are no dead ends.
 #include "graph/graph.h"
 
 #include "graph/disjoint_sets.h"
 
 #include <math.h>
 
-/// Join the ends of forced edges; false if they close a circuit or one is banned too.
+/// Unite the ends of forced edges. False if they close a circuit or one is also banned.
 static bool join_forced(const struct ct_graph *g, const bool *forced, const bool *banned,
                         struct ct_disjoint_sets *p)
 {
@@ -23,7 +24,7 @@ static bool join_forced(const struct ct_graph *g, const bool *forced, const bool
     return true;
 }
 
-/// W (n x n, out, symmetric): number of free edges between each two pieces, numbered by
+/// W (n x n, out, symmetric): number of free edges between each two components, numbered by
 /// place[].
 static void fill_conductances(double *W, const struct ct_graph *g, const bool *banned,
                               struct ct_disjoint_sets *p, const int *place, int n)
@@ -31,7 +32,7 @@ static void fill_conductances(double *W, const struct ct_graph *g, const bool *b
     for (int e = 0; e < g->nedge; e++) {
         const int i = place[ct_disjoint_sets_find(p, g->edge[e].tail)];
         const int j = place[ct_disjoint_sets_find(p, g->edge[e].head)];
-        if (i == j || (banned && banned[e])) // forced edges lie within one piece
+        if (i == j || (banned && banned[e])) // forced edges lie within one component
             continue;
         W[i + n * j] += 1;
         W[j + n * i] += 1;
@@ -79,7 +80,7 @@ struct enumeration {
     const struct ct_graph *g;
     bool *is_branch;                // forced edges and those taken so far
     bool *is_free;                  // neither forced nor banned
-    int nmissing;                   // branches a tree still needs
+    int nmissing;                   // number of branches still missing
     struct ct_disjoint_sets pieces; // workspace
     bool (*visit)(void *data, const bool *is_branch);
     void *data;
@@ -95,7 +96,7 @@ static bool closes_circuit(struct enumeration *s, int e)
     return !ct_disjoint_sets_union(&s->pieces, s->g->edge[e]);
 }
 
-/// Do the branches taken and the free edges from `first` on reach every node?
+/// Do the branches taken and the free edges from `first` on connect all nodes?
 static bool can_span(struct enumeration *s, int first)
 {
     ct_disjoint_sets_reset(&s->pieces);

@@ -19,12 +19,12 @@ struct search {
     const struct ct_graph *g;
     const int *weight[NTREE], *rank[NTREE];
     bool *forced[NTREE],
-        *banned[NTREE]; // own copies: tied edges agree, negative weights banned
+        *banned[NTREE]; // own copies: tied edges agree; edges of negative weight are banned
     const bool *tied;   // may be NULL
     int heaviest;       // least weight + excess
     ct_tree_cost cost;
     void *data;
-    struct pair best; // cost INFINITY: nothing yet
+    struct pair best; // cost INFINITY: none yet
     struct ct_search_stats *stats;
 };
 
@@ -65,7 +65,7 @@ static void set_rules(struct search *s, int k, const struct ct_tree_rules *rules
     }
 }
 
-/// What is forced or banned in one tree is so in the other if the edge is tied.
+/// An edge that is tied and forced (or banned) in one tree becomes so in the other.
 static void share_rules_of_tied(struct search *s)
 {
     for (int e = 0; e < s->g->nedge; e++) {

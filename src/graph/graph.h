@@ -1,14 +1,14 @@
-// Linear graphs: nodes, oriented edges, spanning trees, cutsets and circuits. Integers only.
-//
-// src/graph builds, counts and enumerates spanning trees, searches the cheapest pair of trees, and
-// derives fundamental cutset, circuit and incidence matrices as sparse matrices of -1, 0 and +1.
-// It prints graphs as text, Graphviz and JSON. It knows no mechanics and no expressions.
+// src/graph works on linear graphs: nodes, oriented edges, spanning trees, cutsets and circuits. It
+// builds, counts and enumerates spanning trees, searches for the cheapest pair of trees, and
+// derives fundamental cutset, circuit and incidence matrices as sparse matrices of -1, 0 and +1. It
+// prints graphs as text, Graphviz and JSON. It works on integers only and knows no mechanics and no
+// expressions.
 //
 //     node 0 is ground (the datum); an edge goes from tail to head; incidence +1 at the head
 //
-// What always holds: a tree's arrays have one entry per node (parent edge, parent node, depth)
-// and one per edge (is_branch); `order` lists the nodes root first, so parents precede
-// children. Ties are broken by edge index: the same graph gives the same tree.
+// What always holds: the arrays of a tree have one entry per node (parent edge, parent node, depth)
+// or one per edge (is_branch). `order` lists the nodes root first, so parents precede children.
+// Ties are broken by edge index: the same graph gives the same tree.
 #ifndef CT_GRAPH_GRAPH_H
 #define CT_GRAPH_GRAPH_H
 
@@ -36,7 +36,7 @@ struct ct_tree {
     int *chord;       // edge numbers, ascending
 };
 
-/// Compressed columns of -1, +1; rows sorted.
+/// Sparse matrix of -1 and +1 in compressed columns; rows sorted.
 struct ct_incidence {
     int nrow, ncol;
     int *start; // ncol + 1
@@ -44,21 +44,21 @@ struct ct_incidence {
     signed char *value;
 };
 
-/// Spanning tree of least weight (Kruskal); edges of weight < 0 are never branches. Among equal
-/// weights the smaller `rank` wins, then the smaller index. rank may be NULL. False if no
-/// spanning tree exists; t is then left alone. component (nnode, may be NULL) numbers the
-/// pieces that the allowed edges leave: 0 is ground's, then by smallest node. Cost O(e log e).
-/// Source: Kruskal (1956), key kruskal1956.
+/// Spanning tree of least weight by Kruskal's algorithm; edges of weight < 0 are never branches.
+/// Among equal weights the smaller `rank` wins, then the smaller index. rank may be NULL. False if
+/// no spanning tree exists; t is then unchanged. component (nnode, may be NULL): number of the
+/// connected component of each node in the graph of allowed edges; 0 is that of ground, the others
+/// follow by smallest node. Cost O(e log e). Source: Kruskal (1956), key kruskal1956.
 bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *weight,
                      const int *rank, struct ct_tree *t, int *component);
 
-/// The tree with the given branches; false if they are no spanning tree, t is then left alone.
+/// The tree with the given branches. False if they are no spanning tree; t is then unchanged.
 /// `order` is breadth first, edges by index. Cost O(v + e).
 bool ct_tree_from_branches(struct ct_arena *a, const struct ct_graph *g, const bool *is_branch,
                            struct ct_tree *t);
 
-/// Debug: every node has a parent but the root, branches and parent edges agree, the order is
-/// right. NULL if so, else what is wrong. Cost O(v^2 + e).
+/// For debugging: check that every node but the root has a parent, that branches agree with parent
+/// edges, and that the order is right. NULL if so, else what is wrong. Cost O(v^2 + e).
 const char *ct_tree_check(const struct ct_graph *g, const struct ct_tree *t);
 
 /// Number of spanning trees whose branches include all `forced` edges and no `banned` one
@@ -67,18 +67,17 @@ const char *ct_tree_check(const struct ct_graph *g, const struct ct_tree *t);
 double ct_tree_count(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
                      const bool *banned);
 
-/// Call visit(data, is_branch) for every such tree, in lexicographic order of branches, until
-/// it returns false. False if it did; true if every tree was seen, also when there is none.
-/// Cost O(e^2) per tree.
+/// Call visit(data, is_branch) for every such tree, in lexicographic order of branches, until it
+/// returns false. Returns false if a call did so; true if all trees were visited, also when there
+/// is none. Cost O(e^2) per tree.
 bool ct_tree_enumerate(struct ct_arena *scratch, const struct ct_graph *g, const bool *forced,
                        const bool *banned, bool (*visit)(void *data, const bool *is_branch),
                        void *data);
 
 /// The fundamental circuit of chord e, oriented along it (formulation 3.2): its n branches and
-/// their entries of B_t, so that across_e + sum_k sign[k] across_branch[k] = 0. They are
-/// written to branch[] and sign[] (room nbranch) in the order met when walking on from the head
-/// of e back to its tail; sign is +1 where the branch points along this walk. Returns n. Cost
-/// O(n).
+/// their entries of B_t, so that across_e + sum_k sign[k] across_branch[k] = 0. branch[] and sign[]
+/// (room nbranch) are in the order of a walk from the head of e back to its tail; sign is +1 where
+/// the branch points along this walk. Returns n. Cost O(n).
 int ct_tree_circuit(const struct ct_graph *g, const struct ct_tree *t, int e, int *branch,
                     signed char *sign);
 
@@ -96,12 +95,12 @@ void ct_cutsets_derive(struct ct_arena *a, const struct ct_graph *g, const struc
 void ct_incidence_derive(struct ct_arena *a, const struct ct_graph *g, struct ct_incidence *A);
 
 /// Allocate S without its entries. start (ncol + 1): start[j + 1] is the number of entries of
-/// column j; they are summed to column starts. Returns the index of the next free entry of each
-/// column.
+/// column j; the counts are summed to column starts. Returns the index of the next free entry of
+/// each column.
 int *ct_incidence_create(struct ct_arena *a, int nrow, int ncol, int *start,
                          struct ct_incidence *S);
-/// The transpose: compressed columns of S' are compressed rows of S, so that its equations can
-/// be read one by one. Cost O(rows + columns + entries).
+/// The transpose: compressed columns of S' are compressed rows of S, in which equations can be read
+/// one by one. Cost O(rows + columns + entries).
 void ct_incidence_transpose(struct ct_arena *a, const struct ct_incidence *S,
                             struct ct_incidence *St);
 

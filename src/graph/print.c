@@ -4,13 +4,13 @@
 #include <stdarg.h>
 #include <string.h>
 
-// Layout: [columns] wider lines are wrapped, wider matrices left out
+// Layout: [columns] wider lines are wrapped, wider matrices are not printed
 static const int page_width = 100;
 static const int max_equations = 60; // Layout: of each kind
 
 // ---- columns ------------------------------------------------------------------------------
 
-/// Columns a UTF-8 string takes: its code points, continuation bytes not counted.
+/// Width of a UTF-8 string in columns: its number of code points.
 static int width_of(const char *s)
 {
     int n = 0;
@@ -19,7 +19,7 @@ static int width_of(const char *s)
     return n;
 }
 
-/// s, then spaces up to `width` columns.
+/// Print s, padded with spaces to `width` columns.
 static void print_left(FILE *out, const char *s, int width)
 {
     fprintf(out, "%s%*s", s, width > width_of(s) ? width - width_of(s) : 0, "");
@@ -79,7 +79,8 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
         fprintf(out, " -> ");
         print_left(out, names->node(names->data, view->g->edge[e].head), node);
         print_role(out, view->T, names->weight_trans, e);
-        fprintf(out, "%*s", view->T->is_branch[e] ? 0 : 1, ""); // chord is shorter than branch
+        fprintf(out, "%*s", view->T->is_branch[e] ? 0 : 1,
+                ""); // "chord" is one letter shorter than "branch"
         print_role(out, view->R, names->weight_rot, e);
         fprintf(out, "\n");
     }
@@ -87,7 +88,7 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
 
 // ---- the incidence matrix -----------------------------------------------------------------
 
-/// Head of column e: the edge's name or, to save room, its number (in text[12]).
+/// Heading of column e: the name of the edge or, to save width, its number (in text[12]).
 static const char *column_head(const struct ct_graph_names *names, int e, bool by_number,
                                char text[12])
 {
@@ -165,7 +166,7 @@ static void print_term(struct line *l, const char *sign, const char *name)
     l->column += width;
 }
 
-/// One row of a cutset or circuit matrix (column i of its transpose St), its own edge first.
+/// Print one row of a cutset or circuit matrix (column i of its transpose St), its own edge first.
 static void print_equation(FILE *out, const struct ct_incidence *St, int i, int own,
                            const struct ct_graph_names *names)
 {

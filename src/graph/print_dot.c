@@ -1,20 +1,21 @@
 // A graph and its trees as Graphviz source; see print.h.
 //
-// The translational tree ranks the nodes from left to right, so that the picture grows from
-// ground outwards; other edges are drawn over it. A branch that points at ground is written
-// parent first with its arrow at the near end, as Graphviz ranks by the order written. In a
-// large graph most edges would meet at ground: there each edge to ground that is no branch of
-// translation gets a small ground of its own. In a deep tree arms stand upright, so that a body
-// takes one column. Boxes around bodies would be welcome, but Graphviz loses edges that do not
-// rank across clusters.
+// Nodes are ranked from left to right by the translational tree, so that the picture grows from
+// ground outwards; other edges do not rank. Graphviz ranks by the order in which an edge is
+// written. A branch that points towards ground is therefore written parent first, with its arrow at
+// the tail. In a large graph most edges would meet at ground: each edge to ground that is no
+// translational branch gets a ground symbol of its own. In a deep tree the points of a body are
+// stacked vertically, so that a body takes one column. Clusters around bodies are not used, because
+// Graphviz drops edges that do not rank across clusters.
 #include "graph/print.h"
 
 static const int large_graph = 12; // Layout: nodes; a slider-crank with its arms has 8
 // Layout: edges from ground; beyond, a row of nodes overflows a page
 static const int deep_tree = 10;
 
-// How an edge looks by the trees it is a branch of; a quiet or marked edge means what its kind
-// says. The colours are those of Okabe and Ito, which the colour-blind can tell apart.
+// Style of an edge by the trees in which it is a branch; the meaning of quiet or marked edges
+// depends on their kind. The colours are those of Okabe and Ito, which colour-blind readers can
+// distinguish.
 struct look {
     const char *meaning, *color, *style, *penwidth;
 };
@@ -40,7 +41,7 @@ static int look_of(const struct ct_graph_view *view, int e)
     return T ? TRANS_ONLY : R ? ROT_ONLY : CHORD;
 }
 
-/// s inside an HTML-like label, which must not be empty; control characters become blanks.
+/// Print s inside an HTML-like label, which must not be empty; control characters become blanks.
 static void print_escaped(FILE *out, const char *s)
 {
     if (!*s)
@@ -62,7 +63,7 @@ static void print_escaped(FILE *out, const char *s)
     }
 }
 
-/// The first edge of each look, or -1, in first[NLOOK].
+/// first[NLOOK]: the first edge of each style, or -1.
 static void find_looks(const struct ct_graph_view *view, int *first)
 {
     for (int k = 0; k < NLOOK; k++)
@@ -71,7 +72,7 @@ static void find_looks(const struct ct_graph_view *view, int *first)
         first[look_of(view, e)] = e;
 }
 
-/// The looks that occur, as the label of the picture.
+/// Print a legend of the styles that occur, as the label of the picture.
 static void print_legend(FILE *out, const struct ct_graph_view *view)
 {
     int first[NLOOK];
@@ -117,10 +118,10 @@ static void print_edge_label(FILE *out, const struct ct_graph_names *names, int 
 static bool is_deep(const struct ct_tree *t)
 {
     return t->depth[t->order[t->nnode - 1]]
-         > deep_tree; // breadth first: the last is the deepest
+         > deep_tree; // breadth first: the last node is the deepest
 }
 
-/// Node v as the end of edge e: itself, or a small ground of the edge's own.
+/// Print node v as an end of edge e: the node itself, or a ground symbol of that edge.
 static void print_end(FILE *out, int v, int e, bool own_ground)
 {
     fprintf(out, "%c%d", own_ground && v == 0 ? 'g' : 'n', own_ground && v == 0 ? e : v);

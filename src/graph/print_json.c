@@ -1,8 +1,8 @@
 // A graph and its trees as JSON; see print.h.
 #include "graph/print.h"
 
-/// s as a JSON string. UTF-8 passes through; RFC 8259 wants quotes, backslashes and control
-/// characters escaped.
+/// Print s as a JSON string. UTF-8 is copied; quotes, backslashes and control characters are
+/// escaped as RFC 8259 demands.
 static void print_string(FILE *out, const char *s)
 {
     fputc('"', out);
@@ -24,7 +24,7 @@ static void print_member(FILE *out, const char *key, const char *value)
     print_string(out, value);
 }
 
-/// What separates element i of n from the next.
+/// Separator after element i of n.
 static const char *separator(int i, int n)
 {
     return i + 1 < n ? "," : "";
@@ -68,7 +68,7 @@ static void print_edges(FILE *out, const struct ct_graph_view *view)
     fprintf(out, "  ],\n");
 }
 
-/// Rows of a cutset or circuit matrix: its own edge, the edges of the sum and their signs.
+/// Print the rows of a cutset or circuit matrix: own edge, edges of the sum and their signs.
 static void print_rows(FILE *out, struct ct_arena *scratch, const char *key,
                        const char *own_key, const struct ct_incidence *S, const int *own)
 {

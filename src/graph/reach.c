@@ -4,8 +4,8 @@
 struct ct_ends ct_ends_list(struct ct_arena *a, const struct ct_graph *g, const bool *is_in)
 {
     struct ct_ends s = {CT_NEWN(a, int, g->nnode + 2), CT_NEWN(a, int, 2 * (size_t)g->nedge)};
-    // counted two places ahead and summed: first[v + 1] is where v's list starts; filling moves
-    // it to where the list ends, and that is the start of the list of v + 1
+    // counts are stored two indices ahead: after summation first[v + 1] is the start of the list of
+    // v; filling advances it to the end, which is the start of the list of v + 1
     for (int e = 0; e < g->nedge; e++)
         if (is_in[e]) {
             s.first[g->edge[e].tail + 2]++;
@@ -28,7 +28,8 @@ static int other_end(const struct ct_graph *g, int edge, int node)
 
 // ---- sweeps ------------------------------------------------------------------------------------
 
-// Edges to be looked at, each in a sweep: a binary heap, the earliest visit first.
+// Edges still to be visited, each in a certain sweep: a binary heap ordered by the time of the
+// visit.
 struct visits {
     struct visit {
         int sweep, edge;
@@ -68,7 +69,7 @@ int ct_graph_spread(struct ct_arena *a, const struct ct_graph *g, const bool *us
                     bool *is_known, int *order)
 {
     const struct ct_ends s = ct_ends_list(a, g, usable);
-    // an edge waits once at most for each of its ends
+    // an edge is in the heap at most once for each of its ends
     struct visits h = {.heap = CT_NEWN(a, struct visit, 2 * g->nedge + 1)};
     int n = 0;
     for (int e = 0; e < g->nedge; e++)
@@ -84,7 +85,7 @@ int ct_graph_spread(struct ct_arena *a, const struct ct_graph *g, const bool *us
         order[n++] = v.edge;
         for (int k = s.first[node]; k < s.first[node + 1]; k++)
             if (!is_known[other_end(g, s.at[k],
-                                    node)]) // seen later in this sweep, or in the next
+                                    node)]) // visited later in this sweep, or in the next one
                 push(&h, (struct visit){v.sweep + (s.at[k] < v.edge), s.at[k]});
     }
     return n;
@@ -92,7 +93,8 @@ int ct_graph_spread(struct ct_arena *a, const struct ct_graph *g, const bool *us
 
 // ---- distances ---------------------------------------------------------------------------------
 
-// Nodes whose distance fell wait in a ring until their edges are looked at again.
+// Label correcting with a queue (ring buffer): nodes whose distance decreased wait there until
+// their edges are relaxed again.
 void ct_graph_distances(struct ct_arena *a, const struct ct_graph *g, const bool *usable,
                         const int *length, int unreached, int *distance)
 {

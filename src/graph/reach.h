@@ -9,7 +9,7 @@ struct ct_ends {
     int *first, *at;
 };
 
-/// Of the edges with is_in only. Cost O(v + e).
+/// Adjacency lists of the edges with is_in. Cost O(v + e).
 struct ct_ends ct_ends_list(struct ct_arena *a, const struct ct_graph *g, const bool *is_in);
 
 /// Propagate `known` over edges: an edge with one known end makes its other end known. Edges are
@@ -18,9 +18,9 @@ struct ct_ends ct_ends_list(struct ct_arena *a, const struct ct_graph *g, const 
 /// g         in      connected or not
 /// usable    in      per edge
 /// is_known  in/out  per node
-/// order     out     room for g->nnode edges; each end that becomes known stands for one
+/// order     out     the edges used, one for each node that becomes known; room for g->nnode
 ///
-/// Returns the number of edges. Cost O(v + e log e): a heap replaces the sweeps, which cost O(v e).
+/// Returns their number. Cost O(v + e log e): a heap replaces the sweeps, which would cost O(v e).
 int ct_graph_spread(struct ct_arena *a, const struct ct_graph *g, const bool *usable,
                     bool *is_known, int *order);
 

@@ -1,8 +1,7 @@
-// Spanning trees: least weight (Kruskal 1956, key kruskal1956) and from given branches.
+// Spanning trees: of least weight (Kruskal 1956, key kruskal1956), and from given branches.
 //
-// A set of nnode - 1 branches that reaches every node is a spanning tree; walking it breadth
-// first from ground gives parents, signs and depths, so that `order` lists nodes near ground
-// first.
+// nnode - 1 branches that reach every node are a spanning tree. A breadth-first walk from ground
+// gives parents, signs and depths, so `order` lists nodes by increasing depth.
 #include "graph/graph.h"
 
 #include "graph/disjoint_sets.h"
@@ -26,7 +25,7 @@ static int compare_keys(const void *a, const void *b)
     return (x->e > y->e) - (x->e < y->e);
 }
 
-/// Edges that may be branches, best first, in key[] (room nedge). Returns their number.
+/// Write the edges that may be branches to key[] (room nedge), best first. Returns their number.
 static int sort_edges(const struct ct_graph *g, const int *weight, const int *rank,
                       struct key *key)
 {
@@ -38,13 +37,13 @@ static int sort_edges(const struct ct_graph *g, const int *weight, const int *ra
     return n;
 }
 
-/// component[v] = 0 for ground's piece, then 1, 2, ... by smallest node.
+/// component[v]: 0 for the component of ground, then 1, 2, ... by smallest node.
 static void number_pieces(struct ct_disjoint_sets *p, int *component)
 {
     int n = 0;
     for (int v = 0; v < p->nnode; v++) {
         const int first
-            = ct_disjoint_sets_find(p, v); // <= v, so numbered already unless it is v
+            = ct_disjoint_sets_find(p, v); // <= v, so already numbered unless it is v
         component[v] = first == v ? n++ : component[first];
     }
 }
@@ -65,7 +64,7 @@ bool ct_tree_kruskal(struct ct_arena *a, const struct ct_graph *g, const int *we
     return ct_tree_from_branches(a, g, is_branch, t);
 }
 
-/// Hang node v onto its parent by branch e.
+/// Attach node v to its parent by branch e.
 static void attach(const struct ct_graph *g, struct ct_tree *t, int v, int parent, int e)
 {
     t->parent[v] = parent;
@@ -74,8 +73,8 @@ static void attach(const struct ct_graph *g, struct ct_tree *t, int v, int paren
     t->depth[v] = t->depth[parent] + 1;
 }
 
-/// Breadth first from ground along the branches; t->order is the queue. Returns how many nodes
-/// it reaches.
+/// Breadth-first walk from ground along the branches; t->order is the queue. Returns the number of
+/// nodes reached.
 static int walk_from_ground(const struct ct_graph *g, struct ct_ends s, struct ct_tree *t)
 {
     for (int v = 0; v < g->nnode; v++)
@@ -137,7 +136,7 @@ bool ct_tree_from_branches(struct ct_arena *a, const struct ct_graph *g, const b
     return true;
 }
 
-/// Each node but the root hangs on a branch whose other end is its parent.
+/// Check that each node but the root has a branch to its parent.
 static const char *check_parents(const struct ct_graph *g, const struct ct_tree *t)
 {
     if (t->parent[0] != -1 || t->parent_edge[0] != -1 || t->depth[0] != 0)
@@ -160,8 +159,8 @@ static const char *check_parents(const struct ct_graph *g, const struct ct_tree 
     return NULL;
 }
 
-/// The depths already exclude circuits, so `order` is right if it lists each node once and no
-/// depth after a greater one.
+/// Check the order: each node once, and depths that never decrease. The depths already exclude
+/// circuits.
 static const char *check_order(const struct ct_tree *t)
 {
     for (int i = 0; i < t->nnode; i++) {

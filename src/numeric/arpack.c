@@ -1,13 +1,14 @@
 // See arpack.h.
 //
-// ARPACK's implicitly restarted Lanczos iteration, driven by reverse communication: it asks for
-// products with OP and with M. Its mode 3 is used with shift 0, so that it returns 1/theta.
+// ARPACK's implicitly restarted Lanczos iteration, driven by reverse communication: ARPACK returns
+// to the caller for each product with OP or M. Mode 3 with shift 0 is used, so that it returns
+// 1/theta.
 #include "numeric/arpack.h"
 
 #include <math.h>
 #include <string.h>
 
-// Fortran passes the length of each character argument behind the others.
+// Fortran passes the length of each character argument after all other arguments.
 extern void dsaupd_(int *ido, const char *bmat, const int *n, const char *which, const int *nev,
                     const double *tol, double *resid, const int *ncv, double *v, const int *ldv,
                     int *iparam, int *ipntr, double *workd, double *workl, const int *lworkl,
@@ -19,7 +20,7 @@ extern void dseupd_(const int *rvec, const char *howmny, const int *select, doub
                     int *ipntr, double *workd, double *workl, const int *lworkl, int *info,
                     size_t, size_t, size_t);
 
-// Limit: restarts, after which fewer vectors are returned. Definition: a status of dsaupd.
+// Limit: restarts, after which fewer vectors are returned. Definition: a status code of dsaupd.
 enum { MOST_RESTARTS = 300, NO_LARGER_BASIS = -9999 };
 // Vectors of the basis. Definition: max(2 nev + 1, 20), as in SciPy's eigsh.
 enum { FEWEST_VECTORS = 20 };
@@ -32,7 +33,8 @@ struct run {
     double *work, *image;    // n each
 };
 
-// x <- x - converged converged' M x
+// Project on the M-orthogonal complement of the converged vectors: x <- x - converged converged' M
+// x.
 static void deflate(const struct run *s, double *x)
 {
     for (int j = 0; j < s->nconverged; j++) {
@@ -46,7 +48,7 @@ static void deflate(const struct run *s, double *x)
     }
 }
 
-// y = OP x in the complement of what is converged
+// y = OP x, projected on the complement of the converged vectors.
 static void apply(const struct run *s, double *y, const double *x, const double *Mx)
 {
     s->op->apply(s->op->data, y, x, Mx);
@@ -58,7 +60,7 @@ static void serve_request(const struct run *s, int ido, const int *ipntr, double
     double *x = workd + ipntr[0] - 1, *y = workd + ipntr[1] - 1;
     if (ido == 2) {
         s->op->metric(s->op->data, y, x);
-    } else if (ido == 1) { // M x is there already
+    } else if (ido == 1) { // ARPACK supplies M x
         apply(s, y, x, workd + ipntr[2] - 1);
     } else {
         s->op->metric(s->op->data, s->work, x);
@@ -66,7 +68,7 @@ static void serve_request(const struct run *s, int ido, const int *ipntr, double
     }
 }
 
-// The only vector that there is room for: OP x is parallel to it.
+// Case of a one-dimensional complement: OP x is then an eigenvector for any x.
 static int find_single(const struct run *s, const double *start, double *theta, double *v)
 {
     const int n = s->n;
@@ -90,9 +92,9 @@ static int find_single(const struct run *s, const double *start, double *theta, 
     return 1;
 }
 
-// The iteration with a basis of ncv vectors. Returns how many eigenvalues have converged. Where the
-// range of OP has fewer dimensions than the basis, *dimension (out) is their number, else 0.
-// -1 where ARPACK fails otherwise.
+// Run the iteration with a basis of ncv vectors. Returns how many eigenvalues have converged, -1
+// where ARPACK fails. If the range of OP has fewer dimensions than the basis, *dimension (out) is
+// their number, else 0.
 static int iterate(struct ct_arena *a, const struct run *s, int nev, int ncv,
                    const double *start, int *dimension, double *theta, double *V)
 {
@@ -138,7 +140,7 @@ int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, i
     s.Mconverged = CT_NEWN(a, double, size *(size_t)nconverged + 1);
     for (int j = 0; j < nconverged; j++)
         op->metric(op->data, s.Mconverged + size * (size_t)j, converged + size * (size_t)j);
-    while (room > 1) { // ARPACK wants a basis of more vectors than it returns
+    while (room > 1) { // ARPACK demands a basis larger than the number of vectors it returns
         const int wanted = nev < room ? nev : room - 1;
         const int ncv = 2 * wanted + 1 > FEWEST_VECTORS ? 2 * wanted + 1 : FEWEST_VECTORS;
         int dimension;

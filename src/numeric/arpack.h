@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
-/// An operator OP that is symmetric in the metric M: x' M OP y = y' M OP x. M may be singular on
-/// what OP takes to 0.
+/// A linear operator OP that is symmetric in the inner product of M: x' M OP y = y' M OP x. M may
+/// be singular if OP maps its null space to 0.
 struct ct_operator {
     /// y (n, out) = OP x; Mx (n) = M x
     void (*apply)(void *data, double *y, const double *x, const double *Mx);
@@ -20,21 +20,21 @@ struct ct_operator {
 };
 
 /**
- * The eigenvalues of OP that are largest by size, to round-off.
+ * The eigenvalues of OP of largest magnitude, to round-off.
  *
  * op      in   n unknowns
- * nev     in   how many are wanted, nev > 0
- * room    in   no more independent vectors are in the range of OP and M-orthogonal to `converged`;
- *              room > 0
- * converged   in   n x nconverged, vectors found before, unit in M: the search is in their
- *              complement
- * start   in   n, where to begin
- * theta   out  nev
- * V       out  n x nev, V' M V = 1
+ * nev     in   number of eigenvalues wanted, nev > 0
+ * room    in   bound on the dimension of the range of OP in the M-orthogonal complement of
+ *              `converged`; room > 0
+ * converged   in   n x nconverged, eigenvectors found before, of unit M-norm: the search is in
+ *              their M-orthogonal complement
+ * start   in   n, start vector
+ * theta   out  nev, eigenvalues
+ * V       out  n x nev, eigenvectors, V' M V = 1
  * a       in   workspace
  *
- * Returns how many have converged, fewer than nev where there is no room for more; -1 where ARPACK
- * fails.
+ * Returns the number of converged eigenvalues, fewer than nev if the dimension is too small; -1 if
+ * ARPACK fails.
  */
 int ct_arpack_largest(struct ct_arena *a, const struct ct_operator *op, int n, int nev,
                       int room, const double *converged, int nconverged, const double *start,

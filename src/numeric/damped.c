@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-// ---- rows -----------------------------------------------------------------------------------------
+// ---- rows ---------------------------------------------------------------------------------------
 
 void ct_sparse_rows_clear(struct ct_sparse_rows *A)
 {
@@ -47,16 +47,16 @@ double ct_sparse_rows_largest_column(const struct ct_sparse_rows *A, size_t n, s
     return sqrt(ct_vector_largest(work, ncolumn));
 }
 
-// ---- the system -----------------------------------------------------------------------------------
+// ---- the system ---------------------------------------------------------------------------------
 
 struct ct_damped {
-    struct ct_arena *arena;            // what is for one pattern
+    struct ct_arena *arena;            // data that depend on the pattern only
     size_t n, ncolumn, nentry, *start; // the pattern: rows, columns, entries of A
     int *column;
-    const struct ct_sparse_rows *A; // of the last factors
+    const struct ct_sparse_rows *A; // matrix of the last factors
     double damping;
     bool is_empty, is_singular;
-    struct ct_sparse *K; // NULL: the library is not available
+    struct ct_sparse *K; // NULL: KLU is not available
     double *value;       // of K: n times damping, ncolumn times -damping, A, A'
     double *b, *x;       // (n + ncolumn)
 };
@@ -104,7 +104,7 @@ static void analyse(struct ct_damped *s, const struct ct_sparse_rows *A, size_t 
     s->K = ct_sparse_create(a, (int)(n + ncolumn), row, column, most, CT_SPARSE_ANY);
 }
 
-// By dense QR, of rows of A and of damping.
+// By dense QR of A with damping I below it.
 static void solve_dense(struct ct_damped *s, double *x, const double *b)
 {
     const struct ct_sparse_rows *A = s->A;
@@ -156,7 +156,7 @@ void ct_damped_solve(struct ct_damped *s, double *x, const double *b)
         solve_dense(s, x, b);
         return;
     }
-    memcpy(s->b, b, s->n * sizeof *b); // what follows stays zero
+    memcpy(s->b, b, s->n * sizeof *b); // the other entries stay zero
     if (!s->is_singular)
         ct_sparse_solve_extended(s->K, s->x, s->b);
     for (size_t k = 0; k < s->ncolumn; k++)

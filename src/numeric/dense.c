@@ -1,20 +1,21 @@
 // Wrappers of LAPACK; see dense.h.
 //
-// LAPACK is called with the smallest workspace it accepts. That selects its unblocked code, which
-// is the faster one for the sizes met here (some tens of rows), and lets the size of the workspace
-// be a formula instead of a query. Minimum-norm least squares is put together from the parts of
-// a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) rather than
-// taken from dgelsy, so that its rank is decided exactly as ct_qr_pivot decides it.
+// LAPACK is called with the smallest workspace that it accepts. This selects its unblocked code,
+// which is the faster one for the sizes that occur here (some tens of rows), and makes the size of
+// the workspace a formula in place of a query. Minimum-norm least squares is built from the parts
+// of a complete orthogonal decomposition (Golub and Van Loan (2013), 5.5, key golub2013) in place
+// of dgelsy, so that its rank is decided exactly as in ct_qr_pivot.
 //
-// Cholesky and LU of real matrices, and LU of small complex ones, are plain loops. They are called
-// at every stage of a step, small matrices cost less than a call of LAPACK, the result does not
-// depend on the BLAS or its threads, and a NaN is refused, which not every dpotrf does.
+// Cholesky and LU of real matrices, and LU of small complex matrices, are plain loops. They are
+// called at every stage of a step. For small matrices they cost less than a call of LAPACK, the
+// result does not depend on the BLAS or its threads, and NaN entries are rejected, which not every
+// dpotrf does.
 #include "numeric/dense.h"
 
 #include <math.h>
 #include <string.h>
 
-// Fortran passes the length of each character argument behind the others.
+// Fortran passes the length of each character argument after all other arguments.
 extern void zgetrf_(const int *m, const int *n, double _Complex *a, const int *lda, int *ipiv,
                     int *info);
 extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double _Complex *a,
@@ -112,12 +113,12 @@ void ct_matrix_multiply_transposed(double *restrict C, const double *restrict A,
         }
 }
 
-// Right-looking: column k is finished, then taken off the columns behind it.
+// Right-looking: column k is finished, then its contribution is subtracted from the later columns.
 bool ct_cholesky(double *A, int n, int lda)
 {
     for (int k = 0; k < n; k++) {
         double *col = A + (size_t)lda * k;
-        if (!(col[k] > 0) || isinf(col[k])) // so written, NaN is refused too
+        if (!(col[k] > 0) || isinf(col[k])) // negated comparison: rejects NaN too
             return false;
         col[k] = sqrt(col[k]);
         for (int i = k + 1; i < n; i++)
@@ -207,7 +208,7 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
         const int p = largest_below(col, k, n);
         pivot[k] = p;
         swap_rows(A, lda, n, k, p);
-        ok = ok && fabs(col[k]) > 0 && isfinite(col[k]); // so written, NaN is refused too
+        ok = ok && fabs(col[k]) > 0 && isfinite(col[k]); // negated comparison: rejects NaN too
         const double inverse = 1 / col[k];
         for (int i = k + 1; i < n; i++)
             col[i] *= inverse;
@@ -223,8 +224,8 @@ bool ct_lu(double *A, int *pivot, int n, int lda)
     return ok;
 }
 
-// Definition: systems of up to this many rows are solved by code with all loops unrolled, which
-// gives the same numbers; the cases of lu_solve.
+// Definition: systems of at most this many rows have code with all loops unrolled, which gives the
+// same numbers; the cases of lu_solve.
 enum { FEW = 4 };
 
 static inline void substitute(double *x, const double *LU, const int *pivot, const int n,
@@ -295,7 +296,7 @@ void ct_lu_solve(double *x, const double *LU, const int *pivot, int n, int lda, 
         (transpose ? lu_solve_transposed : lu_solve)(x, LU, pivot, n, lda);
 }
 
-// x - y z and x / y without the care for infinite parts that makes them calls.
+// x - y z and x / y without the treatment of infinities that turns them into library calls.
 static inline double _Complex less_product(double _Complex x, double _Complex y,
                                            double _Complex z)
 {
@@ -322,7 +323,7 @@ static inline void exchange(double _Complex *x, double _Complex *y)
     *y = z;
 }
 
-// Of few rows, as ct_lu; pivots are counted from 1 as LAPACK does.
+// LU of few rows, as in ct_lu; pivots are counted from 1 as in LAPACK.
 static bool lu_complex_few(double _Complex *A, int *pivot, int n, int lda)
 {
     bool ok = true;
@@ -406,7 +407,7 @@ void ct_lu_complex_solve(double _Complex *x, const double _Complex *LU, const in
     zgetrs_("N", &n, &nrhs, LU, &lda, pivot, x, &ldx, &info, 1);
 }
 
-// Diagonal entries of R above tol |R_00|; pivoting has made them descend.
+// Number of diagonal entries of R above tol |R_00|; pivoting has sorted them in descending order.
 static int count_rank(const double *R, int m, int n, int lda, double tol)
 {
     int rank = 0;
@@ -422,8 +423,8 @@ int ct_qr_pivot(double *A, int *column, double *tau, int m, int n, int lda, doub
     int info;
     const int lwork = (int)ct_qr_pivot_work(m, n);
     lda = max_int(1, lda);
-    memset(column, 0, (size_t)n * sizeof *column); // 0: this column is free to move
-    if (m == 0 || n == 0) {                        // LAPACK would leave the columns unnumbered
+    memset(column, 0, (size_t)n * sizeof *column); // 0: the column may be moved
+    if (m == 0 || n == 0) {                        // LAPACK would not number the columns
         for (int j = 0; j < n; j++)
             column[j] = j;
         return 0;
@@ -483,7 +484,8 @@ int ct_lstsq_of_rank(double *b, double *A, int m, int n, int lda, double tol, in
 
 size_t ct_lstsq_work(int m, int n)
 {
-    return (size_t)min_int(m, n) + (size_t)n + ct_qr_pivot_work(m, n); // tau, x, LAPACK's own
+    return (size_t)min_int(m, n) + (size_t)n
+         + ct_qr_pivot_work(m, n); // tau, x, workspace of LAPACK
 }
 
 bool ct_pencil_eigen(double *w, double *A, double *B, int n, int lda, double *work)
@@ -516,7 +518,8 @@ size_t ct_symmetric_eigenvalues_work(int n)
 
 int ct_symmetric_count_below(double *A, int n, int lda, double x)
 {
-    // Derived: element growth of at most 1e6 leaves round-off of n 1e-10 of the largest entry
+    // Derived: with growth of at most 1/1e-6 the round-off of the pivots is about n 1e-10 of the
+    // largest entry
     const double certain = 1e-6;
     double largest = 0;
     int count = 0;
@@ -558,5 +561,5 @@ bool ct_eigen(double *re, double *im, double *V, double *A, int n, int lda, doub
 
 size_t ct_eigen_work(int n)
 {
-    return 7 * (size_t)n + 1; // scale, condition numbers that are not asked for, LAPACK's own
+    return 7 * (size_t)n + 1; // scale, condition numbers (not requested), workspace of LAPACK
 }

@@ -1,13 +1,13 @@
-// Dense linear algebra on small matrices: thin, named wrappers of LAPACK.
+// src/numeric holds numerical kernels on arrays and sizes. It is the only user of LAPACK, KLU and
+// ARPACK: dense factorisations, least squares and eigenvalues (this file), explicit inverses of
+// small matrices (inverse.h), sparse LU (sparse.h; factors.h for many matrices of one pattern),
+// damped sparse least squares (damped.h), independent rows of a sparse matrix (sparse_pivots.h),
+// entries of a sparse inverse (selected_inverse.h), shift-invert Lanczos (arpack.h), SIMD vectors
+// (simd2.h, simd4.h).
 //
-// src/numeric holds kernels on arrays and sizes and is the only user of LAPACK, KLU and ARPACK:
-// dense factorisations, least squares and eigenvalues here, explicit inverses of small matrices
-// (inverse.h), sparse LU (sparse.h; factors.h for many matrices of one pattern), entries of a
-// sparse inverse (selected_inverse.h), shift-invert Lanczos (arpack.h), SIMD vectors (simd2.h,
-// simd4.h).
-//
-// Column-major with explicit leading dimension. Outputs first, then inputs, then sizes, then
-// workspace. Nothing allocates; each function says how much workspace it wants.
+// This file: dense linear algebra on small matrices, mostly thin wrappers of LAPACK. Matrices are
+// column-major with explicit leading dimension. Arguments are outputs first, then inputs, sizes,
+// workspace. Nothing allocates; each function states the workspace it needs.
 #ifndef CT_NUMERIC_DENSE_H
 #define CT_NUMERIC_DENSE_H
 
@@ -17,16 +17,16 @@
 #include <stdint.h>
 #include <string.h>
 
-#ifndef CMPLX // C11's, which some compilers lack
+#ifndef CMPLX // of C11; some compilers lack it
 #define CMPLX(re, im) ((double)(re) + I * (double)(im))
 #endif
 
-/// Largest |v_i| of n, 0 for n = 0. NaN entries are ignored.
+/// Largest |v_i| of n numbers, 0 for n = 0. NaN entries are ignored.
 double ct_vector_largest(const double *v, size_t n);
 /// Max norm of n numbers; NaN if an entry is NaN.
 static inline double ct_vector_max_norm(const double *v, size_t n)
 {
-    // without the sign bit, doubles compare as their bit patterns do, NaN last
+    // bit patterns of doubles without sign bit have the order of their values, with NaN last
     uint64_t most = 0;
     double size;
     for (size_t i = 0; i < n; i++) {
@@ -87,7 +87,7 @@ size_t ct_qr_pivot_work(int m, int n);
 /// Minimum-norm least-squares solution of A x = b by complete orthogonal decomposition:
 /// A (m x n) is destroyed, b (max(m, n), in and out). Returns the rank with relative tolerance tol.
 int ct_lstsq(double *b, double *A, int m, int n, int lda, double tol, int *iwork, double *work);
-/// The same where the rank is known to be `most` at most.
+/// As ct_lstsq, where the rank is known to be at most `most`.
 int ct_lstsq_of_rank(double *b, double *A, int m, int n, int lda, double tol, int most,
                      int *iwork, double *work);
 size_t ct_lstsq_work(int m, int n);

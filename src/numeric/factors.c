@@ -44,11 +44,12 @@ struct ct_pattern *ct_pattern_create(struct ct_arena *a, int n, const int *row,
 
 #if CT_HAS_KLU
 
-// Pivots are those of the diagonal, in the order of little fill, while element growth is at most the limit: matrices of
-// structures are next to positive definite, where any order of the diagonal is stable, and one pivot beside it can fill all
-// the rest. Where growth is larger they are sought by threshold partial pivoting, and these kept while growth is at most so
-// many times that of the search. Growth costs as many digits: three of sixteen are given up.
-// Default: digits against searches, which allocate. Test: factors.
+// Pivots are taken from the diagonal in the order of low fill while element growth stays below this
+// limit. Structural matrices are nearly positive definite; for these any order of the diagonal is
+// stable, and an off-diagonal pivot can destroy the sparsity. If growth is larger, pivots are
+// searched for by threshold partial pivoting, and kept while growth is at most this many times that
+// of the search. Growth loses as many digits: three of sixteen. Default: lost digits against
+// searches, which allocate. Test: factors.
 static const double growth_limit = 1e3;
 
 // ---- orders ------------------------------------------------------------------------------------
@@ -67,7 +68,7 @@ static void release_order(void *order)
 bool ct_pattern_minimum_degree(struct ct_pattern *graph, int *first)
 {
     klu_common common;
-    klu_defaults(&common); // the order of least degree among them
+    klu_defaults(&common); // minimum degree order among them
     common.btf = 0;
     klu_symbolic *s = klu_analyze(graph->n, graph->start, graph->row, &common);
     for (int i = 0; s && i < graph->n; i++)
@@ -86,7 +87,7 @@ bool ct_pattern_order(struct ct_arena *a, struct ct_pattern *p, double *value, i
     struct ct_pattern_order *o = CT_NEW(a, struct ct_pattern_order);
     ct_arena_on_destroy(a, release_order, o);
     klu_defaults(&o->common);
-    o->common.btf = 0;                  // equations of motion hang together
+    o->common.btf = 0;                  // the matrix is one block
     o->common.tol = CT_PIVOT_THRESHOLD; // rows are scaled by their largest entry
     o->symbolic = klu_analyze_given(p->n, p->start, p->row, first, first, &o->common);
     if (!o->symbolic)
@@ -113,16 +114,16 @@ struct ct_factors {
     klu_numeric *numeric;
     bool is_complex;
     long npivoting;
-    double growth; // one over it, with the pivots when they were new
+    double growth; // reciprocal growth with the pivots when they were chosen
     // for entries of the inverse
     long extracted; // value of npivoting when they were last extracted
     struct ct_arena *arena;
     struct ct_lu_factors t;
     struct ct_selected_inverse *selected;
-    double *scale;     // of rows, by pivot  (n)
-    int *row, *column; // of pivots  (n)
-    int *place;        // of what belongs to each entry  (nz)
-    int *scale_of;     // its pivot  (nz)
+    double *scale;     // by pivot: scale of the row (n)
+    int *row, *column; // by pivot (n)
+    int *place;        // by entry: index of its entry of the inverse (nz)
+    int *scale_of;     // by entry: index of its pivot (nz)
 };
 
 static void release_numeric(void *factors)
@@ -148,7 +149,7 @@ struct ct_factors *ct_factors_create(struct ct_arena *a, const struct ct_pattern
     return f;
 }
 
-// Reciprocal pivot growth; 0 where it cannot be found.
+// Reciprocal pivot growth; 0 where it cannot be computed.
 static double inverse_growth(struct ct_factors *f, double *value)
 {
     const struct ct_pattern *p = f->p;
@@ -170,8 +171,8 @@ static bool refactor(struct ct_factors *f, double *value)
     return ok && c->status == KLU_OK && inverse_growth(f, value) * growth_limit >= f->growth;
 }
 
-// The same with new pivots: those of the diagonal as long as they are at least the part tol of the largest entry in their
-// column.
+// Factor with new pivots: a diagonal entry is the pivot if it is at least tol times the largest
+// entry in its column.
 static bool factor(struct ct_factors *f, double *value, double tol)
 {
     const struct ct_pattern *p = f->p;
@@ -202,7 +203,7 @@ void ct_factors_solve(struct ct_factors *f, double *x)
         klu_solve(f->symbolic, f->numeric, f->p->n, 1, x, &f->common);
 }
 
-// Copies of L and U outside of KLU, for the entries of the inverse.
+// Copy L and U from KLU, for the entries of the inverse.
 static void prepare_inverse(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;
@@ -229,8 +230,8 @@ static void extract(struct ct_factors *f)
                 NULL, NULL, NULL, f->row, f->column, f->scale, NULL, &f->common);
 }
 
-// Entry (row, column) of the matrix belongs to (pivot of its column, pivot of its row) of the
-// factors' inverse.
+// Entry (row, column) of the matrix corresponds to entry (pivot of its column, pivot of its row) of
+// the factors' inverse.
 static void map_inverse_entries(struct ct_factors *f)
 {
     const struct ct_pattern *p = f->p;

@@ -30,7 +30,7 @@ static inline void exchange_rows(double *A, int i, int j, int n, int rows)
         exchange(A + i + rows * c, A + j + rows * c);
 }
 
-// The columns of A^-1 P, in the order of those of A^-1.
+// Undo the pivoting: exchange the columns of A^-1 P to those of A^-1.
 static inline void restore_columns(double *A, const int *pivot, int n, int rows)
 {
     for (int k = n; k-- > 0;)
@@ -62,7 +62,7 @@ static inline bool invert(double *restrict A, int *pivot, int n, const int rows)
         pivot[k] = p;
         exchange_rows(A, k, p, n, rows);
         ok = ok && fabs(pivot_column[k]) > 0
-          && isfinite(pivot_column[k]); // so written, NaN is refused too
+          && isfinite(pivot_column[k]); // negated comparison: rejects NaN too
         const double inverse = 1 / pivot_column[k];
         swap_unit_column(column, pivot_column, k, rows, 1);
         for (int j = 0; j < n; j++) {

@@ -1,8 +1,8 @@
 // Explicit inverses of small matrices, for many right-hand sides.
 //
-// A product with the inverse has no chain of dependent operations, as substitution with LU factors
-// has, and uses SIMD vectors. Columns have leading dimension ct_inverse_rows(n), n rounded up to a
-// multiple of four, and are padded by zeros.
+// Substitution with LU factors is a chain of dependent operations; a product with the inverse is
+// not, and it uses SIMD vectors. Columns have leading dimension ct_inverse_rows(n), which is n
+// rounded up to a multiple of four, and are padded by zeros.
 #ifndef CT_NUMERIC_INVERSE_H
 #define CT_NUMERIC_INVERSE_H
 
@@ -10,8 +10,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// Derived: three vectors of four. There factors and eight solutions take half the time of LU
-/// (tests/bench/kernels); larger matrices are mostly sparse.
+/// Largest matrix that is inverted: three vectors of four. Derived: measured at this size,
+/// inversion and eight solutions take half the time of LU (tests/bench/kernels); larger matrices
+/// are mostly sparse.
 enum { CT_MOST_INVERTED = 12 };
 
 static inline int ct_inverse_rows(int n)
@@ -27,9 +28,9 @@ bool ct_inverse(double *A, int *pivot, int n);
 void ct_inverse_apply(double *restrict x, const double *restrict inverse,
                       const double *restrict b, int n);
 
-/// The same of complex matrices, real parts (rows x n) before imaginary ones.
+/// As ct_inverse for complex matrices: real parts (rows x n), then imaginary parts.
 bool ct_inverse_complex(double *A, int *pivot, int n);
-/// x (rows real, rows imaginary parts, out), b (n, n).
+/// x (out: rows real parts, rows imaginary parts), b (n real parts, n imaginary parts).
 void ct_inverse_apply_complex(double *restrict x, const double *restrict inverse,
                               const double *restrict b, int n);
 

@@ -9,13 +9,14 @@
 
 struct ct_selected_inverse {
     const struct ct_lu_factors *t;
-    int *row_start, *in_row; // places of U's entries behind the diagonal, row by row
-    int *column_of;          // of an entry of U
-    int *factor;             // places of Z(l, k) for each i from the last on, each l and each k
-    double *Z;               // those of U, then those of L
+    int *row_start, *in_row; // U without its diagonal, by rows: row starts, indices of entries
+    int *column_of;          // by entry of U
+    // indices of Z(l, k), in the order of the recursion: i descending, each l, each k
+    int *factor;
+    double *Z; // entries on the pattern of U, then of L
 };
 
-// The place of (row, column) in sorted columns.
+// Index of entry (row, column) in sorted columns.
 static int find_place(const int *start, const int *rows, int row, int column)
 {
     int low = start[column], high = start[column + 1] - 1;

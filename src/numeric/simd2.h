@@ -4,7 +4,7 @@
 #ifndef CT_NUMERIC_SIMD2_H
 #define CT_NUMERIC_SIMD2_H
 
-enum { CT_SIMD2 = 2 }; // Definition: of the type
+enum { CT_SIMD2 = 2 }; // Definition: doubles in the type
 
 #if defined(__GNUC__)
 

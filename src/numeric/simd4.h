@@ -5,7 +5,7 @@
 #ifndef CT_NUMERIC_SIMD4_H
 #define CT_NUMERIC_SIMD4_H
 
-enum { CT_SIMD4 = 4 }; // Definition: of the type
+enum { CT_SIMD4 = 4 }; // Definition: doubles in the type
 
 #if defined(__GNUC__)
 
@@ -32,7 +32,7 @@ CT_SIMD4_INLINE void ct_simd4_add_times(ct_simd4 *sum, double c, const double *x
     *sum += c * *(const ct_simd4 *)x;
 }
 
-/// sum += x y, each with each
+/// sum += x y, element by element.
 CT_SIMD4_INLINE void ct_simd4_add_product(ct_simd4 *sum, const double *x, const double *y)
 {
     *sum += *(const ct_simd4 *)x * *(const ct_simd4 *)y;
@@ -73,7 +73,7 @@ CT_SIMD4_INLINE void ct_simd4_add_times(ct_simd4 *sum, double c, const double *x
         sum->part[i] += c * x[i];
 }
 
-/// sum += x y, each with each
+/// sum += x y, element by element.
 CT_SIMD4_INLINE void ct_simd4_add_product(ct_simd4 *sum, const double *x, const double *y)
 {
     for (int i = 0; i < CT_SIMD4; i++)

@@ -10,10 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// CT_PIVOT_THRESHOLD in an order that was chosen for the values too. Definition: KLU's own default.
+// Pivot threshold for an order that was chosen for the values too: prefer the given order more
+// strongly than CT_PIVOT_THRESHOLD. Definition: KLU's own default.
 static const double order_preference = 1e-3;
-// Backward error above which a solution is refined: some tens of units of round-off.
-// Default: a second solution against some digits. Test: factors.
+// Backward error above which a solution is refined: some tens of units of round-off. Default: the
+// cost of a second solution against some digits. Test: factors.
 static const double refinement_limit = 1e-14;
 
 struct ct_sparse {
@@ -21,10 +22,10 @@ struct ct_sparse {
     int *start, *row; // compressed columns
     double *value;
     size_t nentry;
-    int *place; // of each entry among the values
+    int *place; // by entry: index among the values
     double *r, *scale;
     long double *sum;
-    double operations; // of the last pivots
+    double operations; // of the last factorisation
     klu_common common;
     klu_symbolic *symbolic;
     klu_numeric *numeric;
@@ -81,7 +82,7 @@ static struct ct_sparse *create(struct ct_arena *a, int n, const int *row, const
     s->scale = CT_NEWN(a, double, n);
     klu_defaults(&s->common);
     s->common.tol = CT_PIVOT_THRESHOLD;
-    s->common.scale = 0; // pivots in the units of the rows: they are compared with each other
+    s->common.scale = 0; // no scaling of rows, so that pivots can be compared with each other
     ct_arena_on_destroy(a, release, s);
     return s;
 }
@@ -104,7 +105,7 @@ struct ct_sparse *ct_sparse_create_along(struct ct_arena *a, int n, const int *r
     if (n == 0)
         return NULL;
     struct ct_sparse *s = create(a, n, row, column, nentry);
-    s->common.btf = 0; // the order is for the whole
+    s->common.btf = 0; // the order is for the whole matrix
     s->common.tol = order_preference;
     s->symbolic = klu_analyze_given(n, s->start, s->row, first_rows, first_columns, &s->common);
     return s->symbolic ? s : NULL;
@@ -190,7 +191,7 @@ void ct_sparse_solve_extended(struct ct_sparse *s, double *x, const double *b)
 {
     memcpy(x, b, (size_t)s->n * sizeof *x);
     klu_solve(s->symbolic, s->numeric, s->n, 1, x, &s->common);
-    for (double last = INFINITY;;) { // each correction is less than half of the last
+    for (double last = INFINITY;;) { // until a correction is more than half of the last
         residual_extended(s, x, b);
         klu_solve(s->symbolic, s->numeric, s->n, 1, s->r, &s->common);
         const double size = ct_vector_largest(s->r, (size_t)s->n);

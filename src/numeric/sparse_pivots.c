@@ -3,13 +3,14 @@
 
 #include <math.h>
 
-// Of the largest entry left in the row of a pivot. Derived: entries grow by at most 1 + 1/0.5 a step.
+// Pivots relative to the largest remaining entry in the row. Derived: entries grow by at most 1 +
+// 1/0.5 = 3 per step.
 static const double threshold = 0.5;
-// Rows that are looked at for a pivot. Definition: of the method (Zlatev: three or four).
+// Number of rows searched for a pivot. Definition: of the method (Zlatev: three or four).
 enum { MOST_ROWS = 4 };
 
 struct line {
-    int *at;       // columns of a row, rows of a column
+    int *at;       // columns of a row, or rows of a column
     double *value; // of a row
     size_t n, cap, value_cap;
     bool is_done;
@@ -18,21 +19,22 @@ struct line {
 struct elimination {
     struct ct_arena *a;
     size_t m, n;
-    struct line *row, *column; // rows that are done stay in the lists of columns
-    size_t *count;             // rows left in each column
-    int *head, *next, *before; // rows left by their number of entries: lists, -1 at the ends
-    int *place;                // by column: 1 + its place in the row at hand
+    struct line *row, *column; // eliminated rows stay in the lists of columns
+    size_t *count;             // by column: number of rows left
+    int *head, *next,
+        *before; // doubly linked lists of the rows left, by number of entries; -1 at the ends
+    int *place;  // by column: 1 + its index in the current row
     double least;
     bool is_clear;
 };
 
 struct pivot {
     int row;
-    size_t k; // of the row's entries
+    size_t k; // index among the row's entries
     double cost, size;
 };
 
-// ---- rows by length -------------------------------------------------------------------------------
+// ---- rows by length -----------------------------------------------------------------------------
 
 static void unlink_row(struct elimination *s, int i)
 {
@@ -54,7 +56,7 @@ static void link_row(struct elimination *s, int i)
     *head = i;
 }
 
-// ---- the matrix -----------------------------------------------------------------------------------
+// ---- the matrix ---------------------------------------------------------------------------------
 
 static void append(struct elimination *s, int i, int j, double value)
 {
@@ -81,12 +83,12 @@ static struct elimination begin(struct ct_arena *a, const struct ct_sparse_entri
         append(&s, A->row[k], A->column[k], A->value[k]);
     for (size_t k = 0; k <= A->n; k++)
         s.head[k] = -1;
-    for (size_t i = A->m; i-- > 0;) // so that the first row comes first
+    for (size_t i = A->m; i-- > 0;) // descending, so that the first row is at the head
         link_row(&s, (int)i);
     return s;
 }
 
-// Row i takes part no more.
+// Remove row i from the lists.
 static void finish_row(struct elimination *s, int i)
 {
     const struct line *row = &s->row[i];
@@ -96,7 +98,8 @@ static void finish_row(struct elimination *s, int i)
         s->count[row->at[k]]--;
 }
 
-// Row i less what makes its entry in the column of the pivot zero; s->place: of the row of the pivot.
+// Subtract a multiple of the pivot row from row i, so that its entry in the pivot column vanishes.
+// s->place: of the pivot row.
 static void eliminate(struct elimination *s, const struct pivot *p, int i)
 {
     struct line *row = &s->row[i];
@@ -113,7 +116,7 @@ static void eliminate(struct elimination *s, const struct pivot *p, int i)
         int *place = &s->place[row->at[k]];
         if (*place > 0) {
             row->value[k] -= f * from->value[*place - 1];
-            *place = -*place; // it is not new
+            *place = -*place; // not a fill entry
         }
     }
     for (k = 0; k < from->n; k++) {
@@ -139,7 +142,7 @@ static void eliminate_all(struct elimination *s, const struct pivot *p)
         s->place[row->at[k]] = 0;
 }
 
-// ---- choice ---------------------------------------------------------------------------------------
+// ---- choice -------------------------------------------------------------------------------------
 
 static double largest_of(const struct line *row)
 {
@@ -149,7 +152,7 @@ static double largest_of(const struct line *row)
     return most;
 }
 
-// The better one of p and the entries of row i, whose largest is `most`.
+// Update the best pivot p by the entries of row i, whose largest is `most`.
 static void look_at_row(const struct elimination *s, int i, double most, struct pivot *p)
 {
     const struct line *row = &s->row[i];
@@ -162,7 +165,7 @@ static void look_at_row(const struct elimination *s, int i, double most, struct 
     }
 }
 
-// False: no row has anything left.
+// Choose a pivot. False if no row has entries left.
 static bool choose(struct elimination *s, struct pivot *p)
 {
     const double near = 100; // Limit: rows nearer to the least size are left to the dense QR
@@ -182,7 +185,7 @@ static bool choose(struct elimination *s, struct pivot *p)
     return p->row >= 0;
 }
 
-// Behind the pivots.
+// Append the rows (columns) that are no pivots.
 static void list_rest(const bool *is_pivot, size_t n, size_t rank, int *list)
 {
     for (size_t i = 0; i < n; i++)
