@@ -259,7 +259,7 @@ struct ct_equations {
     ct_ex continuity;
     struct ct_residual *residual; // NULL if not asked for
     bool is_planar;
-    // bare_body, bare_joint: beam whose first section has no inertia, and the joint at that
+    // bare_beam, bare_joint: beam whose first section has no inertia, and the joint at that
     // section; 0: none
     int bare_beam, bare_joint;
     const bool *is_small; // by speed: M and Q are of first order in these; NULL: exact
