@@ -10,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- equations of one pair of trees
-// ------------------------------------------------------------------
+// ---- equations of one pair of trees ------------------------------------------------------------
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
@@ -97,8 +96,7 @@ bool ct_build_derive(struct ct_build *b, bool with_dynamics)
     return b->ctx->nerror == before;
 }
 
-// ---- the choice of trees
-// -----------------------------------------------------------------------------
+// ---- the choice of trees -----------------------------------------------------------------------
 
 struct trials {
     struct ct_ctx *ctx;

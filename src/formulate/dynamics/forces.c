@@ -15,8 +15,7 @@
 
 #include <string.h>
 
-// ---- loads
-// ----------------------------------------------------------------------------------------
+// ---- loads -------------------------------------------------------------------------------------
 
 void ct_load_add(struct ct_build *b, const struct ct_load *load)
 {
@@ -44,8 +43,7 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
     return true;
 }
 
-// ---- the sweep
-// --------------------------------------------------------------------------------------
+// ---- the sweep ---------------------------------------------------------------------------------
 
 struct work {
     struct ct_build *b;
@@ -207,8 +205,7 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     return s;
 }
 
-// ---- rows
-// -----------------------------------------------------------------------------------------
+// ---- rows --------------------------------------------------------------------------------------
 
 // Adds s . torque or p . force for the motion of a speed or a driver.
 static ct_ex add_rotation_axis(struct ct_build *b, const struct ct_sweep *s, ct_ex sum,
@@ -329,8 +326,7 @@ ct_ex ct_sweep_residual(struct ct_build *b, int speed)
     return ct_ex_sub(b->x, ct_sweep_row(b, speed), b->loads->effort[speed]);
 }
 
-// ---- efforts of joints
-// ------------------------------------------------------------------------------
+// ---- efforts of joints -------------------------------------------------------------------------
 
 static ct_ex element(const struct ct_value *v, int k)
 {

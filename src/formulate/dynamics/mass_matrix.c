@@ -22,8 +22,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- torques of a column
-// ----------------------------------------------------------------------------
+// ---- torques of a column -----------------------------------------------------------------------
 
 // The current column: rotation of `cluster` about `axis`.
 struct column {
@@ -117,8 +116,7 @@ static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
     return ct_ex33_apply(b->x, &c->inertia, c->axis);
 }
 
-// ---- the matrix
-// -------------------------------------------------------------------------------------
+// ---- the matrix --------------------------------------------------------------------------------
 
 static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np, ct_ex m)
 {

@@ -198,8 +198,7 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
         add_state(b, b->model->state[i].name);
 }
 
-// ---- rates
-// ----------------------------------------------------------------------------------------
+// ---- rates -------------------------------------------------------------------------------------
 
 static bool is_moving(const struct ct_exs *x, ct_ex e, unsigned moving)
 {
@@ -239,8 +238,7 @@ ct_ex3 ct_build_rate3(struct ct_build *b, ct_ex3 e)
     return e;
 }
 
-// ---- clusters
-// -------------------------------------------------------------------------------------
+// ---- clusters ----------------------------------------------------------------------------------
 
 static int add_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
                        int nspin)
@@ -630,8 +628,7 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
     return ct_ex3_neg(x, ct_ex3_scale(x, ct_ex_mul(x, omega, omega), ct_build_in_plane(b, v)));
 }
 
-// ---- axes of nodes
-// --------------------------------------------------------------------------------
+// ---- axes of nodes -----------------------------------------------------------------------------
 
 ct_ex33 ct_node_rotation(struct ct_build *b, int node)
 {

@@ -18,8 +18,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- the matrix of a body
-// --------------------------------------------------------------------------------
+// ---- the matrix of a body ----------------------------------------------------------------------
 
 ct_ex ct_articulated_entry(const struct ct_articulated_body *k, int i, int j)
 {
@@ -65,8 +64,7 @@ ct_ex ct_articulated_project(struct ct_articulated *w, const struct ct_articulat
     return D;
 }
 
-// ---- leaves to ground
-// -----------------------------------------------------------------------------------
+// ---- leaves to ground --------------------------------------------------------------------------
 
 // Adds the inertia of the member, n = J al + h x a, f = m a - h x al, its velocity-dependent forces
 // and its loads.
@@ -200,8 +198,7 @@ static void hand_inwards(struct ct_articulated *w, int i)
     p->f = ct_ex3_add(x, p->f, k.f);
 }
 
-// ---- ground to leaves
-// -----------------------------------------------------------------------------------
+// ---- ground to leaves --------------------------------------------------------------------------
 
 static void accelerate(struct ct_articulated *w, int i, ct_ex *out)
 {

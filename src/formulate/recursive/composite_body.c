@@ -1,6 +1,7 @@
 // Composite bodies; see composite_body.h.
 //
-//     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  n = J al + w x J w + h x a,  A = U + al~
+//     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  A = U + al~,
+//                            n = J al + w x J w + h x a
 //         leaves -> ground   f, n minus loads, rotated and shifted;   Q_k = effort - s_k . (n, f)
 //     M   leaves -> ground   mass, first moment, inertia of everything outboard as one rigid body
 //         column of s_k      (n, f) = I s_k, moved inwards;        M_kl = s_l . (n, f)
@@ -28,8 +29,7 @@ static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wr
                      ct_ex3_dot(b->x, s->translation, w->f));
 }
 
-// ---- forces
-// ---------------------------------------------------------------------------------------------
+// ---- forces ------------------------------------------------------------------------------------
 
 struct forward { // by member, in its axes
     enum ct_level level;
@@ -126,8 +126,7 @@ void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const
         r[k] = ct_ex_sub(b->x, r[k], effort[k]);
 }
 
-// ---- mass matrix
-// ----------------------------------------------------------------------------------------
+// ---- mass matrix -------------------------------------------------------------------------------
 
 struct composite {
     ct_ex mass;

@@ -9,8 +9,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- components
-// -------------------------------------------------------------------------------------
+// ---- components --------------------------------------------------------------------------------
 
 ct_ex3 ct_member_express(struct ct_build *b, int cluster, ct_ex3 local)
 {
@@ -33,8 +32,7 @@ ct_ex3 ct_member_express_ground(struct ct_build *b, int cluster, ct_ex3 v)
     return out;
 }
 
-// ---- adding members
-// -----------------------------------------------------------------------------------
+// ---- adding members ----------------------------------------------------------------------------
 
 int ct_member_add(struct ct_member_build *w, int parent, int cluster, ct_ex3 r)
 {
@@ -154,8 +152,7 @@ static void add_translations(struct ct_member_build *w, int member,
     }
 }
 
-// ---- joints
-// -------------------------------------------------------------------------------------------
+// ---- joints ------------------------------------------------------------------------------------
 
 static bool is_moving(const struct ct_build *b, ct_ex3 v)
 {
@@ -267,8 +264,7 @@ static bool pass(struct ct_member_build *w, const struct ct_passage *p, int *mem
     return true;
 }
 
-// ---- nodes
-// --------------------------------------------------------------------------------------------
+// ---- nodes -------------------------------------------------------------------------------------
 
 // Finds the clusters between the axes of a node and those of its parent (of ground in a plane).
 // False if the parent of its cluster is another one.
@@ -367,8 +363,7 @@ static bool own_speeds(struct ct_member_build *w)
     return true;
 }
 
-// ---- axes of the members
-// ----------------------------------------------------------------------------
+// ---- axes of the members -----------------------------------------------------------------------
 
 static void find_axes(struct ct_member_build *w, struct ct_member *m)
 {
