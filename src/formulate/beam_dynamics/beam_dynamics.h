@@ -4,7 +4,8 @@
 //
 //     beam_dynamics.c                             contributions to the sweep and the mass matrix
 //     base_motion.c                               motion of the base
-//     inertia_exact.c, _legendre.c, _points.c     three methods for integrals of inertia over an element
+//     inertia_exact.c, _legendre.c, _points.c  three methods for integrals of inertia over an
+//     element
 //     inertia_modal.c                             mass matrix for shapes of the whole beam
 #ifndef CT_FORMULATE_BEAM_DYNAMICS_BEAM_DYNAMICS_H
 #define CT_FORMULATE_BEAM_DYNAMICS_BEAM_DYNAMICS_H

@@ -6,7 +6,7 @@
 //                      Rz(slope.z/2) Ry(slope.y) Rz(slope.z/2) Rx(slope.x); small ones are twist,
 //                      -dw/dx,
 //                      dv/dx                                                                  [rad]
-//   chord_deflection   of the point from its undeformed position, in axes whose x runs from the start
+//   chord_deflection   deflection in axes whose x runs from the start
 //                      to the end of the beam                                                    [m]
 //   strain             of the axis
 //
