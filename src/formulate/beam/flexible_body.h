@@ -2,20 +2,21 @@
 // beams: elastic coordinates, shape functions, kinematics of sections, stiffness, modal reduction
 // and static condensation.  (formulation 1.2, 5.3)
 //
-//   elastic coordinate k   an unknown of the model: a nodal displacement or rotation, or a modal coordinate
-//   freedom f              8 per node (u v w rx ry rz, and rm um of the element before it): sum over k of part coef *
-//                          coordinate; fixed ones are zero
+//   elastic coordinate k   unknown of the model: nodal displacement, rotation, or modal coordinate
+//   freedom f              8 per node (u v w rx ry rz, and rm um of the element before it):
+//                          sum over k of coef * coordinate; fixed ones are zero
 //   dof j                  14 of an element, each a freedom with a sign (the slope dw/dx is -ry):
-//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same | 10
-//                          axial in the middle
-//                          | 11-13 twist
+//                          0 1 axial | 2-5 along y: v, dv/dx, v, dv/dx | 6-9 along z the same
+//                          | 10 axial in the middle | 11-13 twist
 //
 // Axes are those of the beam; `base` is the node of its body frame, at an anchor without offset.
 //
 // Axial displacement of the axis, c the foreshortening up to the element (formulation 1.7):
 //   LINEAR   (1 - xi) u_i + xi u_i+1; to this and to the others 4 xi (1 - xi) um is added
-//   LOCAL    the same of the axial places U = s + c of the nodes, + (a' D a + b' D b)/2,  D = xi E(1) - E(xi)
-//   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,  c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
+//   LOCAL    the same of the axial node positions U = s + c, + (a' D a + b' D b)/2,
+//            D = xi E(1) - E(xi)
+//   CHAIN    the same of the stretch s, + c_i - (a' E a + b' E b)/2,
+//            c_i+1 = c_i - (a' E(1) a + b' E(1) b)/2
 // LOCAL and CHAIN are one model in two sets of coordinates; in LOCAL ones an element depends on its
 // own nodes only.
 #ifndef CT_FORMULATE_BEAM_FLEXIBLE_BODY_H

@@ -2,12 +2,14 @@
 // at points. Integrals over the element are sums of a few products then: int P_j P_k dx = h/(2k +
 // 1) if j = k, else 0.
 //
-//     v  = v_0 + v_1 P_1 + v_2 (h/12) P_2 + v_3 (h/20) P_3           dv/dx = s_0/h + s_1 P_1/2 + s_2 P_2/2
+//     v  = v_0 + v_1 P_1 + v_2 (h/12) P_2 + v_3 (h/20) P_3
+//     dv/dx = s_0/h + s_1 P_1/2 + s_2 P_2/2
 //     u  = u_0 + u_1 P_1 + u_2 (h/12) P_2 + u_3 (h/20) P_3 + u_4 (3h/280) P_4 + u_5 (h/140) P_5
 //
 // with, for four dofs (v1, alpha1, v2, alpha2) of a cubic element,
 //
-//     s_0 = v2 - v1                   s_1 = v_2 = alpha2 - alpha1        s_2 = v_3 = alpha1 + alpha2 - 2 s_0/h
+//     s_0 = v2 - v1                   s_1 = v_2 = alpha2 - alpha1
+//     s_2 = v_3 = alpha1 + alpha2 - 2 s_0/h
 //     v_0 = (v1 + v2)/2 - h s_1/12    v_1 = s_0/2 - h s_2/20
 //
 // (a linear one: s_1 = s_2 = 0). By the products D_ij = s_i s_j, D_ii = s_i^2/2, summed over both

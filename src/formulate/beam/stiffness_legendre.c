@@ -1,7 +1,8 @@
 // Stiffness of cubic elements with constant sections, by the coefficients of legendre.h; see
 // stiffness.h. Equal to the element matrices of stiffness.c up to round-off:
 //
-//     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1     stretch u_2 - u_1 + S(1)
+//     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1
+//     stretch u_2 - u_1 + S(1)
 #include "formulate/beam/stiffness.h"
 #include "formulate/beam/legendre.h"
 

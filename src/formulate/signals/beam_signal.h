@@ -7,7 +7,7 @@
 //                      -dw/dx,
 //                      dv/dx                                                                  [rad]
 //   chord_deflection   deflection in axes whose x runs from the start
-//                      to the end of the beam                                                    [m]
+//                      to the end of the beam                                              [m]
 //   strain             of the axis
 //
 // Force and moment of a section: outputs/beam_load.h.
