@@ -58,11 +58,11 @@ struct ct_blocks {
 struct ct_blocks ct_blocks_create(struct ct_arena *a, struct ct_exs *x, size_t rank, size_t nu);
 /// Factors the matrix. False if it is singular at the probe or x grows beyond most_nodes.
 bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes);
-/// x (nu, out in the dependent places) = J_d^-1 r; r (rank) is overwritten.
+/// x (nu, out, entries of dependent columns) = J_d^-1 r; r (rank) is overwritten.
 void ct_blocks_solve(struct ct_blocks *s, ct_ex *r, ct_ex *x);
 /// lam (rank, out) = J_d^-T w (nu).
 void ct_blocks_solve_transposed(struct ct_blocks *s, const ct_ex *w, ct_ex *lam);
-/// x (nu, out in the dependent places) = -J_d^-1 j, j a column that is not eliminated.
+/// x (nu, out, entries of dependent columns) = -J_d^-1 j, j a column that is not eliminated.
 void ct_blocks_solve_column(struct ct_blocks *s, int column, ct_ex *x);
 /// Does v depend on more than parameters?
 bool ct_blocks_moves(const struct ct_blocks *s, ct_ex v);

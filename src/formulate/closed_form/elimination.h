@@ -51,7 +51,7 @@ struct ct_closed {
     ct_ex *a, *lam;  // u' (nu), multipliers (rank)
     ct_ex *residual; // M u' - Q - J' lam, J u' + gam  (nu + rank)
     ct_ex *better_a, *better_lam, *better_residual; // after one step of refinement
-    ct_ex *dq, *du, *shift; // d, e, f of (6.3b) (nu, zero in the independent places)
+    ct_ex *dq, *du, *shift; // d, e, f of (6.3b) (nu, zero for independent speeds)
     size_t nshift;          // nu; 0: f is not derived, because there are redundant rows
 };
 
