@@ -1,11 +1,11 @@
 // The mass matrix by cutset sums over composite bodies.
 //
 // Rotation r about the axis s moves every point whose path contains vectors that rotate with its
-// cluster. With the lever arm g (sum of these vectors on the path to a point) the point moves by s
-// x g, and
+// cluster. With the lever arm g (sum of these vectors on the path to a point) the point moves by
+// s x g, and
 //
-//   M_r'r = s' . [ sum over augmented bodies that rotate with r' of  b x (s x g) + sum over links d
-//   x (s x h)
+//   M_r'r = s' . [ sum over augmented bodies that rotate with r' of  b x (s x g)
+//                  + sum over links  d x (s x h)
 //                  + (augmented inertia of what rotates with both) s ]
 //
 // where b is the first moment of an augmented body, d a link and h the sum of the outboard first
@@ -29,7 +29,7 @@ struct column {
     int cluster;
     ct_ex3 axis;
     ct_ex33 inertia;
-    bool is_local;   // the inertia contains no outboard cluster and the axis is fixed:
+    bool is_local;   // the inertia contains no outboard cluster, and the axis is fixed in it
     ct_ex3 momentum; // inertia * axis in axes of the cluster, constant
     ct_ex3 *torque;  // by anchor: torque of everything outboard
     int *has_torque; // by anchor: equal to `number` if torque is valid for this column
