@@ -105,8 +105,8 @@ static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_
 // (5.6b) at the two Gauss points z = +-1/sqrt(3), where the curvatures are exact.
 // With the slopes g of v and w of w, p = m + t z/2 and D = E (Iz - Iy)/h if that is positive,
 //
-//     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12) + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3
-//     g_2^2)
+//     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12)
+//     + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3 g_2^2)
 //
 //     c_0 = (g_1 w_0 - g_0 w_1)/h + (g_2 w_1 - g_1 w_2)/2,   c_1 = 3 (g_2 w_0 - g_0 w_2)/h
 //     a_0 = m w_1 + t w_2/2,   a_1 = 3 m w_2 + t w_1/2

@@ -2,8 +2,8 @@
 //
 // A dof j moves the axis along one direction d(j) by its shape f_j. With
 //
-//     S_jk = int m f_j f_k,  F_j = int m f_j,  X_j = int m x f_j,  R_jk and G_j the same of the
-//     rotary inertia
+//     S_jk = int m f_j f_k,  F_j = int m f_j,  X_j = int m x f_j,
+//     R_jk and G_j the same for the rotary inertia
 //
 // and z_a,k = Om_ab q_k + 2 w~_ab q'_k (+ q''_k where a = b), b = d(k), the row of dof j with a =
 // d(j) is

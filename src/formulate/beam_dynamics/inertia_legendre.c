@@ -423,8 +423,8 @@ static void draw_slopes(struct ct_build *b, const struct ct_flexible *f, int e,
 
 // int mu u^2 dx of u = xi S(1) - S(xi) is a sum of four squares, weighted:
 //
-//     mass h^2 ((D_01/h + 5/28 D_12)^2/120 + D_12^2/31360 + (D_02/h + D_11/3 + D_22/10)^2/840 +
-//     3/308000 D_22^2)
+//     mass h^2 ((D_01/h + 5/28 D_12)^2/120 + D_12^2/31360
+//                 + (D_02/h + D_11/3 + D_22/10)^2/840 + 3/308000 D_22^2)
 static int bubble_squares(struct ct_exs *x, ct_ex h, ct_ex mass,
                           struct ct_foreshortening_products square[CT_LEGENDRE_AXIAL],
                           ct_ex weights[CT_LEGENDRE_AXIAL])

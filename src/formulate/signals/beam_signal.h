@@ -3,9 +3,8 @@
 //
 //   deflection         of the point from its undeformed position, axes of the beam              [m]
 //   slope              rotation of its section: its axes are those of the beam rotated by
-//                      Rz(slope.z/2) Ry(slope.y) Rz(slope.z/2) Rx(slope.x); small ones are twist,
-//                      -dw/dx,
-//                      dv/dx                                                                  [rad]
+//                      Rz(slope.z/2) Ry(slope.y) Rz(slope.z/2) Rx(slope.x); small ones
+//                      are twist, -dw/dx, dv/dx                                            [rad]
 //   chord_deflection   deflection in axes whose x runs from the start
 //                      to the end of the beam                                              [m]
 //   strain             of the axis
