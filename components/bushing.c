@@ -2,8 +2,8 @@
 //
 //   through  F = -k d - c d', T = -k phi - c w       in axes of `from`, at the origin of `to`
 //
-// d is the place of `to` seen from `from`, d' its rate there, phi the rotation vector (|phi| <
-// pi), w the relative angular velocity. Source: formulation 7.3 for the rotation vector.
+// d is the position of `to` relative to `from`, d' its rate in these axes, phi the rotation vector
+// (|phi| < pi), w the relative angular velocity. Source: formulation 7.3 for the rotation vector.
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/kinematics/constraint_row.h"
 
@@ -33,7 +33,7 @@ static ct_ex3 times(struct ct_exs *x, ct_ex3 a, ct_ex3 b)
 }
 
 // Rotation vector of R from its axial part s = sin(t) n and cosine c = (trace - 1)/2: phi =
-// t/sin(t) s with t = atan2(|s|, c); towards t = 0 the factor is its series 1 + |s|^2/6 + 3
+// t/sin(t) s with t = atan2(|s|, c); near t = 0 the factor is its series 1 + |s|^2/6 + 3
 // |s|^4/40.
 static ct_ex3 rotation_vector(struct ct_exs *x, const ct_ex33 *R)
 {
@@ -78,8 +78,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
     l.torque = ct_node_turn(b, tail, ct_ex3_neg(x, ct_ex3_add(x, twist, brake)));
     l.power = ct_ex_neg(x, ct_ex_add(x, ct_ex3_dot(x, drag, rate), ct_ex3_dot(x, brake, w)));
     l.potential = ct_ex_scale(x, 0.5, ct_ex3_dot(x, pull, place));
-    // the torque -k phi has the potential k |phi|^2/2 where k is isotropic; where it is not, what
-    // it does is work
+    // the torque -k phi has the potential k |phi|^2/2 if k is isotropic; otherwise its work is
+    // counted as power
     if (ct_ex_same(kr.e[0], kr.e[1]) && ct_ex_same(kr.e[1], kr.e[2]))
         l.potential = ct_ex_add(x, l.potential, ct_ex_scale(x, 0.5, ct_ex3_dot(x, twist, phi)));
     else

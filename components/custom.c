@@ -1,9 +1,9 @@
-// Custom joint: the user's own motion as expressions of named coordinates.
+// Custom joint: the user defines the motion by expressions of named coordinates.
 //
 //   across   d = translate(q), S = Rot(axis1, e1(q)) Rot(axis2, e2(q)) ...
 //   through  efforts along the coordinates; everything else is a reaction
 //
-// A branch of both trees always, as its constraint rows are not known in closed form.
+// It is always a branch of both trees, because its constraint rows are not known in closed form.
 #include "component/class.h"
 
 static const struct ct_key keys[] = {

@@ -50,7 +50,7 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
                         .tail = b->topology->node_of_frame[self->from],
                         .head = b->topology->node_of_frame[self->to],
                         .is_central = true};
-    // without a natural length k d pulls, and the length need not be known
+    // with zero natural length the force is k d, and the length is not needed
     const ct_ex per_length
         = ct_ex_is_zero(given(self, "length")) && ct_ex_is_zero(given(self, "damping"))
             ? given(self, "stiffness")

@@ -3,7 +3,7 @@
 //   across   d = 0, S = Rot(a, q1) Rot(b, q2)      2 angles [rad]
 //   through  T along a and b follow the efforts     F and one torque are reactions
 //
-// Rates of a chord: w = a u1 + b u2 with c = a . b constant, so
+// Speeds of a chord: w = a u1 + b u2 with c = a . b constant, so
 // u1 = (a - c b) . w / (1 - c^2) and u2 = (b - c a) . w / (1 - c^2).
 #include "component/class.h"
 

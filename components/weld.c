@@ -1,4 +1,4 @@
-// Weld: `from` and `to` coincide for good.
+// Weld: `from` and `to` coincide permanently.
 //
 //   across   d = 0, S = 1          translation [m], rotation    no freedom
 //   through  F, T any              force [N], torque [N m]      6 reactions

@@ -1,9 +1,9 @@
-// A copy of equations that may grow: their store of expressions, and all that is derived when it is
-// first asked for.
+// A copy of equations to which expressions can be added: the copy has its own expression store and
+// its own lists of derived results.
 //
-// Expressions are numbers in a store, so that a copy of the store gives them the same meaning. What
-// the derivation of mass matrices, residuals and signals writes is copied; what it only reads
-// (trees, names, lists of terms) is shared.
+// An expression is an index in a store, so that it stays valid in a copy of the store. Data that
+// later derivations write is copied. Data that they only read (trees, names, lists of terms) is
+// shared.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/formulate.h"
@@ -25,7 +25,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 static struct ct_exs *fork_store(struct ct_arena *a, const struct ct_exs *from)
 {
     struct ct_exs *x = ct_exs_clone(a, from);
-    x->table_cap = x->ntable; // another one is put into a copy of the list
+    x->table_cap = x->ntable; // a new entry reallocates the list
     x->label = from->label;
     x->label_cap = from->label_cap;
     if (x->label)
@@ -66,7 +66,7 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
         fork_flexible(a, &b->flexible[i]);
     COPY(a, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body);
     b->dynamics.masses.augmented_body_cap = b->dynamics.masses.naugmented_body;
-    b->dynamics.masses.of = (struct ct_pairs){0}; // listed anew when one is added
+    b->dynamics.masses.of = (struct ct_pairs){0}; // rebuilt when a pair is added
     b->dynamics.speed_axis_cap = b->dynamics.nspeed_axis;
     if (b->signals.quaternion)
         COPY(a, b->signals.quaternion, b->topology->nnode);
@@ -94,7 +94,7 @@ void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_m
     COPY(a, to->result, to->nresult);
     if (to->residual)
         COPY(a, to->residual, 1);
-    // lists that grow are copied then
+    // a new entry reallocates the list
     to->q_cap = to->nq;
     to->u_cap = to->nu;
     to->M_cap = to->nM;

@@ -1,4 +1,5 @@
-// The stage that turns a model into equations.
+// Formulation: turns a model into the reduced equations of motion. ct_formulate calls the steps in
+// order: linear graph, spanning trees, kinematics, constraint rows, dynamics, outputs.
 #include "formulate/formulate.h"
 #include "formulate/closed_form/beam_augmented.h"
 #include "formulate/dynamics/dynamics.h"
@@ -52,7 +53,7 @@ static void describe_graph(struct ct_build *b)
     e->weight_r = wr;
 }
 
-// Coordinates of all joints and bodies and their speeds, measured or not, in a fixed order.
+// Makes the coordinates and speeds of all joints and bodies the results, in a fixed order.
 static void measure_all(struct ct_build *b, const struct ct_equations *needed_by)
 {
     for (size_t i = 0; i < b->topology->ncoordinate; i++) {
@@ -73,7 +74,7 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
     b->eqs->is_analysed
         = o->for_analysis && b->eqs->nu > CT_MOST_DENSE && !ct_small_motion_is_wanted(b);
     if (b->eqs->is_analysed) {
-        ct_augmented_bodies_lump(b); // for energies and rows
+        ct_augmented_bodies_lump(b); // energies and rows need them
         return;
     }
     if (o->with_solution && !b->eqs->nrow && b->eqs->nu) {
@@ -85,8 +86,8 @@ static void derive_dynamics(struct ct_build *b, const struct ct_formulate_option
         b->eqs->augmented = ct_beam_augmented_derive(b);
 }
 
-// The choice must not depend on the trees: where these do not show what drives a beam, trees
-// through joints are asked.
+// Chooses which beams are linear. The choice must not depend on the trees. If the chosen trees do
+// not show the prescribed motion of a beam, the choice is made on trees through joints.
 static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
                                  const struct ct_model *m, const struct ct_formulate_options *o,
                                  struct ct_build *b)
@@ -108,8 +109,8 @@ static const bool *choose_linear(struct ct_ctx *ctx, struct ct_arena *a,
     return linear;
 }
 
-// Beams that leave their formulation to the program: what is known of their motion decides, and
-// those that stay linear make a new build on the same trees.
+// Chooses the formulation of beams for which the model gives none. If some are linear, the
+// equations are derived again on the same trees.
 static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *m,
                          const struct ct_formulate_options *o, struct ct_build **b)
 {
@@ -136,7 +137,7 @@ static bool choose_beams(struct ct_ctx *ctx, struct ct_arena *a, const struct ct
     return ct_build_derive(*b, !o->without_dynamics);
 }
 
-// `modes` that keep some of several alike, or more than there are.
+// Warns if `modes` splits a group of equal frequencies or exceeds the number of modes.
 static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
@@ -156,7 +157,7 @@ static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
     }
 }
 
-// What follows from the equations: their residual form, energies, and the columns of results.
+// Derives the residual form, the energies and the outputs.
 static bool derive_results(struct ct_build *b, const struct ct_formulate_options *o)
 {
     if (o->with_residual)
@@ -188,10 +189,10 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
 {
     const size_t before = ctx->nerror;
     *report = (struct ct_tree_report){0};
-    struct ct_build *b = ct_build_create(ctx, a, m, options, NULL); // linear graph, its plane
+    struct ct_build *b = ct_build_create(ctx, a, m, options, NULL); // linear graph and plane
     if (ctx->nerror > before
         || !ct_build_choose_trees(&b, options, report) // translational and rotational tree
-        || !(b->is_derived // kinematics, constraint rows and loads; of a trial already
+        || !(b->is_derived                             // kinematics, constraint rows and loads
              || ct_build_derive(b, !options->without_dynamics))
         || !choose_beams(ctx, a, m, options, &b)) // linear, or with foreshortening
         return false;

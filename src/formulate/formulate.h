@@ -1,4 +1,6 @@
-// Model -> trees -> reduced equations of motion.
+// The formulation stage: derives the reduced equations of motion of a model. It builds the linear
+// graph, chooses two spanning trees, and derives kinematics, constraint rows, dynamics and outputs
+// as expressions. The sub-folders do one step each.
 #ifndef CT_FORMULATE_FORMULATE_H
 #define CT_FORMULATE_FORMULATE_H
 
@@ -16,58 +18,61 @@ struct ct_formulate_options {
     const char *const *trans, *const *rot; // GIVEN: names of the branches that are not arms
     const struct ct_mark *trans_mark, *rot_mark; // of each name; NULL: nowhere
     size_t ntrans, nrot;
-    int pick; // AUTO: that candidate of the search, from 1, whatever it costs; 0: the cheapest
-    bool keep_all;     // leave nothing out: spatial rows for planar mechanisms
+    // AUTO: number of the candidate to use, from 1, regardless of its cost; 0: the cheapest
+    int pick;
+    bool keep_all;     // no simplification: spatial equations for planar mechanisms
     bool with_energy;  // kinetic and potential energy and the power are wanted
     bool with_outputs; // the outputs of the model are wanted
     enum ct_more_outputs more;
     bool with_solution; // u' in closed form where that is cheap
-    enum ct_formulation
-        formulation;    // of an open system with solution; AUTO: the one of fewest operations
+    // for an open system with solution; AUTO: fewest operations
+    enum ct_formulation formulation;
     bool with_residual; // an implicit method will ask for the residual and its derivatives
-    bool
-        measure_all; // results are the coordinates of all joints and bodies instead (for assembly)
-    // with measure_all: equations of motion that will start from the results. Coordinates of bodies that are not
-    // among their unknowns are then left 0; NULL: all are measured
+    // measure_all: the results are the coordinates of all joints and bodies (for assembly)
+    bool measure_all;
+    // with measure_all: the equations that will start from these results. Body coordinates that are
+    // not among their unknowns are set to 0. NULL: compute all
     const struct ct_equations *measured_for;
-    bool rigid;    // beams keep their shape
-    bool deformed; // with measure_all: beams are not rigid there
-    const bool
-        *first; // by joint: of those a tree through joints has all it can have; NULL: none
-    const struct ct_equations *like; // beams as in these; NULL: choose
-    bool gaps;             // rows of joints hold where they start (constraint_offset.h)
-    bool held;             // drivers stand still at their values: for what is static
-    bool without_dynamics; // neither M nor Q: positions and speeds are all that is wanted
-    bool
-        frees_beams; // what the scene does not excite in beams is kept, too; as in `like`, where given
-    bool
-        for_analysis; // large systems will be linearised, not integrated: neither M nor Q nor a
-                      // solution, and trees that couple few unknowns
+    bool rigid;    // beams are rigid
+    bool deformed; // with measure_all: beams are elastic
+    // first: by joint: joints that the trees contain before all others; NULL: none
+    const bool *first;
+    const struct ct_equations *like; // take beam formulations from these; NULL: choose
+    bool gaps; // joint rows have offsets, zero residual at the start (constraint_offset.h)
+    bool held; // drivers are constant: for static analysis
+    bool without_dynamics; // derive positions and velocities only, neither M nor Q
+    // frees_beams: keep also deformations of beams that the model does not excite; as in
+    // `like`, if given
+    bool frees_beams;
+    // for_analysis: large systems are only linearised: derive no M, Q or solution, choose trees
+    // that couple few unknowns
+    bool for_analysis;
 };
 
-/// Up to this many speeds every formulation is tried: they are cheap to generate, and the mass matrix is what people
-/// look at. Chosen: the time to generate them against shorter programs.
+/// Up to this many speeds every formulation is tried. Users read the mass matrix of such systems.
+/// Chosen: the time to generate them against shorter programs.
 enum { CT_SMALL_SYSTEM = 24 };
 /// Limit: speeds; full matrices of larger systems would take hours, and a message says so.
 enum { CT_MOST_FULL = 3000 };
-/// Speeds of the systems that are analysed with dense matrices; larger ones with sparse matrices.
-/// Chosen: dense matrices take some seconds there.
+/// Up to this many speeds analyses use dense matrices, above it sparse ones. Chosen: dense matrices
+/// take some seconds at this size.
 enum { CT_MOST_DENSE = 300 };
 
-/// A pair of trees that the search has weighed.
+/// A pair of trees whose cost the search has computed.
 struct ct_tree_candidate {
     const bool *trans, *rot; // branches, by edge
     size_t nu, nrow;         // unknown speeds, constraint rows
     double cost;             // operations of an evaluation, in multiplications
 };
 
-enum { CT_MOST_CANDIDATES = 10 }; // Layout: of what `cotree graph --trees` lists
+enum { CT_MOST_CANDIDATES = 10 }; // Layout: lines of `cotree graph --trees`
 
 /// What tree selection found, for the report.
 struct ct_tree_report {
     const char *how; // "exhaustive search of 441 pairs", "given", ...
     double cost, cost_least_weight;
-    // the cheapest pairs of the search, by cost, then by unknowns, then as they were met; none where nothing was searched
+    // the cheapest pairs, ordered by cost, then by number of unknowns, then as found; none without
+    // a search
     struct ct_tree_candidate candidate[CT_MOST_CANDIDATES];
     int ncandidate;
 };
@@ -78,20 +83,21 @@ bool ct_formulate(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model 
                   const struct ct_formulate_options *options, struct ct_equations *out,
                   struct ct_tree_report *report);
 
-/// A copy of equations in which more can be derived, while any number of threads read the original: for one run or one
-/// analysis. model: what ct_model_fork has made of theirs. Cost: the store of expressions.
+/// A copy of equations for one run or one analysis. New results can be derived in the copy while
+/// other threads read the original. model: the copy made by ct_model_fork. Cost: a copy of the
+/// expression store.
 void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                        const struct ct_equations *from, struct ct_equations *to);
-/// The same of a model: its store, its parameters and their values.
+/// A copy of a model with its own expression store, parameters and values.
 struct ct_model *ct_model_fork(struct ct_arena *a, const struct ct_model *from);
 
-/// M and Q, if the equations do not have them yet: for those who do not use the solution.
+/// Derives M and Q if the equations lack them, for callers that do not use the solution.
 void ct_formulate_dynamics(struct ct_equations *e);
 
-/// Only the rows of the residual form, for derivatives as numbers.
+/// Derives the residual without its derivatives, for numerical differentiation.
 void ct_formulate_rows(struct ct_equations *e);
 
-/// The residual form, if the equations do not have it yet: for an implicit method chosen after they were made.
+/// Derives the residual form if the equations lack it: for an implicit method chosen later.
 void ct_formulate_residual(struct ct_equations *e);
 
 #endif

@@ -3,7 +3,7 @@
 
 double ct_counted_cost(const struct ct_tape_counts *c)
 {
-    // Chosen: weights that choose between forms of the equations.
+    // Chosen: relative cost of functions and divisions.
     const double per_function = 8, per_division = 4;
     return (double)(c->multiplications + c->additions) + per_division * (double)c->divisions
          + per_function * (double)c->functions;

@@ -10,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- equations of one pair of trees
-// ------------------------------------------------------------------
+// ---- equations of one pair of trees ------------------------------------------------------------
 
 static double *start_values(struct ct_arena *a, const struct ct_model *m)
 {
@@ -44,7 +43,7 @@ struct ct_build *ct_build_create(struct ct_ctx *ctx, struct ct_arena *a,
         .has_offsets = o->gaps,
         .like = o->like,
         .is_linear = is_linear};
-    static const struct ct_row_wrenches no_rows; // what stages see that come before these
+    static const struct ct_row_wrenches no_rows; // for stages that precede the constraint rows
     static const struct ct_loads no_loads;
     *b = (struct ct_build){.ctx = ctx,
                            .arena = a,
@@ -97,22 +96,21 @@ bool ct_build_derive(struct ct_build *b, bool with_dynamics)
     return b->ctx->nerror == before;
 }
 
-// ---- the choice of trees
-// -----------------------------------------------------------------------------
+// ---- the choice of trees -----------------------------------------------------------------------
 
 struct trials {
     struct ct_ctx *ctx;
-    const struct ct_build *open; // the stage's, whose trees are sought
+    const struct ct_build *open; // the formulation that needs the trees
     const struct ct_formulate_options *options;
-    struct ct_arena
-        *arena; // of one trial at a time, cleared for the next; NULL: no trial was asked for
-    bool stays_open;     // pairs with rows are not wanted
+    // arena: memory of one trial, cleared for the next; NULL: no trial yet
+    struct ct_arena *arena;
+    bool stays_open;     // reject pairs with constraint rows
     struct ct_tree T, R; // of the first pair
-    double cost;         // its cost; 0: not counted yet
+    double cost;         // cost of the first pair; 0: not counted yet
     size_t nu, nrow;     // of the pair that was derived last
     struct ct_tree_report *report;
-    struct ct_build *
-        first; // its equations, in an arena of their own, where they may become those of the stage; else NULL
+    // first: equations of the first pair in their own arena, if they may be kept; else NULL
+    struct ct_build *first;
 };
 
 static void begin(void *data, bool stays_open)
@@ -122,7 +120,7 @@ static void begin(void *data, bool stays_open)
     s->stays_open = stays_open;
 }
 
-// Has it a beam that fills the mass matrix by itself? Articulated bodies do without (6.9).
+// Does a beam fill the mass matrix? Articulated bodies need no mass matrix (6.9).
 static bool has_chain(const struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++)
@@ -131,7 +129,7 @@ static bool has_chain(const struct ct_build *b)
     return false;
 }
 
-// The exact count of a trial; INFINITY where it fails or is not wanted.
+// The exact operation count of a trial; INFINITY if it fails or is rejected.
 static double derive_and_count(struct trials *s, struct ct_build *b, const struct ct_tree *T,
                                const struct ct_tree *R)
 {
@@ -152,14 +150,15 @@ static bool is_same(const struct ct_tree *t, const struct ct_tree *other)
         && memcmp(t->is_branch, other->is_branch, (size_t)t->nedge * sizeof *t->is_branch) == 0;
 }
 
-// The equations of a trial are those of the stage where all of these have rows and no beams:
-// beams are chosen in between, open systems are solved in other ways, and analyses need less.
+// May the equations of a trial be kept as the result? Only for closed systems without beams: beams
+// need a later choice of formulation, open systems have other solutions, analyses need fewer
+// results.
 static bool may_keep(const struct ct_build *b, const struct ct_formulate_options *o)
 {
     return !b->nflexible && !o->for_analysis && !o->without_dynamics;
 }
 
-// Derived in the arena of trials: nothing of it is kept. Errors are reported by the chosen pair.
+// Cost of a pair, derived in the trial arena and discarded. The chosen pair reports errors later.
 static double passing_cost(struct trials *s, const struct ct_tree *T, const struct ct_tree *R)
 {
     ct_arena_clear(s->arena);
@@ -170,7 +169,8 @@ static double passing_cost(struct trials *s, const struct ct_tree *T, const stru
     return derive_and_count(s, b, T, R);
 }
 
-// Derived in an arena of its own, which stays if the equations can be those of the stage.
+// Cost of the first pair, derived in its own arena, which is kept if its equations may be the
+// result.
 static double kept_cost(struct trials *s, const struct ct_tree *T, const struct ct_tree *R)
 {
     struct ct_ctx quiet
@@ -184,7 +184,7 @@ static double kept_cost(struct trials *s, const struct ct_tree *T, const struct 
     return cost;
 }
 
-// The list of the cheapest pairs, in its order. A pair that is looked at again is there already.
+// Inserts a pair into the sorted list of the cheapest pairs, unless it is listed already.
 static void list_pair(struct trials *s, const struct ct_tree *T, const struct ct_tree *R,
                       double cost)
 {
@@ -228,7 +228,7 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
     return cost;
 }
 
-// If the first pair was chosen, its equations take the place of *b; else they go.
+// If the first pair was chosen, its equations replace *b; else they are freed.
 static void take_first(struct trials *s, struct ct_build **b)
 {
     struct ct_build *first = s->first;

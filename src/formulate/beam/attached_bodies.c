@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// A frame of the beam beyond its base. The section at the start of one on its chord turns against
-// the base.
+// Is it a frame of the beam beyond its base? With a frame on the chord the first section counts, as
+// it rotates relative to the base.
 static bool is_beyond(const struct ct_build *b, const struct ct_flexible *f, int frame)
 {
     const int own = f->beam->is_chord ? -1 : b->model->body[f->body].frame;

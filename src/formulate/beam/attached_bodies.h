@@ -4,10 +4,10 @@
 
 #include "formulate/beam/flexible_body.h"
 
-/// By body, in scratch: where along the beam it is held by welds, beyond the base, directly or by
-/// other bodies; NAN: it is not.
+/// By body, in scratch: position along the beam at which welds attach it, directly or through other
+/// bodies, beyond the base; NAN: not attached.
 double *ct_attached_bodies_find(const struct ct_build *b, const struct ct_flexible *f);
-/// Does anything but such bodies hang on the beam beyond its base, or push it or them there?
+/// Does anything other than such bodies load or join the beam or these bodies beyond its base?
 bool ct_attached_bodies_are_loaded(const struct ct_build *b, const struct ct_flexible *f);
 
 #endif

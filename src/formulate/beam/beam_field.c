@@ -17,7 +17,7 @@ static ct_ex place_of(const struct ct_flexible *f, int node)
     return node ? f->beam->end[node - 1] : CT_EX_ZERO;
 }
 
-// In the middle of the element before the node, beyond the mean of its ends.
+// Value of g in the middle of the element before the node, minus the mean of its ends.
 static ct_ex bulge(struct ct_build *b, const struct ct_flexible *f, ct_ex g, int node)
 {
     struct ct_exs *x = b->x;
@@ -62,8 +62,8 @@ bool ct_fields_leave_plane(const struct ct_beam *beam, bool about_z)
     return false;
 }
 
-// LOCAL: places of the nodes for the stretch that is given, U = s - S, and their rates: S is what
-// bending draws.
+// LOCAL: axial positions of the nodes for a given stretch, U = s - S, and their rates; S:
+// foreshortening by bending.
 static void draw_in(struct ct_build *b, const struct ct_flexible *f, ct_ex *value, ct_ex *rate)
 {
     struct ct_exs *x = b->x;

@@ -9,7 +9,7 @@ static ct_ex3 normal_at(struct ct_build *b, const ct_ex33 *U)
     return ct_ex33_apply_t(b->x, U, b->topology->plane[2]);
 }
 
-// Is v zero along n, whatever time and state are?
+// Is v normal to n for any time and state?
 static bool is_across(struct ct_build *b, ct_ex3 v, ct_ex3 n)
 {
     const ct_ex along = ct_ex3_dot(b->x, v, n);
@@ -28,8 +28,8 @@ static bool is_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
     double most = 0;
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(ct_ex_value(b->x, n.e[i], b->value)));
-    if (most
-        < 1 - CT_DATA_ROUNDOFF) { // along an axis its own component is all; else look at the cross product
+    // along an axis its own component is all; else look at the cross product
+    if (most < 1 - CT_DATA_ROUNDOFF) {
         const ct_ex3 c = ct_ex3_cross(b->x, v, n);
         for (int i = 0; i < 3; i++)
             if (ct_ex_kinds(b->x, c.e[i]) & ~(1u << CT_SYM_PARAM)
@@ -69,13 +69,13 @@ static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
                 return false;
         } else if (self->from >= 0
                    && !is_axis(b, normal_at(b, U[b->topology->node_of_frame[self->from]]))) {
-            return false; // a bushing whose axes are askew pushes out of the plane
+            return false; // a bushing with oblique axes gives out-of-plane forces
         }
     }
     return true;
 }
 
-// The normal is a principal axis of every rigid body, and everything lies in one layer.
+// Is the normal a principal axis of each rigid body, and is everything in one layer?
 static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allowed)
 {
     const struct ct_model *m = b->model;
@@ -98,8 +98,8 @@ static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allo
 bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_spatial)
 {
     const unsigned both = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
-    bool asked = false; // does any beam leave the choice to us?
-    bool frees = false; // can one that does leave the plane?
+    bool asked = false; // does any beam have an automatic choice?
+    bool frees = false; // can such a beam deform out of the plane?
     double longest = 0;
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
@@ -123,7 +123,7 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_
     return keeps && !*is_spatial;
 }
 
-// Does the joint hand torques on to the section it sits at?
+// Does the joint transmit a torque about the axis to its section?
 static bool turns_section(const struct ct_build *b, int frame, const struct ct_flexible *f)
 {
     const struct ct_model *m = b->model;
@@ -133,7 +133,7 @@ static bool turns_section(const struct ct_build *b, int frame, const struct ct_f
     return !is_base || f->beam->is_chord;
 }
 
-// Is the section one to which all directions across the axis are alike?
+// Is the stiffness of the section equal in all transverse directions?
 static bool is_even(const struct ct_build *b, const struct ct_beam *beam)
 {
     const bool shears = beam->theory == CT_BEAM_TIMOSHENKO;
@@ -157,7 +157,7 @@ static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f
             || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, f->beam)));
 }
 
-// Does the scene twist it by a joint, a torque or an arm off its axis beyond the base?
+// Does a joint, a torque or an arm off the axis twist the beam beyond its base?
 static bool is_twisted(const struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_model *m = b->model;

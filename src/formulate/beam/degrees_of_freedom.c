@@ -66,7 +66,7 @@ void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, in
             const ct_ex c = ct_ex_mul(b->x, p->part[i].coef, q->part[l].coef);
             ct_ex v = ct_ex_mul(b->x, c, value);
             if (row < column)
-                continue; // the transposed pair is pushed, too
+                continue; // the transposed pair is added separately
             v = sj == sk ? v : ct_ex_neg(b->x, v);
             ct_ex *m = &M[(size_t)row + b->eqs->nu * (size_t)column];
             *m = ct_ex_add(b->x, *m, v);

@@ -1,6 +1,5 @@
-// From the degrees of freedom of an element (dofs) to those of the nodes (freedoms) and to the
-// elastic coordinates, and forces, masses and columns the other way. flexible_body.h says which
-// are which.
+// Mapping between the degrees of freedom of an element (dofs), those of the nodes (freedoms) and
+// the elastic coordinates, for values, forces, masses and columns. flexible_body.h defines them.
 #ifndef CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
 #define CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
 
@@ -18,17 +17,17 @@ struct ct_columns {
     ct_ex3 *moved, *swept; // by elastic coordinate, axes of the beam
 };
 
-/// Generalised force on a dof, added to that on its freedom.
+/// Adds a generalised force on a dof to that on its freedom.
 void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, ct_ex value,
                  ct_ex *by_freedom);
-/// Entry of the mass matrix between dof j of element e and dof k of element g; the transposed
-/// pair is pushed by itself.
+/// Entry of the mass matrix between dof j of element e and dof k of element g; the caller adds the
+/// transposed pair separately.
 void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
                       int k, ct_ex value, ct_ex *M);
 void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
                         ct_ex3 moved, ct_ex3 swept, struct ct_columns *out);
-/// Second derivatives of the foreshortening at the start of each element of a CHAIN with the
-/// symbols u', less the bias.
+/// Second derivatives of the foreshortening at the start of each element of a CHAIN, with the
+/// symbols u', minus the bias.
 ct_ex *ct_chain_accelerations(struct ct_build *b, const struct ct_flexible *f);
 
 #endif

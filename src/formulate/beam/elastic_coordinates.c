@@ -1,4 +1,4 @@
-// Unknowns of a beam: nodal, modal, or shares of given shapes; see flexible_body.h.
+// Unknowns of a beam: nodal, modal, or coordinates of given shapes; see flexible_body.h.
 #include "formulate/beam/legendre.h"
 #include "formulate/beam/beam_field.h"
 #include "formulate/beam/static_condensation.h"
@@ -18,7 +18,7 @@ static enum ct_elastic_kind sort_of(int kind)
                                                          : CT_ELASTIC_TURN;
 }
 
-// freedom: that it is, or that its static shape is for; -1: share of a shape
+// freedom: its nodal freedom, or that of its static shape; -1: coordinate of a shape
 static int new_unknown(struct ct_build *b, struct ct_flexible *f, const char *name,
                        enum ct_elastic_kind kind, int freedom)
 {
@@ -63,8 +63,7 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-// Foreshortening of one element by the integrals E of slope products and of the sections' rotation
-// gradients.
+// Foreshortening of one element from the integrals E of slope products and of rotation gradients.
 static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
                              ct_ex *rate, ct_ex *bias)
 {
@@ -92,7 +91,7 @@ static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, c
     }
 }
 
-// The same by amplitudes of the slopes.
+// The same from Legendre coefficients of the slopes.
 static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
                            ct_ex *rate, ct_ex *bias)
 {
@@ -119,7 +118,7 @@ static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_
     *bias = ct_ex_sub(x, *bias, ct_foreshortening_total(x, h, &second));
 }
 
-// Foreshortening of element after element: c and its derivatives by running sums.
+// Foreshortening c and its derivatives along the beam, by running sums.
 static void run_chain(struct ct_build *b, struct ct_flexible *f)
 {
     for (int e = 0; e < f->beam->nelement; e++) {
@@ -143,7 +142,7 @@ static void list_part(struct ct_freedom *d, int k, ct_ex coef)
         d->part[d->npart++] = (struct ct_part){k, coef};
 }
 
-// The freedom has the part coef of coordinate k.
+// Adds the term coef * coordinate k to a freedom.
 static void add_part(struct ct_build *b, struct ct_flexible *f, struct ct_freedom *d, int k,
                      ct_ex coef)
 {
@@ -155,7 +154,7 @@ static void add_part(struct ct_build *b, struct ct_flexible *f, struct ct_freedo
     d->acceleration = ct_ex_add(x, d->acceleration, ct_ex_mul(x, coef, e->acceleration));
 }
 
-// Freedom i as a sum of shapes; the value of one that follows comes from its neighbours.
+// Freedom i as a sum of shapes; a condensed rotation gets its value from its neighbours.
 static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const struct ct_shapes *s,
                            int i)
 {
@@ -229,13 +228,13 @@ static double dot(const double *a, const double *c, size_t n)
     return sum;
 }
 
-// Is a shape a sum of those before it, as the nodes see them? By Gram and Schmidt; marks: by
+// Checks that no shape depends linearly on previous ones at the nodes, by Gram-Schmidt; marks: by
 // coordinate.
 static bool check_shapes(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_mark *marks)
 {
-    // Part of its length that is its own. Derived: the square root of the unit round-off, to which
-    // the length of what is left is known.
+    // Least norm of the independent part relative to the shape. Derived: the square root of the
+    // unit round-off, the accuracy of that norm.
     const double least = 1e-8;
     const size_t n = (size_t)NKIND * ((size_t)f->beam->nelement + 1);
     double *Q = CT_NEWN(b->ctx->scratch, double, n *(size_t)f->nelastic + 1);
@@ -262,7 +261,7 @@ static bool check_shapes(struct ct_build *b, const struct ct_flexible *f,
     return true;
 }
 
-// `shapes`: every freedom is what they are at its node.
+// `shapes`: every freedom is a sum of the shapes at its node.
 static void given_unknowns(struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;
@@ -288,7 +287,7 @@ static void given_unknowns(struct ct_build *b, struct ct_flexible *f)
     check_shapes(b, f, marks);
 }
 
-// Are bodies counted from a section of f other than its base?
+// Do the trees connect bodies at a section of f other than its base?
 static bool carries_bodies(const struct ct_build *b, const struct ct_flexible *f)
 {
     for (size_t i = 0; i < b->topology->nnode; i++) {

@@ -36,8 +36,8 @@ static void number_dofs(struct ct_flexible *f)
 
 // ---- creation -----------------------------------------------------------------------------------
 
-// E(xi) = integral of slope_j slope_k, D = xi E(1) - E, and the integral of the sections' rotation
-// gradients.
+// E(xi) = integral of slope_j slope_k, D = xi E(1) - E, and the integral of the rotation gradients
+// of the sections.
 static void derive_shortening(struct ct_flexible *f)
 {
     const struct ct_shape xi = {.c = {0, 1}};
@@ -59,7 +59,7 @@ static void derive_shortening(struct ct_flexible *f)
 }
 
 // The mean strain of a section with rotations g is u' + (v'^2 + (I/A) g'^2)/2: with higher-order
-// terms an axis that does not stretch is drawn in by both. I/A of a tapered element is its mean.
+// terms both shorten an inextensible axis. I/A of a tapered element is its mean.
 static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_element *e)
 {
     const struct ct_beam *beam = f->beam;
@@ -78,8 +78,8 @@ static void derive_radii(struct ct_build *b, struct ct_flexible *f, struct ct_el
     }
 }
 
-// What deforms where the scene keeps to a plane: bending about the normal; a beam's y or z axis
-// points along it.
+// Deformations in a planar mechanism: bending about the normal, which is the y or z axis of the
+// beam.
 static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (!b->topology->keeps_plane)
@@ -89,8 +89,8 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }
 
-// Modes and given shapes hold no room for the places of nodes that foreshortening moves; and it is
-// the stretch that is small, not the places, which are of second order in the slopes.
+// Axial kinematics of a beam. Modes and given shapes cannot represent node positions that move by
+// foreshortening. Also the stretch is small, but these positions are of second order in the slopes.
 static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (f->formulation == CT_BEAM_LINEAR)
@@ -101,8 +101,8 @@ static enum ct_axial axial_of(const struct ct_build *b, const struct ct_flexible
              : CT_AXIAL_CHAIN;
 }
 
-// Deformations without a stiffness would be free to go anywhere: where the scene does not excite
-// them they are left out, else they are the model's fault.
+// Deformations without stiffness are undetermined. They are excluded if the model does not excite
+// them; otherwise they are an error in the model.
 static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
 {
     const struct {
@@ -129,7 +129,8 @@ static void need_stiffness(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-// Left to the program: as in equations that were made before, else the one that holds further.
+// Automatic choice of formulation: as in earlier equations, else the one with the wider range of
+// validity.
 static void choose_formulation(const struct ct_build *b, struct ct_flexible *f)
 {
     const struct ct_flexible *like
@@ -148,7 +149,7 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
         choose_formulation(b, f);
     f->excited = in_plane(b, f);
     f->deformation = beam->deformation & (b->topology->is_planar ? f->excited : CT_BEAM_ALL);
-    // nor has it an inertia of its own then, so there is no coordinate to keep
+    // then it has no inertia either, so that it needs no coordinate
     const char *untwisted = f->deformation & CT_BEAM_TORSION && !beam->deformation_given
                               ? ct_deformation_no_twist(b, f)
                               : NULL;
@@ -194,7 +195,7 @@ static void choose_deformation(struct ct_build *b, struct ct_flexible *f)
     for (int e = 0; e < beam->nelement; e++) {
         struct ct_span *s = &f->element[e].span;
         s->start = e ? beam->end[e - 1] : CT_EX_ZERO;
-        // one and the same to the last bit, so that elements are one program
+        // equal lengths to the last bit, so that all elements share one program
         s->length = beam->is_even ? ct_ex_scale(b->x, 1.0 / beam->nelement, beam->length)
                                   : ct_ex_sub(b->x, beam->end[e], s->start);
         derive_radii(b, f, &f->element[e]);

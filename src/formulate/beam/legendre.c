@@ -6,7 +6,7 @@ static ct_ex half(struct ct_exs *x, ct_ex v)
     return ct_ex_scale(x, 0.5, v);
 }
 
-// c h v, the constant and h taken together
+// c h v; c h is computed first
 static ct_ex times(struct ct_exs *x, double c, ct_ex h, ct_ex v)
 {
     return ct_ex_mul(x, ct_ex_scale(x, c, h), v);
@@ -70,7 +70,7 @@ void ct_legendre_bending_add_forces(struct ct_exs *x, enum ct_beam_theory theory
 
 // ---- foreshortening -----------------------------------------------------------------------------
 
-// Over both planes s_i t_j, and s_j t_i too if these are others.
+// Sum over both planes of s_i t_j, and of s_j t_i if s and t differ.
 static ct_ex products(struct ct_exs *x, const struct ct_legendre_bending s[2],
                       const struct ct_legendre_bending t[2], int i, int j)
 {

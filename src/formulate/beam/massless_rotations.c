@@ -1,10 +1,10 @@
 // Rotations of a beam's nodes that move no mass; see massless_rotations.h.
 //
 // Lumped masses without rotary inertia, and sections of Timoshenko's theory without it, leave
-// rotations that nothing accelerates. Where no moment acts on them either, they follow the other
-// freedoms, K_rr r + K_rt t = 0, and are no coordinates. A moment comes from a joint that holds the
-// section's rotation, a torque, an arm off the axis, or a force between nodes; the rotations that
-// it acts on stay coordinates.
+// rotations without inertia. If no moment acts on them either, static condensation gives them from
+// the other freedoms, K_rr r + K_rt t = 0, and they are not coordinates. A moment arises from a
+// joint that constrains the rotation of the section, a torque, an arm off the axis, or a force
+// between nodes. Rotations with a moment stay coordinates.
 #include "formulate/beam/massless_rotations.h"
 #include "formulate/beam/section_properties.h"
 
@@ -17,7 +17,7 @@ enum { NAXIS = 3, ALL = 7 }; // Definition: axes of the beam, and a bit for each
 struct node_moments {
     struct ct_build *b;
     const struct ct_flexible *f;
-    unsigned *about; // by node: moments that can act
+    unsigned *about; // by node: axes about which moments can act
 };
 
 // ---- what acts on a point -----------------------------------------------------------------------
@@ -103,14 +103,14 @@ static void mark_frame(struct node_moments *w, size_t frame)
     if (!ct_ex_is_zero(p->at.e[1]) || !ct_ex_is_zero(p->at.e[2]))
         about = ALL;
     if (!at_start && !at_end && w->f->beam->theory == CT_BEAM_EULER_BERNOULLI)
-        about = ALL; // forces between nodes turn them
+        about = ALL; // forces between nodes give moments
     w->about[s.element] |= at_end ? 0 : about;
     w->about[s.element + 1] |= at_start ? 0 : about;
 }
 
 // ---- the section at the start -------------------------------------------------------------------
 
-// Axes of the beam, bits, about which joint j alone lets the section at the frame turn.
+// Axes of the beam, as bits, about which joint j leaves the section at the frame free to rotate.
 static unsigned turns_freely(const struct node_moments *w, size_t j, const struct ct_frame *at)
 {
     struct ct_build *b = w->b;
@@ -177,7 +177,7 @@ bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_fle
     bool any = false, marked = false;
     memset(follows, 0, (size_t)(NKIND * nnode) * sizeof *follows);
     if (b->options->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
-        return false; // analyses do without masses, and then loads count that are not seen here
+        return false; // analyses may omit masses, and then further loads matter
     for (int axis = 0; axis < NAXIS && f->deformation; axis++) {
         const bool is_massless
             = ct_ex_is_zero(ct_flexible_rotary(f, axis).value) && (axis == 0 || turns_apart);

@@ -1,4 +1,4 @@
-// Rotations of nodes that move no mass, and on which no moment acts.
+// Rotations of nodes without inertia and without applied moment.
 #ifndef CT_FORMULATE_BEAM_MASSLESS_ROTATIONS_H
 #define CT_FORMULATE_BEAM_MASSLESS_ROTATIONS_H
 
@@ -8,9 +8,9 @@
 /// out): by freedom, fixed ones included. False if there are none.
 bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_flexible *f,
                                          bool *follows);
-/// The joint about whose axis nothing but the section at the beam's start turns, without inertia,
-/// where the other nodes stay: exactly where the axis is straight, nearly where foreshortening
-/// moves nodes of a bent one. -1: none.
+/// The joint that rotates only the first section of the beam, which has no inertia, while the other
+/// nodes stay fixed. This is exact for a straight axis and approximate for a bent one with
+/// foreshortening. -1: none.
 int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f);
 
 #endif

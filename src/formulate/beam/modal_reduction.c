@@ -1,6 +1,6 @@
 // Reduction of a beam to shapes, a superelement; see modal_reduction.h.
 //
-// Condensed: rotations that move no mass follow the other freedoms.
+// Condensed: rotations without inertia depend statically on the other freedoms.
 //
 // Modal:
 // the nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit
@@ -46,7 +46,7 @@ static bool is_used(const struct ct_model *m, size_t frame)
     return false;
 }
 
-// Nodes whose freedoms a used point sees.
+// Marks the nodes whose freedoms move a point with a joint or a load.
 static void mark_nodes(const struct reduction *r, bool *held)
 {
     const struct ct_model *m = r->b->model;
@@ -151,9 +151,8 @@ static bool static_shapes(struct reduction *r)
     return true;
 }
 
-// The axis is straight and its sections lie along their principal axes: stretch, twist and both
-// bendings have nothing to do with one another, and what a shape has of another one is round-off of
-// its largest component, 1.
+// Removes round-off from a shape. For a straight axis with principal axes, stretch, twist and both
+// bendings are decoupled. Components of other families are round-off of the largest component, 1.
 static void drop_rounding(const struct reduction *r, double *v)
 {
     unsigned moves = 0;
@@ -165,9 +164,9 @@ static void drop_rounding(const struct reduction *r, double *v)
             v[i] = 0;
 }
 
-// Are modes of one frequency parted? The first `wanted` of w (m, ascending, 1/omega^2) from its end
-// are kept. Equal is what round-off of the eigenvalues cannot tell apart: m eps of the largest, a
-// hundred times for the steps of the solution.
+// Does the cut separate modes of equal frequency? The first `wanted` of w (m, ascending, 1/omega^2)
+// from its end are kept. Frequencies are equal if they differ by less than the round-off of the
+// eigenvalues: m eps of the largest, a hundred times for the steps of the solution.
 static void find_cut(const struct reduction *r, const double *w, int m, int wanted)
 {
     const double roundoff = 100 * m * DBL_EPSILON * w[m - 1], at = w[m - wanted];
@@ -183,8 +182,9 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
     r->f->uncut[1] = above;
 }
 
-// Entries of a shape that symmetry makes as large as each other: the first one is the largest, not
-// which one round-off says. Derived: far above n eps, and far below what differs by design.
+// Relative difference below which entries count as equal by symmetry. The first of them is then
+// taken as the largest, so that round-off does not decide. Derived: far above n eps, and far below
+// what differs by design.
 static const double alike = 1e-6;
 
 // Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be
@@ -252,7 +252,7 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
     number_modal(&r);
     assemble(&r);
     r.shape = CT_NEWN(b->arena, double, (size_t)r.n *(size_t)(r.n + 1) + 1);
-    // what the scene cannot excite, if it is kept, takes no mode from the others
+    // deformations that the model cannot excite do not count in the number of modes
     if (!static_shapes(&r) || !modes(&r, f->excited, f->beam->modes)
         || !modes(&r, ~f->excited, f->beam->modes))
         return ct_error(b->ctx, f->beam->modes_mark, CT_E_BEAM,
@@ -272,7 +272,7 @@ static double weight_of(const struct reduction *r, const double *v)
     return sum;
 }
 
-// Share of the wanted values g that P c leaves out.
+// Relative part of the values g that P c cannot represent.
 static double share_missed(const struct reduction *r, const double *P, const ct_ex *by_freedom,
                            const ct_ex *c)
 {

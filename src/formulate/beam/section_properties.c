@@ -21,7 +21,7 @@ bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexibl
         && !b->topology->is_planar;
 }
 
-// Inertia per length about the axes; twist has some of its own where nothing else is given.
+// Inertia per length about the axes; torsion has a default if none is given.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis)
 {
     const struct ct_beam *beam = f->beam;
@@ -41,8 +41,8 @@ ct_ex ct_flexible_shear(struct ct_build *b, const struct ct_flexible *f, int pla
              : CT_EX_ZERO;
 }
 
-// With slopes and rotations linear in an element, a curvature c bends it with EI c h and shears
-// it with c (x - h/2), which one point in the middle does not see: (EI + k GA h^2/12) c^2 h/2.
+// With slopes and rotations linear in an element, a curvature c gives the moment EI c h and the
+// shear c (x - h/2), which vanishes at the midpoint: (EI + k GA h^2/12) c^2 h/2.
 double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_beam *beam = f->beam;

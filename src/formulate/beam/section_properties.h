@@ -7,8 +7,8 @@
 /// Rules of integration of the beam's mass and stiffness.
 enum ct_rule ct_flexible_mass_rule(const struct ct_beam *beam);
 enum ct_rule ct_flexible_stiffness_rule(const struct ct_beam *beam);
-/// Does the rotary inertia of the sections turn with them? Where bending shortens the axis; else
-/// to first order, along the axes of the beam.
+/// Does the rotary inertia rotate with the sections? Yes if foreshortening is included; otherwise
+/// it is of first order, along the axes of the beam.
 bool ct_flexible_turns_inertia(const struct ct_build *b, const struct ct_flexible *f);
 /// Inertia per length of the section about an axis.
 struct ct_profile ct_flexible_rotary(const struct ct_flexible *f, int axis);
@@ -21,8 +21,8 @@ ct_ex ct_flexible_integral(struct ct_build *b, const struct ct_flexible *f, int 
 /// second - other, second moments of area, where it is positive, else 0: of the axis about which
 /// a section is stiffer.  (5.6b)
 ct_ex ct_stiffer(struct ct_exs *x, ct_ex second, ct_ex other);
-/// By how much more than EI fully integrated elements of Timoshenko's theory resist bending,
-/// since they cannot bend without shear: the largest k GA h^2/(12 EI).
+/// Shear locking of fully integrated Timoshenko elements, additional bending stiffness relative to
+/// EI: the largest k GA h^2/(12 EI).
 double ct_flexible_locking(struct ct_build *b, const struct ct_flexible *f);
 
 #endif

@@ -72,7 +72,7 @@ void ct_section_motion(struct ct_exs *x, bool is_small, const ct_ex j[3], ct_ex3
         const ct_ex3 axis = ct_ex33_apply(x, &S, unit(x, t->axis));
         const ct_ex3 about = ct_ex3_scale(x, ct_ex_const(x, t->share), axis);
         const ct_ex3 own = ct_ex3_scale(x, rate.e[t->axis], about);
-        // the turns before carry the axis along
+        // previous rotations move the axis
         out->bias = ct_ex3_add(x, out->bias, ct_ex3_cross(x, out->relative_velocity, own));
         out->relative_velocity = ct_ex3_add(x, out->relative_velocity, own);
         out->rate_columns[t->axis] = ct_ex3_add(x, out->rate_columns[t->axis], about);

@@ -14,8 +14,7 @@ struct ct_shape {
     int power;
 };
 
-/// Where integrals over an element are taken: FULL exactly, MIDDLE at one point, ENDS half at each
-/// end.
+/// Integration rules: FULL exact, MIDDLE one point, ENDS half at each end.
 enum ct_rule { CT_RULE_FULL, CT_RULE_MIDDLE, CT_RULE_ENDS };
 
 struct ct_span { // an element on the axis
@@ -44,7 +43,7 @@ struct ct_shape ct_shape_mul(const struct ct_shape *a, const struct ct_shape *b)
 struct ct_shape ct_shape_slope(const struct ct_shape *a);
 /// Integral over x from the start of the element to xi.
 struct ct_shape ct_shape_primitive(const struct ct_shape *a);
-/// Value at xi = 1 for h = 1, rounded once: what cancels there is zero.
+/// Value at xi = 1 for h = 1, rounded once, so that exact cancellation gives zero.
 double ct_shape_end(const struct ct_shape *a);
 bool ct_shape_is_zero(const struct ct_shape *a);
 ct_ex ct_shape_at(struct ct_exs *x, const struct ct_shape *a, ct_ex xi, ct_ex length);
@@ -54,7 +53,7 @@ double ct_shape_value(const struct ct_shape *a, double xi, double length);
 /// and for a polynomial g p up to degree 15; ENDS takes half of the integral of g at each end.
 ct_ex ct_shape_integral(struct ct_exs *x, const struct ct_profile *g, const struct ct_shape *p,
                         const struct ct_span *e, enum ct_rule rule);
-/// Points of a rule and what of the integral of g belongs to each; returns their number. FULL: n
+/// Points of a rule and the weight of g at each; returns their number. FULL: n
 /// Gauss points.
 int ct_shape_points(struct ct_exs *x, const struct ct_profile *g, const struct ct_span *e,
                     enum ct_rule rule, int n, double xi[CT_MAX_GAUSS],

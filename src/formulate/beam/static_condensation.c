@@ -1,24 +1,25 @@
-// Static condensation: rotations that follow the other freedoms of their beam, at a cost in
-// proportion to its nodes; see static_condensation.h.
+// Static condensation of massless rotations, at a cost proportional to the number of nodes; see
+// static_condensation.h.
 //
-// They are in equilibrium, K_rr r + K_rt t = 0. Nodes see their neighbours only: K_rr = L D L' has
-// a narrow band, its inverse has none. With numbers A = D^-1 L D, G = -D^-1 K_rt,
+// The rotations r are in equilibrium, K_rr r + K_rt t = 0. Nodes are coupled with their neighbours
+// only: K_rr = L D L' is banded, its inverse is full. With numbers A = D^-1 L D, G = -D^-1 K_rt,
 //
 //     A y = G t,  L' r = y        from the first to the last, and back
 //
-// and forces s on the rotations are, on t, the transposed of this:  L p = s,  A' w = p,  G' w.
+// and forces s on the rotations give forces on t by the transpose:  L p = s,  A' w = p,  G' w.
 #include "formulate/beam/static_condensation.h"
 
 struct entry {
-    int at; // number of one that follows, or a freedom
+    int at; // number of a condensed rotation, or a freedom
     double by;
 };
 
-// Of one that follows: its row of G by freedoms, of A and of L below the diagonal.
+// A condensed rotation: its row of G by freedoms, of A and of L below the diagonal.
 struct follower {
     int freedom, nheld, nbefore, nlaw;
     struct entry *held, *forth, *back;
-    struct ct_condensation_term *law; // its row of K over the diagonal, without that
+    // its row of K divided by the diagonal entry, without that entry
+    struct ct_condensation_term *law;
 };
 
 struct ct_condensation {
@@ -113,7 +114,7 @@ const struct ct_condensation_term *ct_condensation_law(const struct ct_flexible 
     return f->condensation->row[k].law;
 }
 
-// ---- places, forces -----------------------------------------------------------------------------
+// ---- values, forces -----------------------------------------------------------------------------
 
 static void add(struct ct_exs *x, ct_ex *sum, double by, ct_ex v)
 {

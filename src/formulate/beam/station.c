@@ -1,5 +1,5 @@
-// Sections of a beam: where they are, how they are turned, and how elastic coordinates move them;
-// see flexible_body.h.
+// Sections of a beam: position, rotation and their derivatives by the elastic coordinates; see
+// flexible_body.h.
 #include "formulate/beam/static_condensation.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ static ct_ex stretch_field(struct ct_build *b, const struct ct_flexible *f,
                      ct_element_field(b, e, &f->line[2], of, CT_MIDDLE_DOF, 1, xi));
 }
 
-// (M a)_j of the matrix of shapes that the axial displacement is quadratic in, with its sign.
+// (M a)_j with its sign; M: matrix of the quadratic term of the axial displacement.
 static ct_ex quadratic_slope(struct ct_build *b, const struct ct_flexible *f, int e, int plane,
                              int j, const ct_ex *of, enum ct_axial axial, ct_ex xi)
 {
@@ -104,7 +104,7 @@ void ct_flexible_station(struct ct_build *b, const struct ct_flexible *f, ct_ex 
     s->angle[2] = ct_element_field(b, self, f->shape.rotation, self->value, 2, 4, s->xi);
 }
 
-// apart: freedoms that follow behind the coordinates, not as sums of these.
+// apart: condensed rotations come after the coordinates, not as sums of them.
 static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, int j,
                         ct_ex3 value, ct_ex3 *by_coordinate, bool apart)
 {
@@ -123,7 +123,7 @@ static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, 
     }
 }
 
-// What the dofs of the station's element do.
+// Derivatives by the dofs of the element of the station.
 static void own_partials(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_station *s, ct_ex3 *slide, ct_ex3 *turn, bool apart)
 {
@@ -155,8 +155,8 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
     own_partials(b, f, s, slide, turn, true);
 }
 
-// Are slides of sections less work by forces that what follows hands on? These are summed for
-// each section anew; sums freedom by freedom go on from one section to the next.
+// Are translations of sections cheaper by distributing forces of condensed rotations? That sum is
+// new for each section, while sums by freedom continue from section to section.
 static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
 {
     size_t nsection = 0, nproduct = 0;
@@ -174,7 +174,7 @@ static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
         && (nsection + 1) * ct_condensation_products(f->condensation) < nproduct;
 }
 
-// What the elements before do along the axis.
+// Axial derivatives by the dofs of the previous elements.
 static void chain_partials(struct ct_build *b, const struct ct_flexible *f, int element,
                            ct_ex3 *slide)
 {
@@ -184,7 +184,7 @@ static void chain_partials(struct ct_build *b, const struct ct_flexible *f, int 
                         slide, false);
 }
 
-// The same as forces on freedoms, those that follow handed on from node to node.
+// The same by forces on freedoms; those on condensed rotations are distributed from node to node.
 static void handed_partials(struct ct_build *b, const struct ct_flexible *f, int element,
                             ct_ex3 *slide)
 {

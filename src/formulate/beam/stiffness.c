@@ -13,13 +13,13 @@ struct plane_matrices {
     ct_ex K[4][4], M[4][4], E[4][4];
 };
 
-// Slope of the axis less rotation of the section.
+// Shear angle: slope of the axis minus rotation of the section.
 static struct ct_shape shear_of(const struct ct_bending *s, int j)
 {
     struct ct_shape shear = s->slope[j];
     if (ct_shape_is_zero(&shear))
         shear.power = s->rotation[j].power;
-    // both are of one power of the length, or one of them is zero
+    // both have the same power of the length, or one of them is zero
     for (int i = 0; i < CT_SHAPE_SIZE; i++)
         shear.c[i] -= s->rotation[j].c[i];
     return shear;
@@ -62,7 +62,7 @@ static struct plane_matrices plane_matrices(struct ct_build *b, const struct ct_
     return s;
 }
 
-// Stretch and twist: k times the slopes holds them, m per length moves.
+// Stretch and twist: matrices of stiffness k (slopes) and mass m per length.
 struct line_matrices {
     ct_ex K[CT_LINE_DOF][CT_LINE_DOF], M[CT_LINE_DOF][CT_LINE_DOF];
 };
@@ -148,8 +148,8 @@ static void bend_element(struct ct_build *b, const struct ct_flexible *f, int e,
     }
 }
 
-// Stretch of the element: the difference of the nodes' s, in LOCAL coordinates by what they and the
-// slopes say.
+// Stretch of the element: difference of s at its nodes; in LOCAL coordinates from positions and
+// slopes.
 struct stretch {
     ct_ex value, rate;
     ct_ex slope[CT_BENT_DOF];
@@ -176,7 +176,7 @@ static struct stretch stretch_of(struct ct_build *b, const struct ct_flexible *f
     return s;
 }
 
-// Two amplitudes of the strain: s.value/h, constant, and that of the middle.
+// Two coefficients of the strain: s.value/h, constant, and that of the mid-element freedom.
 static void stretch_element(struct ct_build *b, const struct ct_flexible *f, int e,
                             const struct plane_matrices plane[2], struct ct_element_force *out)
 {
@@ -277,8 +277,8 @@ static void push_angle(struct ct_build *b, const struct angle *a, int n, ct_ex b
     }
 }
 
-// Squares of curvatures that are taken at n points and interpolated in between: with constant
-// sections at Gauss points, where all that is linear in an element is exact. Definition: two.
+// Squares of curvatures, evaluated at n points and interpolated between them. With constant
+// sections these are Gauss points, exact for linear functions in an element. Definition: two.
 enum { MOST_POINTS = 2 };
 
 struct squares {
@@ -333,7 +333,7 @@ static void add_square(struct ct_exs *x, const struct squares *s, const ct_ex *k
     }
 }
 
-// Bending turns the axes of twist, and twist those of bending.  (5.6b)
+// Bending rotates the axis of twist, and twist rotates the axes of bending.  (5.6b)
 static void couple_curvatures(struct ct_build *b, const struct ct_flexible *f, int e,
                               struct ct_element_force *out)
 {
@@ -384,7 +384,7 @@ static void couple_curvatures(struct ct_build *b, const struct ct_flexible *f, i
     }
 }
 
-// Twist turns the axes of shear: (k_y - k_z) G area p gy gz.  (5.6b)
+// Twist rotates the axes of shear: (k_y - k_z) G area p gy gz.  (5.6b)
 static void couple_shear(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex xi,
                          ct_ex GA, struct ct_element_force *out)
 {

@@ -1,7 +1,8 @@
-// Stiffness of cubic elements with constant sections, by the amplitudes of legendre.h; see
-// stiffness.h. What stiffness.c does with matrices of the dofs, to round-off:
+// Stiffness of cubic elements with constant sections, by the coefficients of legendre.h; see
+// stiffness.h. Equal to the element matrices of stiffness.c up to round-off:
 //
-//     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1     stretch u_2 - u_1 + S(1)
+//     bending EI/h (D_11 + 3 D_22)     twist GJ/(2h) t^2, t = phi2 - phi1
+//     stretch u_2 - u_1 + S(1)
 #include "formulate/beam/stiffness.h"
 #include "formulate/beam/legendre.h"
 
@@ -21,7 +22,7 @@ bool ct_stiffness_has_legendre(struct ct_build *b, const struct ct_flexible *f)
         kinds |= ct_ex_kinds(b->x, section[i]);
     return !(kinds & 1u << CT_SYM_LOCAL) && beam->theory == CT_BEAM_EULER_BERNOULLI
         && f->formulation == CT_BEAM_FORESHORTENING && !beam->higher_order
-        && !beam->has_quadratic_twist // couple() knows one twist of an element
+        && !beam->has_quadratic_twist // couple() supports linear twist only
         && !beam->has_quadratic_stretch && ct_flexible_stiffness_rule(beam) == CT_RULE_FULL
         && ct_ex_is_zero(beam->damping_mass);
 }
@@ -81,7 +82,7 @@ static ct_ex stretch(struct ct_build *b, const struct ct_flexible *f, int e,
     return spring(b, f, ct_ex_mul(x, s->per, EA), v, rate, out);
 }
 
-// Of the axial force, which turns with the slopes, and of the bending moments.
+// Forces on the slopes by the axial force and by the bending moments.
 static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_ex N,
                  const struct bent *s, struct ct_legendre_bending *force,
                  struct ct_element_force *out)
@@ -101,10 +102,11 @@ static void bend(struct ct_build *b, const struct ct_flexible *f, int plane, ct_
     }
 }
 
-// (5.6b) at the two Gauss points z = +-1/sqrt(3), where curvatures of the amplitudes are exact.
+// (5.6b) at the two Gauss points z = +-1/sqrt(3), where the curvatures are exact.
 // With the slopes g of v and w of w, p = m + t z/2 and D = E (Iz - Iy)/h if that is positive,
 //
-//     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12) + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3 g_2^2)
+//     GJ/(2h) ((t + c_0/2)^2 - t^2 + c_1^2/12)
+//     + D/2 ((g_1 + a_0)^2 - g_1^2 + (3 g_2 + a_1)^2/3 - 3 g_2^2)
 //
 //     c_0 = (g_1 w_0 - g_0 w_1)/h + (g_2 w_1 - g_1 w_2)/2,   c_1 = 3 (g_2 w_0 - g_0 w_2)/h
 //     a_0 = m w_1 + t w_2/2,   a_1 = 3 m w_2 + t w_1/2
@@ -121,7 +123,7 @@ static void bend_turned(struct ct_exs *x, ct_ex D, ct_ex m, ct_ex t, const ct_ex
     const ct_ex a0 = ct_ex_add(x, ct_ex_mul(x, m, soft[1]), ct_ex_mul(x, half, soft[2])),
                 a1 = ct_ex_add(x, ct_ex_scale(x, 3, ct_ex_mul(x, m, soft[2])),
                                ct_ex_mul(x, half, soft[1]));
-    // derivatives by a_0 and, three times, a_1; without what the bending stiffness knows
+    // derivatives by a_0 and, three times, a_1; without the bending stiffness
     const ct_ex turned0 = ct_ex_mul(x, D, a0), turned1 = ct_ex_mul(x, D, a1);
     const ct_ex M0 = ct_ex_add(x, ct_ex_mul(x, D, stiff[1]), turned0),
                 M1 = ct_ex_add(x, ct_ex_scale(x, 3, ct_ex_mul(x, D, stiff[2])), turned1);

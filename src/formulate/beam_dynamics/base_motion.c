@@ -1,4 +1,4 @@
-// How the base of a beam moves, in axes of the beam; see beam_dynamics.h.
+// Motion of the base of a beam, in axes of the beam; see beam_dynamics.h.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
@@ -13,8 +13,8 @@ ct_ex3 ct_base_out_of(struct ct_build *b, const struct ct_flexible *f, ct_ex3 v)
     return ct_node_turn(b, f->base, v);
 }
 
-// Angular rates summed in the cluster's own axes, where the axes of its turns are fixed in it and
-// it turns against ground; in a plane they stay along the normal.
+// Angular velocity and acceleration in axes of the cluster. Possible if its parent is ground and
+// its rotation axes are fixed in it; in a plane they are along the normal.
 static bool plain_rates(struct ct_build *b, const struct ct_node_placement *p,
                         enum ct_level level, struct ct_base *out)
 {

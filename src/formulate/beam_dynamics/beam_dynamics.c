@@ -1,7 +1,7 @@
-// Dynamics of flexible bodies; see flexible_body.h. How integrals over a beam are taken is in inertia_points.c and
-// inertia_exact.c, its stiffness in stiffness.c.
+// Dynamics of flexible bodies; see flexible_body.h. Integrals of inertia: inertia_*.c. Stiffness:
+// beam/stiffness.c.
 //
-// Everything is written in the beam's axes; the base's motion is turned into them once.
+// All vectors are in axes of the beam; the motion of the base is transformed once.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/mass_sums.h"
 
@@ -9,7 +9,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- lumping ---------------------------------------------------------------------------------------------
+// ---- lumping -----------------------------------------------------------------------------------
 
 void ct_flexible_inertia_derive(struct ct_build *b, struct ct_flexible *f)
 {
@@ -37,9 +37,9 @@ void ct_flexible_lump(struct ct_build *b)
     }
 }
 
-// ---- handing over to elastic coordinates ----------------------------------------------------------
+// ---- forces on elastic coordinates ----------------------------------------------------------
 
-// Forces on the freedoms, added to the rows of the coordinates.
+// Adds forces on the nodal freedoms to the rows of the elastic coordinates.
 static void hand_over(struct ct_build *b, const struct ct_flexible *f, ct_ex *force, ct_ex *row)
 {
     if (f->condensation)
@@ -59,7 +59,7 @@ static ct_ex *forces_of_inertia(struct ct_build *b, const struct ct_flexible *f,
     return force;
 }
 
-// Rows in the named integrals: m_rf' a + m_thetaf' al - Q_vf + V_q, and m_ff q_f''.
+// Rows in terms of the named integrals: m_rf' a + m_thetaf' al - Q_vf + V_q, and m_ff q_f''.
 static void named_rows(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                        enum ct_level level, ct_ex *row)
 {
@@ -122,7 +122,7 @@ void ct_flexible_relative_wrench(struct ct_build *b, const struct ct_flexible *f
     }
 }
 
-// ---- sweep --------------------------------------------------------------------------------------------------
+// ---- sweep -------------------------------------------------------------------------------------
 
 void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,
                        ct_ex3 *rest, ct_ex3 *torque, ct_ex *row)
@@ -164,7 +164,7 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     *torque = ct_base_out_of(b, f, T);
 }
 
-// ---- motion --------------------------------------------------------------------------------------------------
+// ---- motion ------------------------------------------------------------------------------------
 
 struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f)
 {
@@ -190,9 +190,9 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
                                       .twice_kinetic = twice};
 }
 
-// ---- mass matrix ------------------------------------------------------------------------------------------------
+// ---- mass matrix -------------------------------------------------------------------------------
 
-// All of element e moves along with its start, the elastic coordinate k.
+// Entries of the start of element e, elastic coordinate k, which moves the whole element.
 static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
                           const struct ct_element_sums *s, int e, struct ct_columns *out,
                           ct_ex *M)
@@ -214,9 +214,10 @@ static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// ---- where all coordinates are small ------------------------------------------------------------------------
+// ---- where all coordinates are small -----------------------------------------------------------
 
-// What comes of the mass m beyond an element, of this first moment, which is drawn in by g of a dof.
+// Adds the mass m beyond an element, with this first moment, which moves axially by g per unit of a
+// dof.
 static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3 *moved,
                        ct_ex3 *swept)
 {
@@ -225,8 +226,9 @@ static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3
     swept->e[2] = ct_ex_sub(x, swept->e[2], ct_ex_mul(x, g, moment.e[1]));
 }
 
-// Columns as forces on freedoms, those on rotations that follow handed on from node to node: the gradient of the momentum, at a cost in
-// proportion to the nodes, where sums for each coordinate would take their square.
+// Columns as forces on nodal freedoms. Forces on condensed rotations are distributed from node to
+// node. The cost is proportional to the number of nodes; separate sums for each coordinate would
+// cost its square.
 static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
                                const struct ct_element_sums *s, struct ct_columns *out)
 {
@@ -259,7 +261,8 @@ static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// Entries between the coordinates at rest: those of the straight beam, where rotations that follow have no inertia.
+// Mass entries between elastic coordinates of the straight beam, where condensed rotations have no
+// inertia.
 static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
                          const struct ct_element_sums *s, ct_ex *M)
 {
@@ -278,7 +281,8 @@ static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
                 ct_dof_push_pair(b, f, e, j, e, k, all[(e * CT_DOF + j) * CT_DOF + k], M);
 }
 
-// M and Q are cut to first order in the coordinates of f: of the entries between these those at rest are left.  (small_motion.h)
+// Mass of a beam with small coordinates: entries between them are those of the straight beam.
+// (small_motion.h)
 static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
                        ct_ex *M)
 {
@@ -289,10 +293,10 @@ static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct c
     mass_at_rest(b, f, s, M);
 }
 
-// ---- of any size ----------------------------------------------------------------------------------------------
+// ---- of any size -------------------------------------------------------------------------------
 
-// Elements from the tip inwards: with a CHAIN what lies beyond moves along with an element's bending, but for starts that
-// are coordinates.
+// Adds the elements from the tip inwards. In a CHAIN the bending of an element moves everything
+// beyond it, unless element starts are coordinates.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                          struct ct_columns *out, ct_ex *M)
 {
@@ -330,7 +334,8 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s . swept).
+// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s
+// . swept).
 static void base_column(struct ct_build *b, const struct ct_flexible *f,
                         const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
                         const struct ct_term *term, int nterm, ct_ex *M)
@@ -353,8 +358,8 @@ static bool has_unknown(const struct ct_term *p, int np)
     return false;
 }
 
-// s x r in axes of the beam, of an axis s that is fixed in the cluster of the beam and of links r that all lie in it: for
-// readers, who would have to see that R'(R s x R r) = s x r.
+// s x r in axes of the beam, if the axis s and all links r are fixed in the cluster of the beam.
+// This avoids the longer expression R'(R s x R r).
 static bool local_lever(struct ct_build *b, const struct ct_flexible *f,
                         const struct ct_rotation_axis *spin, ct_ex3 *lever)
 {
@@ -417,7 +422,7 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
         }
 }
 
-// Do slopes that follow, and so all coordinates, draw the axis of every element in?
+// Does each coordinate foreshorten every element, because slopes are condensed?
 static bool draws_by_shapes(const struct ct_flexible *f)
 {
     return f->condensation && f->kinematics == CT_AXIAL_CHAIN
@@ -464,7 +469,7 @@ void ct_flexible_mass(struct ct_build *b, ct_ex *M)
     }
 }
 
-// c p times p: of bending dofs alone.
+// Adds the terms c p p' of the bending dofs.
 void ct_element_close(struct ct_exs *x, struct ct_element_sums *s)
 {
     for (int k = 0; k < s->nsquare; k++)

@@ -1,9 +1,9 @@
-// Integrals over a beam with linear kinematics: constant matrices of its elements; see
-// beam_dynamics.h.
+// Integrals over a beam with linear kinematics: constant element matrices; see beam_dynamics.h.
 //
 // A dof j moves the axis along one direction d(j) by its shape f_j. With
 //
-//     S_jk = int m f_j f_k,  F_j = int m f_j,  X_j = int m x f_j,  R_jk and G_j the same of the rotary inertia
+//     S_jk = int m f_j f_k,  F_j = int m f_j,  X_j = int m x f_j,
+//     R_jk and G_j the same for the rotary inertia
 //
 // and z_a,k = Om_ab q_k + 2 w~_ab q'_k (+ q''_k where a = b), b = d(k), the row of dof j with a =
 // d(j) is
@@ -17,8 +17,8 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 struct ct_element_mass {
     ct_ex S[CT_AXIS_DOF][CT_AXIS_DOF], F[CT_AXIS_DOF], X[CT_AXIS_DOF];
     ct_ex m, mx, mxx;
-    ct_ex R[CT_DOF][CT_DOF],
-        G[CT_DOF]; // between dofs that turn the section about the same axis
+    // between dofs that rotate the section about the same axis
+    ct_ex R[CT_DOF][CT_DOF], G[CT_DOF];
     ct_ex j[3];
 };
 
@@ -29,7 +29,7 @@ static int direction(int dof)
     return dof < 2 || dof == CT_MIDDLE_DOF ? 0 : dof < 6 ? 1 : 2;
 }
 
-// Axis a dof turns the section about, -1 for none.
+// Axis about which a dof rotates the section; -1: none.
 static int axis(int dof)
 {
     return dof < 2 || dof == CT_MIDDLE_DOF ? -1 : dof < 6 ? 2 : dof < CT_BENT_DOF ? 1 : 0;
@@ -42,7 +42,7 @@ static const struct ct_shape *place_shape(const struct ct_flexible *f, int dof)
     return dof < 2 ? &f->line[dof] : &f->shape.deflection[(dof - 2) % 4];
 }
 
-// Right-handed: a slope dw/dx turns about -y.
+// Right-handed: a slope dw/dx is a rotation about -y.
 static struct ct_shape turn_shape(const struct ct_flexible *f, int dof)
 {
     struct ct_shape s
@@ -120,7 +120,7 @@ static ct_ex row_times(struct ct_build *b, const ct_ex *row, const ct_ex *v, int
     return sum;
 }
 
-// v where the dofs move along direction a, zero elsewhere.
+// v for dofs along direction a, zero for others.
 static void along(const ct_ex *v, int a, ct_ex out[CT_AXIS_DOF])
 {
     for (int j = 0; j < CT_AXIS_DOF; j++)
@@ -190,7 +190,7 @@ static ct_ex cross_entry(struct ct_build *b, ct_ex3 w, int a, int c)
     return (a + 1) % 3 == c ? ct_ex_neg(b->x, v) : v;
 }
 
-// ---- the form -----------------------------------------------------------------------------------
+// ---- the method --------------------------------------------------------------------------------
 
 static void add_moments(struct ct_build *b, const struct ct_element *e,
                         const struct ct_element_mass *s, struct ct_inertia *I,

@@ -1,27 +1,26 @@
-// Integrals (5.5) over a beam whose mass per length is constant, by the amplitudes (5.5b) of
-// legendre.h: what inertia_points.c sums over points, to round-off. Where the sections' rotary
-// inertia counts, it stays along the axes of the beam.
+// Integrals (5.5) over a beam whose mass per length is constant, by the Legendre coefficients
+// (5.5b) of legendre.h. They are equal to those of inertia_points.c up to round-off. Rotary inertia
+// of the sections stays along the axes of the beam.
 #include "formulate/beam/legendre.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// Amplitudes of a motion relative to the base: of a displacement, of a rotation.
+// Legendre coefficients of a motion relative to the base: of displacement and rotation.
 struct ct_field {
     ct_ex3 place[CT_LEGENDRE_AXIAL], turn[CT_LEGENDRE_SLOPES];
     struct ct_legendre_bending bend[2];
 };
 
 struct ct_legendre_element {
-    struct ct_field value, rate;     // value: place less x
+    struct ct_field value, rate;     // value: position minus x
     ct_ex3 place[CT_LEGENDRE_AXIAL]; // from the base
     ct_ex bias[CT_LEGENDRE_AXIAL];   // along the axis, second derivative with u' = 0
 };
 
 // ---- weights ------------------------------------------------------------------------------------
 
-// int mu B^2 dx of the polynomials B that the amplitudes belong to, over the mass of the element: c
-// h^power
+// int mu B^2 dx of the polynomials B, divided by the mass of the element: c h^power
 static const struct {
     double c;
     int power;
@@ -67,7 +66,7 @@ static bool is_chain(const struct ct_flexible *f)
     return f->axial == CT_AXIAL_CHAIN;
 }
 
-// Linear in the dofs; what bending draws is not yet in it.
+// The field linear in the dofs, without foreshortening.
 static struct ct_field field_of(struct ct_build *b, const struct ct_flexible *f, int e,
                                 const ct_ex *dof)
 {
@@ -133,8 +132,8 @@ static void derive_element(struct ct_build *b, const struct ct_flexible *f, int 
     s->place[1].e[0] = ct_ex_add(x, ct_ex_scale(x, 0.5, h), s->place[1].e[0]);
 }
 
-// Second derivatives with the symbols u', less the bias. chain: by element, of the foreshortening
-// at its start.
+// Second derivatives with the symbols u', minus the bias. chain: by element, those of the
+// foreshortening at its start.
 static struct ct_field acceleration_of(struct ct_build *b, const struct ct_flexible *f, int e,
                                        const ct_ex *chain)
 {
@@ -148,7 +147,7 @@ static struct ct_field acceleration_of(struct ct_build *b, const struct ct_flexi
     return a;
 }
 
-// Forces on the amplitudes, handed to the dofs of the element.
+// Adds forces on the coefficients to the dofs of the element.
 static void push_field(struct ct_build *b, const struct ct_flexible *f, int e,
                        const ct_ex3 place[CT_LEGENDRE_AXIAL],
                        const ct_ex3 turn[CT_LEGENDRE_SLOPES], ct_ex dof[CT_DOF])
@@ -180,8 +179,8 @@ static void push_field(struct ct_build *b, const struct ct_flexible *f, int e,
 
 // ---- sums over elements of one weight -----------------------------------------------------------
 
-// A sum of products by amplitude, multiplied by the weights when the mass or the length of an
-// element changes.
+// A sum of products by coefficient. It is multiplied by the weights when the mass or the length of
+// an element changes.
 struct sums {
     struct ct_build *b;
     ct_ex m, h;
@@ -222,7 +221,7 @@ static void add_to(struct sums *s, int k, int i, ct_ex v)
     s->of[k][i] = ct_ex_add(s->b->x, s->of[k][i], v);
 }
 
-// ---- the form -----------------------------------------------------------------------------------
+// ---- the method --------------------------------------------------------------------------------
 
 static void derive(struct ct_build *b, struct ct_flexible *f)
 {
@@ -370,7 +369,7 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
 
 // ---- mass of an element -------------------------------------------------------------------------
 
-// Forces v on one amplitude of places along the axis, on the dofs.
+// Adds forces v on one axial coefficient to the dofs.
 static void push_along(struct ct_build *b, const struct ct_flexible *f, int e, int k, ct_ex3 v,
                        ct_ex dof[CT_DOF])
 {
@@ -379,7 +378,7 @@ static void push_along(struct ct_build *b, const struct ct_flexible *f, int e, i
     push_field(b, f, e, place, turn, dof);
 }
 
-// sum m r x dr by dof, and of the sections' rotation.
+// sum m r x dr by dof, with the rotation of the sections.
 static void sweep_element(struct ct_build *b, const struct ct_flexible *f, int e,
                           struct ct_element_sums *s)
 {
@@ -424,7 +423,8 @@ static void draw_slopes(struct ct_build *b, const struct ct_flexible *f, int e,
 
 // int mu u^2 dx of u = xi S(1) - S(xi) is a sum of four squares, weighted:
 //
-//     mass h^2 ((D_01/h + 5/28 D_12)^2/120 + D_12^2/31360 + (D_02/h + D_11/3 + D_22/10)^2/840 + 3/308000 D_22^2)
+//     mass h^2 ((D_01/h + 5/28 D_12)^2/120 + D_12^2/31360
+//                 + (D_02/h + D_11/3 + D_22/10)^2/840 + 3/308000 D_22^2)
 static int bubble_squares(struct ct_exs *x, ct_ex h, ct_ex mass,
                           struct ct_foreshortening_products square[CT_LEGENDRE_AXIAL],
                           ct_ex weights[CT_LEGENDRE_AXIAL])
@@ -442,7 +442,7 @@ static int bubble_squares(struct ct_exs *x, ct_ex h, ct_ex mass,
     return COUNT(c);
 }
 
-// CHAIN: those of the amplitudes themselves.
+// The same for CHAIN: squares of the coefficients themselves.
 static int own_squares(struct ct_exs *x, ct_ex h, ct_ex mass,
                        struct ct_foreshortening_products square[CT_LEGENDRE_AXIAL],
                        ct_ex weights[CT_LEGENDRE_AXIAL])
@@ -471,7 +471,7 @@ static void add_pair(struct ct_exs *x, struct ct_element_sums *s, int i, int j, 
         s->M[j][i] = s->M[i][j];
 }
 
-// What bending draws along the axis: its own mass, and that with the axial dofs.
+// Mass terms of the foreshortening: with itself and with the axial dofs.
 static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
                       struct ct_element_sums *s)
 {

@@ -1,15 +1,16 @@
-// Mass matrix of a beam whose coordinates are shapes of all of it; see beam_dynamics.h.
+// Mass matrix of a beam with shapes of the whole beam as coordinates; see beam_dynamics.h.
 //
 // With C (dofs x shapes) of an element, M its matrix between dofs, and a CHAIN: mass m beyond it, g
-// = dc/d dof, so that gamma = C' g is what a shape draws in there,
+// = dc/d dof, so that gamma = C' g is the foreshortening of the element by the shapes,
 //
-//     M_shapes = sum_e C' M C + m gamma gamma' + gamma beta' + beta gamma',   beta = sum_beyond C' int mu dr_x + m gamma
+//     M_shapes = sum_e C' M C + m gamma gamma' + gamma beta' + beta gamma',
+//     beta = sum_beyond C' int mu dr_x + m gamma
 //
-// from the tip inwards. Going by pairs of dofs would take the square of the elements times that of
-// the shapes.
+// summed from the tip inwards. Sums over pairs of dofs would cost (elements)^2 (shapes)^2.
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
-// Of an element: C, and of its shapes the sums that its dofs have; of those beyond it: beta.
+// An element in terms of shapes: C, the sums of its dofs by shape, and beta of everything beyond
+// it.
 struct reduced {
     ct_ex *C;            // CT_DOF x n, by rows
     ct_ex *draw, *along; // gamma, beta
@@ -35,7 +36,7 @@ static bool is_fixed(const struct ct_exs *x, ct_ex e)
     return !(ct_ex_kinds(x, e) & ~(1u << CT_SYM_PARAM));
 }
 
-// C' M C onto the lower triangle, M C first: of what stays the same all along, or of what does not.
+// Adds C' M C to the lower triangle, M C first: of the constant part or of the variable part.
 static void add_element(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
                         const struct ct_element_sums *s, bool fixed, ct_ex *M)
 {
@@ -53,7 +54,7 @@ static void add_element(struct ct_build *b, const struct ct_flexible *f, const c
     }
 }
 
-// What the sums keep as squares. p: n
+// Adds the terms that the sums hold as squares. p: n
 static void add_squares(struct ct_build *b, const struct ct_flexible *f, const ct_ex *C,
                         const struct ct_element_sums *s, ct_ex *p, ct_ex *M)
 {
@@ -92,7 +93,7 @@ static void reduce(struct ct_build *b, const struct ct_flexible *f, int e,
     }
 }
 
-// What lies beyond the element, of this mass and moment, is drawn in by its shapes.
+// Adds the mass and first moment beyond the element, which the shapes of the element move axially.
 static void add_beyond(struct ct_build *b, const struct ct_flexible *f, struct reduced *r,
                        ct_ex m, ct_ex3 moment, ct_ex *M)
 {

@@ -1,4 +1,4 @@
-// Integrals over a beam as sums over points: Gauss points, or what the beam's rules ask for; see
+// Integrals over a beam as sums over points: Gauss points, or the rule of the beam; see
 // beam_dynamics.h.
 //
 // With Om = al~ + w~ w~ a point needs
@@ -9,7 +9,8 @@
 #include "formulate/mass_sums.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
-// Points of an element: of constant sections. Derived: exact for products of two shapes of degree 5.
+// Points of an element with constant sections. Derived: exact for products of two shapes of degree
+// 5.
 enum { FEW_POINTS = 6 };
 
 // A point of mass m with the section there.
@@ -17,10 +18,10 @@ struct ct_point {
     int element;
     ct_ex m;
     struct ct_section section;
-    ct_ex3 r, rate, bias;        // place from the base; bias: second derivative with u' = 0
+    ct_ex3 r, rate, bias;        // position from the base; bias: second derivative with u' = 0
     ct_ex along[CT_AXIS_DOF];    // d r_x/d dof
-    struct ct_axial_field axial; // the same of forces, where these alone foreshorten
-    ct_ex place[4], turn[4], line[CT_LINE_DOF]; // shapes there
+    struct ct_axial_field axial; // the same for forces, if only forces include foreshortening
+    ct_ex place[4], turn[4], line[CT_LINE_DOF]; // shape functions at the point
     ct_ex linear_value;                         // axial displacement, of r
 };
 
@@ -103,7 +104,7 @@ static void add_points(struct ct_build *b, const struct ct_flexible *f, int e, s
     }
 }
 
-// Acceleration of a point with the symbols u', less its bias. chain: by element, of the
+// Acceleration of a point with the symbols u', minus its bias. chain: by element, that of the
 // foreshortening at its start.
 static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
                                const struct ct_point *p, const ct_ex *chain)
@@ -116,7 +117,7 @@ static ct_ex3 own_acceleration(struct ct_build *b, const struct ct_flexible *f,
         {along, dot4(b, p->place, acceleration + 2), dot4(b, p->place, acceleration + 6)}};
 }
 
-// ---- the form -----------------------------------------------------------------------------------
+// ---- the method --------------------------------------------------------------------------------
 
 static void derive(struct ct_build *b, struct ct_flexible *f)
 {
@@ -134,7 +135,7 @@ static void derive(struct ct_build *b, struct ct_flexible *f)
     }
 }
 
-// Rows of the force F and of T, which does work on twist, -dw/dx and dv/dx at a point.
+// Adds the rows of force F and torque T at a point; T is conjugate to twist, -dw/dx and dv/dx.
 static void push_point(struct ct_build *b, const struct ct_point *p, const ct_ex *along,
                        ct_ex3 F, ct_ex3 T, ct_ex sum[CT_DOF])
 {
@@ -188,8 +189,8 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// What foreshortening adds where it is left out of the kinematics: rows of the velocity-quadratic
-// force of the foreshortened beam less those of the linear one, which inertia_rows has.
+// Rows of foreshortening if the kinematics neglects it: quadratic velocity forces of the
+// foreshortened beam minus those of the linear one, which inertia_rows contains.
 static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
                                 const struct ct_base *m, ct_ex *by_freedom)
 {
@@ -249,8 +250,8 @@ static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_re
     }
 }
 
-// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the sections'
-// rotation.
+// Force and torque of the motion relative to the base: m (2 w x r' + r''), and of the rotation of
+// the sections.
 static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                    enum ct_level level, ct_ex3 *force, ct_ex3 *torque)
 {

@@ -1,8 +1,8 @@
 // See beam_augmented.h.
 //
-// The equations are taken down once more, from a copy of the build on the same expressions in which
-// what follows and the starts of elements are further elastic coordinates: sections move by these
-// and their own element's dofs.
+// The equations are derived a second time from a copy of the build with the same expressions. In
+// the copy the condensed rotations and the foreshortening at the starts of elements are additional
+// elastic coordinates. A section moves by these and by the dofs of its own element.
 #include "formulate/closed_form/beam_augmented.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -20,8 +20,8 @@ static long pairs(long n)
     return n * (n + 1) / 2;
 }
 
-// Does M_c have fewer entries than M between the coordinates of f? Where rotations follow, each of
-// M is a sum over all elements.
+// Does M_c have fewer entries than M between the coordinates of f? With condensed rotations each
+// entry of M is a sum over all elements.
 static bool is_sparser(const struct ct_flexible *f)
 {
     long n = 0;
@@ -49,7 +49,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 
 // ---- further coordinates ------------------------------------------------------------------------
 
-// Freedoms that follow as coordinates of their own, k and up.
+// Makes the condensed rotations coordinates, numbered from k.
 static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
 {
     const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
@@ -64,8 +64,8 @@ static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
     }
 }
 
-// Elastic coordinates of f with what follows and its starts behind them, whose speeds are numbered
-// from nu on.
+// Appends the condensed rotations and element starts of f to its elastic coordinates. Their speeds
+// are numbered from nu.
 static void add_coordinates(struct ct_build *w, struct ct_flexible *f)
 {
     const int n = f->nelastic, nfollow = ct_condensation_count(f);
@@ -79,10 +79,10 @@ static void add_coordinates(struct ct_build *w, struct ct_flexible *f)
         all[k] = (struct ct_elastic){.u = (int)w->eqs->nu++, .freedom = -1};
     f->elastic = all;
     f->former_condensation = f->condensation;
-    f->condensation = NULL; // what does is a coordinate
+    f->condensation = NULL; // condensed rotations are coordinates now
 }
 
-// A section moves by what its own element does, and by its start.
+// Sets the motion of a section by the dofs of its own element and by the start of that element.
 static void move_by_element(struct ct_build *w, const struct ct_flexible *f,
                             struct ct_edge_kinematics *e)
 {
@@ -93,7 +93,7 @@ static void move_by_element(struct ct_build *w, const struct ct_flexible *f,
         e->translation[ct_flexible_start(f, e->station->element)] = along;
 }
 
-// A copy of b with further coordinates; NULL: no beam has any.
+// A copy of b with the additional coordinates; NULL: no beam has any.
 static struct ct_build *clone_augmented(const struct ct_build *b)
 {
     struct ct_arena *a = b->arena;
@@ -129,7 +129,8 @@ static struct ct_build *clone_augmented(const struct ct_build *b)
 
 // ---- entries ------------------------------------------------------------------------------------
 
-// J_c: columns of the beams' coordinates by what their sections do now, the others as they are.
+// Derives J_c: columns of beam coordinates from the new motion of the sections, other columns as in
+// J.
 static void take_rows(const struct ct_build *b, struct ct_build *w, struct ct_beam_augmented *c)
 {
     const struct ct_equations *e = b->eqs;
@@ -163,13 +164,13 @@ static void push_sum(const struct ct_build *b, struct ct_beam_augmented *c, int 
     push_link(b, c, row, column, ct_ex_neg(b->x, v));
 }
 
-// The unknown that a freedom of a beam with all coordinates is.
+// Index of the unknown for a nodal freedom of a beam with all coordinates.
 static int unknown_of(const struct ct_flexible *f, const struct ct_freedom *d)
 {
     return f->elastic[d->part[0].k].u;
 }
 
-// c at the start of element i from that of the element before and its dofs.
+// Lists the equation for c at the start of element i, from c and the dofs of the previous element.
 static void list_start(const struct ct_build *b, const struct ct_flexible *f, int i,
                        struct ct_beam_augmented *c)
 {
@@ -186,7 +187,7 @@ static void list_start(const struct ct_build *b, const struct ct_flexible *f, in
     }
 }
 
-// The sum that number k of those that follow satisfies.
+// Lists the equilibrium equation of condensed rotation k.
 static void list_law(const struct ct_build *b, const struct ct_flexible *f,
                      const struct ct_flexible *with, int k, struct ct_beam_augmented *c)
 {
@@ -239,7 +240,7 @@ struct ct_beam_augmented *ct_beam_augmented_derive(struct ct_build *b)
 
 // ---- P ------------------------------------------------------------------------------------------
 
-// By freedom from y, or back into it.
+// Copies y to an array by nodal freedom, or back.
 static void exchange(const struct ct_flexible *f, ct_ex *by_freedom, ct_ex *y, bool back)
 {
     for (int i = 0; i < CT_NODE_FREEDOM * (f->beam->nelement + 1); i++)
@@ -249,7 +250,7 @@ static void exchange(const struct ct_flexible *f, ct_ex *by_freedom, ct_ex *y, b
         }
 }
 
-// What follows from the other freedoms, or the forces on it handed to them.
+// Condensed rotations from the other freedoms, or (transposed) their forces distributed to those.
 static void
 follow(struct ct_exs *x, struct ct_arena *scratch, const struct ct_beam_augmented *c, ct_ex *y,
        void (*by)(struct ct_exs *x, const struct ct_condensation *s, ct_ex *by_freedom))

@@ -26,8 +26,8 @@ bool ct_blocks_moves(const struct ct_blocks *s, ct_ex v)
 
 struct choice {
     int size, row[2], column[2];
-    bool is_loose; // a single entry that moves: it may vanish somewhere
-    double cost;   // products per row
+    bool is_loose; // a single variable entry: it may vanish in some configuration
+    double cost;   // number of products per row
     int level;
     double strength;
 };
@@ -37,7 +37,7 @@ static bool is_open(const struct ct_blocks *s, const struct ct_probed_entry *e)
     return s->block_of[e->column] == CT_BLOCK_OPEN;
 }
 
-// The largest number of a row among the dependent columns.
+// The largest magnitude in a row among the dependent columns.
 static double row_size(const struct ct_blocks *s, int row)
 {
     double most = 0;
@@ -118,7 +118,7 @@ static void try_pair(const struct ct_blocks *s, int i, int k, double size, struc
         }
 }
 
-// Where nothing is large enough, the largest there is.
+// If no pivot passes the threshold, takes the largest.
 static void try_largest(const struct ct_blocks *s, struct choice *best)
 {
     for (int i = 0; i < (int)s->rank; i++) {
@@ -188,7 +188,7 @@ static void invert(struct ct_blocks *s, struct ct_block *b)
     b->pivot_number = N[0] * N[3] - N[1] * N[2];
 }
 
-// The next column of up to three lines, from places at[] on.
+// The next column of up to three sparse rows, from positions at[] on.
 static int next_column(const struct ct_probed_row *const l[3], const size_t at[3], int n)
 {
     int next = INT32_MAX;
@@ -198,7 +198,7 @@ static int next_column(const struct ct_probed_row *const l[3], const size_t at[3
     return next;
 }
 
-// left[row] -= factor * rows of b; the columns of b go.
+// left[row] -= factor * rows of b; removes the columns of b.
 static void subtract_rows(struct ct_blocks *s, int row, const struct ct_block *b,
                           const ct_ex *factor, const double *number)
 {
@@ -276,7 +276,7 @@ bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes)
 
 // ---- solutions ----------------------------------------------------------------------------------
 
-// x = P^-1 t for the columns of block k, the rest of its rows taken off t.
+// x = P^-1 t for the columns of block k, after subtracting the other entries of its rows from t.
 static void solve_block(struct ct_blocks *s, int k, const ct_ex *t, ct_ex *x)
 {
     const struct ct_block *b = &s->block[k];

@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// With a positive definite M, and J M^-1 J' negative definite behind it, most orders are sound
-// whatever their multipliers; what is left of the equations is measured in the run.
-// Chosen: fewer operations against digits.
+// Pivot threshold. M is positive definite and -J M^-1 J' negative definite, so that most orders are
+// stable even with large multipliers. The run checks the residual of the equations. Chosen: fewer
+// operations against digits.
 static const double loose = 0.001;
 
 struct elimination {
@@ -23,13 +23,13 @@ struct elimination {
     const struct ct_equations *e;
     const struct ct_partition_sets *p;
     int *row;                    // kept rows, ascending
-    int *place;                  // by row: 1 + its number among these; 0
+    int *place;                  // by row: its number among the kept rows plus one; 0: not kept
     struct ct_probed_row *J, *M; // (rank), as given; (nu), both triangles
     struct ct_blocks d;          // J_d
-    struct ct_kkt *whole;        // all equations as one system, or NULL: embedding
-    struct ct_kkt_system system; // that whole is of
-    bool is_carried;             // that is of beam_augmented.h
-    ct_ex *B;                    // (nu x nfree), unit rows in the independent places
+    struct ct_kkt *whole;        // all equations as one system; NULL: coordinate partitioning
+    struct ct_kkt_system system; // the system that is factored in whole
+    bool is_carried;             // the system is that of beam_augmented.h
+    ct_ex *B;                    // (nu x nfree), with unit rows for independent speeds
     size_t *first;               // its entries by column: rows B_row[first[j] ...]
     int *B_row;
     ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
@@ -74,7 +74,7 @@ static void list_values(const struct ct_entry *e, size_t n, ct_ex *out)
         out[i] = e[i].value;
 }
 
-// The rows of beam_augmented.h, L behind J_c.
+// Reads the rows of beam_augmented.h, L after J_c.
 static struct ct_kkt_system read_augmented(struct elimination *s)
 {
     const struct ct_beam_augmented *c = s->e->augmented;
@@ -104,7 +104,7 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
     ct_probed_rows_sort(k.M, k.n);
     ct_probed_rows_sort(k.J, k.m);
     memcpy(place, c->position_along, c->n * sizeof *place);
-    for (size_t i = 0; i < k.m; i++) // a law stands with what it is for
+    for (size_t i = 0; i < k.m; i++) // an equation is placed next to its unknown
         place[c->n + i] = i < s->p->rank ? INT_MAX : place[nu + i - s->p->rank];
     k.position_along = place;
     return k;
@@ -112,7 +112,7 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
 
 // ---- reduced equations --------------------------------------------------------------------------
 
-// In pairs, so that the sum of many terms is not one long chain.
+// Pairwise sum, so that many terms do not form one long dependency chain.
 static ct_ex sum(struct ct_exs *x, ct_ex *term, size_t n)
 {
     for (; n > 1; n = (n + 1) / 2)
@@ -121,7 +121,7 @@ static ct_ex sum(struct ct_exs *x, ct_ex *term, size_t n)
     return n ? term[0] : CT_EX_ZERO;
 }
 
-// y (out) = A x for a sparse matrix of n lines.
+// y (out) = A x for a sparse matrix of n rows.
 static void apply(struct elimination *s, const struct ct_probed_row *A, size_t n,
                   const ct_ex *x, ct_ex *y)
 {
@@ -161,14 +161,14 @@ static void derive_B(struct elimination *s)
     }
 }
 
-// The entry of S between two free columns, in either order.
+// The entry of the symmetric S for two free columns.
 static ct_ex *S_at(const struct elimination *s, size_t i, size_t j)
 {
     return &s->S[(i > j ? i : j) + s->p->nfree * (i > j ? j : i)];
 }
 
-// Products of eliminating S by its pattern, from the last column to the first or always the one
-// with the fewest neighbours; order (nfree, out).
+// Number of products to factor S, from its pattern. The order is from the last column to the first
+// or by least degree; order (nfree, out).
 static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *order)
 {
     const size_t f = s->p->nfree;
@@ -204,8 +204,8 @@ static double eliminate_pattern(struct elimination *s, bool by_degree, size_t *o
     return cost;
 }
 
-// A beam in a loop has a sparse S whose columns next to the cut are joined to all others: they come
-// last.
+// Chooses the cheaper order. A beam in a loop has a sparse S, but columns next to the cut are
+// coupled with all others and must come last.
 static void choose_order(struct elimination *s)
 {
     size_t *last_first = CT_NEWN(s->a, size_t, s->p->nfree + 1);
@@ -214,7 +214,7 @@ static void choose_order(struct elimination *s)
         s->order = last_first;
 }
 
-// B' M B = L' D L; false if the nodes do not suffice.
+// Factors B' M B = L' D L; false if the node limit is reached.
 static bool reduce(struct elimination *s, size_t most_nodes)
 {
     const size_t nu = s->e->nu, f = s->p->nfree;
@@ -264,7 +264,7 @@ static void solve_reduced(struct elimination *s, ct_ex *z)
     }
 }
 
-// The same from the factors of all equations.
+// Solves with the factors of all equations.
 static void solve_whole(struct elimination *s, const ct_ex *Q, const ct_ex *g, ct_ex *a,
                         ct_ex *lam)
 {
@@ -280,7 +280,7 @@ static void solve_whole(struct elimination *s, const ct_ex *Q, const ct_ex *g, c
         lam[i] = ct_ex_neg(s->x, y[first + i]);
 }
 
-// a (nu, out), lam (rank, out): M a - J' lam = Q (nu), J a = g (rank; lost).
+// a (nu, out), lam (rank, out): M a - J' lam = Q (nu), J a = g (rank; overwritten).
 static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_ex *lam)
 {
     struct ct_exs *x = s->x;
@@ -309,7 +309,7 @@ static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_
     ct_blocks_solve_transposed(&s->d, w, lam);
 }
 
-// r (nu, out) = M a; by M_c where M would be more.
+// r (nu, out) = M a; by M_c if it has fewer entries.
 static void apply_mass(struct elimination *s, const ct_ex *a, ct_ex *r)
 {
     const size_t nu = s->e->nu;
@@ -413,8 +413,8 @@ static void derive_accelerations(struct elimination *s, struct ct_closed *c)
     residual(s, c->better_a, c->better_lam, c->better_residual);
 }
 
-// By pattern, in the best of the orders, if it takes less than `most`; else NULL, or if it is
-// singular.
+// Factors by pattern only, in the best of the orders. NULL if it takes `most` operations or more,
+// or is singular.
 static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_arena *scratch,
                                     double most, enum ct_kkt_order *best)
 {
@@ -432,7 +432,7 @@ static const struct ct_kkt *predict(const struct ct_kkt_system *k, struct ct_are
     return least;
 }
 
-// Operations that entries and Q take: they share some.
+// Operation count of the entries and Q together, as they share subexpressions.
 static double count_entries(struct elimination *s, const struct ct_entry *A, size_t nA,
                             const struct ct_entry *B, size_t nB, const struct ct_entry *C,
                             size_t nC)
@@ -450,7 +450,7 @@ static double count_entries(struct elimination *s, const struct ct_entry *A, siz
     return count;
 }
 
-// With the starts of elements as unknowns, if that is shorter.
+// Tries the augmented form, with element starts as unknowns, and takes it if it is shorter.
 static void try_augmented(struct elimination *s, struct ct_arena *scratch,
                           struct ct_pivot_order *found)
 {
@@ -470,7 +470,7 @@ static void try_augmented(struct elimination *s, struct ct_arena *scratch,
     found->operations = k->operations + more;
 }
 
-// Operations that the pivots of J_d take, among the nodes of x from `first` on.
+// Operation count of the pivots of J_d, among the nodes of x from `first` on.
 static double count_pivots(const struct elimination *s, struct ct_arena *scratch, size_t first)
 {
     const struct ct_exs *x = s->x;
@@ -495,7 +495,7 @@ static void list_order(struct ct_pivot_order *found, const struct ct_kkt *k)
 {
     for (size_t i = 0, n = 0; i < k->npivot; i++) {
         const struct ct_kkt_pivot *v = &k->pivot[i];
-        // [a b; b 0]: the entries beside the diagonal are the pivots
+        // [a b; b 0]: the off-diagonal entries are the pivots
         const bool is_crossed = v->size == 2 && ct_ex_is_zero(v->P[2]);
         for (int q = 0; q < v->size; q++, n++) {
             found->row[n] = v->at[is_crossed ? 1 - q : q];
@@ -558,7 +558,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         if (!s.whole)
             return NULL;
     } else {
-        // Limit: refinement and projections make several times the nodes of the factors
+        // Limit: refinement and projections need several times the nodes of the factors
         const size_t enough = 20000, third = most_nodes / 3;
         derive_B(&s);
         if (!reduce(&s, third > enough ? x->nnode + third : most))

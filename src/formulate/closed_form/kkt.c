@@ -11,8 +11,8 @@ struct choice {
     double strength;
 };
 
-// The largest numbers of a row, descending, and their columns.
-enum { LARGEST = 3 }; // Derived: without the two of a pivot one is left
+// The largest magnitudes in a row, descending, and their columns.
+enum { LARGEST = 3 }; // Derived: without the two columns of a pivot one is left
 struct largest {
     double size[LARGEST];
     int column[LARGEST];
@@ -23,24 +23,24 @@ struct work {
     struct ct_exs *x; // NULL: patterns and numbers only
     size_t n;
     const double *scale;       // by row
-    const int *place;          // that decides among equals; NULL: what few others come before
-    double threshold;          // multipliers of a pivot that is sound are at most 1 over this
-    struct ct_probed_row *row; // both triangles of what is left; numbers scaled
+    const int *place;          // position that breaks ties; NULL: the smaller level wins
+    double threshold;          // multipliers of an accepted pivot are at most 1/threshold
+    struct ct_probed_row *row; // both triangles of the remaining matrix; scaled values
     struct largest *largest;   // of each row
     bool *is_done;
-    int *level;          // pivots that come before
-    int *position;       // along the system, or NULL: by degree
+    int *level;          // number of pivots that must come before
+    int *position;       // position for the order along the system; NULL: by degree
     int *near;           // neighbours of a pivot
-    struct choice *best; // by row, where it is not stale
+    struct choice *best; // by row, if not stale
     bool *is_stale;
-    struct ct_probed_row spare; // for the next row that is updated
+    struct ct_probed_row spare; // buffer for the next updated row
     struct ct_kkt *k;
 };
 
 // ---- the matrix ---------------------------------------------------------------------------------
 
-// Unknowns without inertia (d[i] = 0): the largest entries of their columns are as those of the
-// rows that these are in.
+// Scales unknowns without inertia (d[i] = 0), so that the largest entry of a column is as large as
+// the other entries of its row.
 static void scale_massless(const struct ct_probed_row *J, size_t m, size_t nu, double *d)
 {
     double *row = d + nu;
@@ -56,7 +56,7 @@ static void scale_massless(const struct ct_probed_row *J, size_t m, size_t nu, d
             d[i] = d[i] < 0 ? -1 / d[i] : 1;
 }
 
-// 1 over the size of unknowns: unit diagonal of M, rows of J of size one.
+// Scale factors of the unknowns that give M a unit diagonal and rows of J of size one.
 static double *find_scales(struct ct_arena *a, const struct ct_probed_row *M, size_t nu,
                            const struct ct_probed_row *J, size_t m)
 {
@@ -118,7 +118,7 @@ static struct largest largest_of(const struct ct_probed_row *l)
     return t;
 }
 
-// The largest number of row r beside columns i and j.
+// The largest magnitude in row r outside columns i and j.
 static double size_beside(const struct work *w, int r, int i, int j)
 {
     const struct largest *t = &w->largest[r];
@@ -166,7 +166,7 @@ static int later(const int *of, int i, int j)
     return of[i] > of[j] ? of[i] : of[j];
 }
 
-// Columns of two rows without i and j.
+// Number of columns of two rows without i and j.
 static double united_degree(const struct ct_probed_row *l, const struct ct_probed_row *k, int i,
                             int j)
 {
@@ -197,7 +197,7 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
         *best = t;
 }
 
-// The best pivot that row i is part of, as the first one or alone.
+// The best pivot with row i alone or as its first row.
 static struct choice best_of_row(const struct work *w, int i)
 {
     struct choice best = {0};
@@ -231,8 +231,7 @@ static struct choice choose(const struct work *w)
     return best;
 }
 
-// Row r and its level have changed: so have the pivots that it, or a neighbour together with it,
-// would be.
+// Row r or its level has changed: marks its pivot and those of its neighbours as stale.
 static void mark_stale(const struct work *w, int r)
 {
     w->is_stale[r] = true;
@@ -242,8 +241,8 @@ static void mark_stale(const struct work *w, int r)
 
 // ---- along the system ---------------------------------------------------------------------------
 
-// Rows in the order of a walk in breadth from `first` over those that are not placed, neighbours
-// with few neighbours first: order[n ...]. Returns the new number.
+// Breadth-first order of the unplaced rows from `first`, neighbours of low degree first: order[n
+// ...]. Returns the new number of rows.
 static size_t walk(const struct work *w, int first, int *order, size_t n, int *position)
 {
     size_t end = n;
@@ -256,7 +255,7 @@ static size_t walk(const struct work *w, int first, int *order, size_t n, int *p
             const int c = l->e[k].column;
             if (position[c] >= 0)
                 continue;
-            size_t to = end++; // few, and sorted as they come
+            size_t to = end++; // few, so that insertion sort is enough
             for (; to > begin && w->row[order[to - 1]].n > w->row[c].n; to--)
                 order[to] = order[to - 1];
             order[to] = c;
@@ -268,8 +267,8 @@ static size_t walk(const struct work *w, int first, int *order, size_t n, int *p
     return end;
 }
 
-// Positions along the system, so that what is coupled is near: from one of the farthest rows of
-// each part. Source: Cuthill and McKee (1969), key cuthill1969.
+// Positions along the system with small bandwidth, from a peripheral row of each connected part.
+// Source: Cuthill and McKee (1969), key cuthill1969.
 static int *place_along(const struct work *w)
 {
     int *position = CT_NEWN(w->a, int, w->n + 1), *order = CT_NEWN(w->a, int, w->n + 1);
@@ -290,7 +289,7 @@ static int *place_along(const struct work *w)
 
 // ---- elimination --------------------------------------------------------------------------------
 
-// In the mode of counting, any entry is 1.
+// Without a store (counting only) each entry is 1.
 static ct_ex product(struct ct_exs *x, ct_ex a, ct_ex b)
 {
     if (!x)
@@ -359,7 +358,7 @@ static size_t list_near(struct work *w, const struct ct_kkt_pivot *p)
     return n;
 }
 
-// Entry (r, c) for c >= r after elimination.
+// Entry (r, c), c >= r, after elimination of pivot p.
 static struct ct_probed_entry updated(struct work *w, const struct ct_kkt_pivot *p,
                                       const struct ct_probed_entry *old, int c, const ct_ex *f,
                                       const double *number)
@@ -376,8 +375,8 @@ static struct ct_probed_entry updated(struct work *w, const struct ct_kkt_pivot 
     return e;
 }
 
-// Row r without the pivot's columns, its entries among the neighbours updated; those left of the
-// diagonal are there already.
+// Updates row r: removes the pivot columns and updates entries in neighbour columns. Entries left
+// of the diagonal are already updated.
 static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnear, int r,
                        const ct_ex *f, const double *number)
 {
@@ -411,7 +410,7 @@ static void update_row(struct work *w, const struct ct_kkt_pivot *p, size_t nnea
     w->largest[r] = largest_of(&sum);
 }
 
-// The pivot's own values, and its reciprocal where it divides more than two numbers.
+// Takes the values of the pivot, and its reciprocal if it divides more than two numbers.
 static void take_pivot(struct work *w, struct ct_kkt_pivot *p, double P[3], size_t nnear)
 {
     const int i = p->at[0], j = p->at[p->size - 1];
@@ -468,11 +467,11 @@ static void eliminate(struct work *w, const struct choice *c)
         mark_stale(w, w->near[i]);
     for (int q = 0; q < p->size; q++) {
         w->is_done[p->at[q]] = true;
-        // back to the size of the expression; a determinant has each row and column twice
+        // undo the scaling; a determinant contains each row and column scale twice
         p->number
             /= w->scale[p->at[q]] * (p->size == 1 || !is_simple(p) ? w->scale[p->at[q]] : 1);
     }
-    // forward and back, each factor twice; the diagonal
+    // forward and back substitution use each factor twice; then the diagonal
     w->k->operations += 4. * p->size * (double)nnear + (p->size == 1 ? 4 : 12);
 }
 

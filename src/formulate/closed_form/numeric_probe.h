@@ -1,5 +1,4 @@
-// Rows of sparse matrices of expressions, each entry with its value at one state beside it, a
-// numeric probe.
+// Sparse rows of expressions. Each entry also has its value at one state, the numeric probe.
 #ifndef CT_FORMULATE_CLOSED_FORM_NUMERIC_PROBE_H
 #define CT_FORMULATE_CLOSED_FORM_NUMERIC_PROBE_H
 
@@ -16,12 +15,12 @@ struct ct_probed_row { // columns ascending
     size_t n, cap;
 };
 
-/// Behind the others.
+/// Appends an entry.
 void ct_probed_row_append(struct ct_arena *a, struct ct_probed_row *l, int column, ct_ex value,
                           double number);
-/// NULL: there is none.
+/// Finds the entry of a column; NULL: none.
 const struct ct_probed_entry *ct_probed_row_find(const struct ct_probed_row *l, int column);
-/// The entries of n rows by column.
+/// Sorts the entries of n rows by column.
 void ct_probed_rows_sort(struct ct_probed_row *l, size_t n);
 
 #endif

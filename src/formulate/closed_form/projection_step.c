@@ -1,7 +1,7 @@
 // See projection_step.h.
 #include "formulate/closed_form/projection_step.h"
 
-// r (rank, out) = -D d of the rows, D d: how v changes with a motion d (nu), u held.
+// r (rank, out) = -D d of the rows, D d: the change of v by a displacement d (nu) at constant u.
 static void lost_rates(struct ct_arena *a, struct ct_exs *x, const struct ct_equations *e,
                        const int *row, size_t rank, const ct_ex *d, ct_ex *r)
 {
@@ -10,7 +10,7 @@ static void lost_rates(struct ct_arena *a, struct ct_exs *x, const struct ct_equ
     for (size_t k = 0; k < e->nu; k++) {
         u[k] = e->u[k].symbol;
         any[k]
-            = e->u[k].derivative; // in no row: stands for d, which is not to be differentiated
+            = e->u[k].derivative; // no row contains it: it stands for d, which is constant here
     }
     for (size_t i = 0; i < e->nq; i++) {
         q[i] = e->q[i].symbol;

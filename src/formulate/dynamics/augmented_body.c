@@ -1,10 +1,10 @@
-// See dynamics.h: masses that move alike, lumped on augmented bodies.
+// See dynamics.h: lumps the masses on augmented bodies.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/mass_sums.h"
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
-// Inertia of a body turned from its own axes into its cluster's: S I S'.
+// Adds the inertia of a body in axes of its cluster: S I S'.
 static void add_inertia(struct ct_build *b, const struct ct_body *body,
                         const struct ct_node_placement *p)
 {
@@ -17,7 +17,7 @@ static void add_inertia(struct ct_build *b, const struct ct_body *body,
         L->e[i] = ct_ex_add(b->x, L->e[i], turned.e[i]);
 }
 
-// Every anchor's link belongs to one augmented body; all of them exist.
+// Lists the child anchors of each augmented body. Every link belongs to one augmented body.
 static void link_children(struct ct_build *b)
 {
     const struct ct_kinematics *k = b->kinematics;
@@ -61,7 +61,7 @@ void ct_augmented_bodies_lump(struct ct_build *b)
         const struct ct_anchor *self = &b->kinematics->anchor[a];
         mass[self->parent] = ct_ex_add(b->x, mass[self->parent], mass[a]);
         ct_augmented_body_of(b, self->parent,
-                             self->cluster); // also without mass: loads pass through it
+                             self->cluster); // also if it has no mass: it transmits loads
         if (!ct_ex_is_zero(mass[a]))
             ct_augmented_bodies_add_point(b, self->parent, self->cluster, mass[a], self->local);
     }

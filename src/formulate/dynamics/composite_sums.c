@@ -12,7 +12,7 @@ static const struct ct_composite_pair *find_pair(const struct ct_composite_sums 
     return i < 0 ? NULL : &s->pair[i];
 }
 
-// The pair of an anchor and a cluster, made when first asked for.
+// The pair of an anchor and a cluster; created at the first call.
 static struct ct_composite_pair *take_pair(struct ct_composite_sums *s, int anchor, int cluster)
 {
     const int found = ct_pairs_get(&s->pair_of, anchor, cluster);
@@ -62,8 +62,7 @@ ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
     return ct_build_in_plane(s->b, ct_link_vector(s->b, anchor));
 }
 
-// A augmented body counts if a turn of it accelerates anything: by its first moment or through a
-// link.
+// Does a rotation of the augmented body accelerate a mass, by its first moment or through a link?
 static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
 {
     for (int k = 0; k < s->nchild; k++)
@@ -107,7 +106,7 @@ static void count_augmented_bodies(struct ct_composite_sums *s)
         s->next[i] = s->first[b->dynamics.masses.augmented_body[i].anchor];
         s->first[b->dynamics.masses.augmented_body[i].anchor] = (int)i;
     }
-    for (size_t a = b->kinematics->nanchor; a-- > 0;) // those outboard have larger numbers
+    for (size_t a = b->kinematics->nanchor; a-- > 0;) // outboard anchors have larger numbers
         for (int i = s->first[a]; i >= 0; i = s->next[i])
             count_augmented_body(s, (int)a, i);
 }
@@ -121,8 +120,8 @@ enum ct_turning ct_composite_sums_turning(const struct ct_composite_sums *s, int
                                           : CT_TURNS_ALL;
 }
 
-// The innermost anchor outboard of which everything turns with a cluster; if there is none, the
-// outermost one inboard of all that does.
+// Finds for each cluster the innermost anchor outboard of which everything rotates with it. If
+// there is none: the outermost anchor inboard of everything that rotates with it.
 static void find_starts(struct ct_composite_sums *s)
 {
     const struct ct_build *b = s->b;
@@ -135,7 +134,7 @@ static void find_starts(struct ct_composite_sums *s)
             int other = b->dynamics.masses.augmented_body[i].anchor;
             if (s->start[c] < 0)
                 s->start[c] = other;
-            while (s->start[c] != other) // numbers grow outwards
+            while (s->start[c] != other) // parents have smaller numbers
                 *(s->start[c] > other ? &s->start[c] : &other)
                     = b->kinematics->anchor[s->start[c] > other ? s->start[c] : other].parent;
         }
@@ -216,7 +215,7 @@ static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *a)
         sum->e[i] = ct_ex_add(b->x, sum->e[i], a->e[i]);
 }
 
-// d x (s x h) + h x (s x d) = [2 (d.h) 1 - d h' - h d'] s; planar: 2 (d.h), kept in the last entry.
+// d x (s x h) + h x (s x d) = [2 (d.h) 1 - d h' - h d'] s; planar: 2 (d.h), in the last entry.
 static ct_ex33 cross_inertia(struct ct_build *b, ct_ex3 d, ct_ex3 h)
 {
     struct ct_exs *x = b->x;

@@ -4,7 +4,7 @@
 #include "base/sort.h"
 #include "formulate/mass_sums.h"
 
-// Lists by cluster, one behind the other; those of cluster c begin at first[c].
+// Lists by cluster in one array; the list of cluster c begins at first[c].
 struct lists {
     int *index;
     size_t *first;
@@ -27,7 +27,7 @@ struct search {
     const struct ct_build *b;
     struct ct_arena *a;
     struct entries axes, slides;
-    int *turning; // clusters that turn a link of the path in hand
+    int *turning; // clusters that rotate a link of the current path
     size_t nturning;
     bool *is_turning; // by cluster
 };
@@ -45,7 +45,7 @@ static void add_axes(struct search *s, int cluster, int other)
         add(s, &s->axes, cluster, c->first_axis + k);
 }
 
-// The path goes on with a vector that turns with a cluster, and so with those inboard of it.
+// Extends the path by a vector that rotates with a cluster and so with its inboard clusters.
 static void enter(struct search *s, int cluster)
 {
     for (int c = cluster; c > 0 && !s->is_turning[c]; c = s->b->kinematics->cluster[c].parent) {
@@ -71,14 +71,15 @@ static int compare_enter(const void *context, const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Anchors in preorder, so that the path in hand is that of the anchor before, shortened and extended.
+// Visits the anchors in preorder. The path to an anchor is the previous path, shortened and
+// extended.
 static void walk(struct search *s, const struct ct_composite_sums *sums)
 {
     const struct ct_build *b = s->b;
     int *order = CT_NEWN(s->a, int, b->kinematics->nanchor),
         *path = CT_NEWN(s->a, int, b->kinematics->nanchor);
     size_t *before = CT_NEWN(s->a, size_t, b->kinematics->nanchor),
-           depth = 0; // nturning, by place on the path
+           depth = 0; // nturning by depth of the path
     for (size_t i = 0; i < b->kinematics->nanchor; i++)
         order[i] = (int)i;
     ct_sort(s->a, order, b->kinematics->nanchor, sizeof *order, compare_enter,
@@ -113,7 +114,7 @@ static int compare_entries(const void *context, const void *a, const void *b)
                                     : (x->index > y->index) - (x->index < y->index);
 }
 
-// Entries in order, each once.
+// The entries sorted, without duplicates.
 static struct lists list(struct search *s, struct entries *l)
 {
     struct lists out = {CT_NEWN(s->b->arena, int, l->n + 1),
@@ -136,7 +137,8 @@ const struct ct_couplings *ct_couplings_find(const struct ct_composite_sums *sum
     struct search s = {.b = b, .a = b->ctx->scratch};
     s.turning = CT_NEWN(s.a, int, b->kinematics->ncluster);
     s.is_turning = CT_NEWN(s.a, bool, b->kinematics->ncluster);
-    for (size_t c = 1; c < b->kinematics->ncluster; c++) // inertia couples what is nested
+    for (size_t c = 1; c < b->kinematics->ncluster;
+         c++) // inertia couples a cluster with its inboard clusters
         for (int in = (int)c; in > 0; in = b->kinematics->cluster[in].parent) {
             add_axes(&s, (int)c, in);
             add_axes(&s, in, (int)c);

@@ -1,8 +1,9 @@
-// Which speeds can share an entry of the mass matrix: those that move a common mass.
+// Sparsity pattern of the mass matrix: two speeds are coupled if they move a common mass.
 //
-// The vector from ground to a mass is a sum of links, and the mass is moved by the clusters that turn
-// one of them. Two rotations are coupled if a path from ground outwards meets both; a rotation is
-// coupled with a slide if the slide lies on such a path.
+// The vector from ground to a mass is a sum of links. The clusters that rotate one of these links
+// move the mass. Two rotations are coupled if one path from ground outwards contains links that
+// rotate with each. A rotation and a translation are coupled if such a path contains the
+// translation.
 #ifndef CT_FORMULATE_DYNAMICS_COUPLINGS_H
 #define CT_FORMULATE_DYNAMICS_COUPLINGS_H
 
@@ -19,7 +20,7 @@ struct ct_index_list {
 const struct ct_couplings *ct_couplings_find(const struct ct_composite_sums *s);
 /// Rotation axes of the clusters coupled with a cluster, its own included.
 struct ct_index_list ct_couplings_axes(const struct ct_couplings *c, int cluster);
-/// Anchors with slides that are coupled with a cluster.
+/// Anchors with translation axes that are coupled with a cluster.
 struct ct_index_list ct_couplings_slides(const struct ct_couplings *c, int cluster);
 
 #endif

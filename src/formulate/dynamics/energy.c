@@ -6,7 +6,7 @@
 #include "formulate/beam/stiffness.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
-// Twice the kinetic energy of a beam; its weight and strain.
+// Returns twice the kinetic energy of a beam and adds its potential and strain energy.
 static ct_ex beam_energies(struct ct_build *b, struct ct_flexible *f)
 {
     struct ct_exs *x = b->x;
@@ -18,12 +18,13 @@ static ct_ex beam_energies(struct ct_build *b, struct ct_flexible *f)
     return s.twice_kinetic;
 }
 
-// Speeds of all joints, relative to their frames, and of beams in theirs: the same for any tree.
+// Weighted sum of squares of the relative speeds of all joints and of the elastic speeds of beams.
+// It does not depend on the trees.
 static ct_ex continuous_speeds(struct ct_build *b)
 {
-    // what beams keep does not depend on how many elements they have: where joints can close a
-    // loop, they do. Derived: masses and lengths of joints differ by less
-    // than a million.
+    // Weight of elastic speeds, so large that they change only where joints alone cannot close a
+    // loop. Then the number of elements does not matter. Derived: masses and lengths of joints
+    // differ by less than a million.
     const double share_of_beams = 1e6;
     struct ct_exs *x = b->x;
     const struct ct_equations *e = b->eqs;

@@ -5,7 +5,7 @@
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/kinematics/coordinate.h"
 
-/// Kinetic energy, potential of gravity and power of drivers, added to b->eqs.
+/// Adds kinetic energy, gravity potential, strain energy and power of drivers to b->eqs.
 void ct_energies_derive(struct ct_build *b);
 
 #endif

@@ -1,13 +1,13 @@
-// Loads that beams are told not to yield to: a force along an axis of the section in which
-// `deformation` leaves out bending.
+// Warns of excluded loads: a transverse force in a direction for which `deformation` excludes
+// bending.
 #include "formulate/dynamics/dynamics.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/kinematics.h"
 
 #include <math.h>
 
-// The value of an expression of parameters, which is not noted as decisive: a warning changes no
-// equation.
+// The value of an expression of parameters. The value is not recorded as a decision, because a
+// warning changes no equation.
 static double number(struct ct_exs *x, ct_ex e, const double *value)
 {
     const size_t ndecided = x->ndecided;
@@ -17,8 +17,8 @@ static double number(struct ct_exs *x, ct_ex e, const double *value)
     return v;
 }
 
-// The component of a force along axis i of the beam's base against its size, where both depend on
-// parameters alone; else 0.
+// Component of a force along axis i of the base of the beam, divided by its magnitude; 0 if either
+// depends on more than parameters.
 static double constant_part(struct ct_build *b, const struct ct_flexible *f, ct_ex3 force,
                             int i)
 {

@@ -1,8 +1,10 @@
-// Forward accelerations and the reverse cutset sweep; loads; generalised forces.  (formulation 5.2)
+// Forward sweep of accelerations, reverse sweep of forces, loads, generalised forces. (formulation
+// 5.2)
 //
-// A link carries the force F = m a + what its outboard augmented bodies need to turn and slide; a cluster feels the
-// torque of its augmented bodies about their anchors. Summed from the leaves this is the cutset of each branch, and
-// its projection on the motion of the branch is a row of M u' - Q - J' lam.
+// A link transmits F = m a plus the inertia forces due to rotation and translation of its outboard
+// augmented bodies. A cluster transmits the torque of its augmented bodies about their anchors. The
+// sums from the leaves are the cutset equations of the branches. Their projection on the motion of
+// a branch is a row of M u' - Q - J' lam.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
 #include "formulate/signals/signal.h"
@@ -13,7 +15,7 @@
 
 #include <string.h>
 
-// ---- loads ----------------------------------------------------------------------------------------
+// ---- loads -------------------------------------------------------------------------------------
 
 void ct_load_add(struct ct_build *b, const struct ct_load *load)
 {
@@ -41,17 +43,17 @@ bool ct_vector_signal(const char *name, const char *property, ct_ex3 v, ct_ex *o
     return true;
 }
 
-// ---- the sweep --------------------------------------------------------------------------------------
+// ---- the sweep ---------------------------------------------------------------------------------
 
 struct work {
     struct ct_build *b;
     enum ct_level level;
-    ct_ex3 *rest;   // by anchor: force of all outboard beyond mass * acceleration of the anchor
-    ct_ex3 *torque; // by cluster
-    ct_ex3 *apparent; // by anchor: acceleration less gravity
+    ct_ex3 *rest;     // by anchor: outboard force beyond mass * acceleration of the anchor
+    ct_ex3 *torque;   // by cluster
+    ct_ex3 *apparent; // by anchor: acceleration minus gravity
 };
 
-// Applied force and torque at a node, taken off what the tree must supply.
+// Subtracts an applied force and torque at a node from what the tree must supply.
 static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
 {
     struct ct_exs *x = w->b->x;
@@ -64,7 +66,7 @@ static void apply_at(struct work *w, int node, ct_ex3 force, ct_ex3 torque)
     *own = ct_ex3_sub(x, *own, torque);
 }
 
-// A pair of wrenches on the line through head.  (0.2)
+// Applies a wrench at head and its opposite on tail, along the line through head.  (0.2)
 static void apply_pair(struct work *w, int tail, int head, ct_ex3 force, ct_ex3 torque,
                        bool carried)
 {
@@ -104,7 +106,7 @@ static void find_apparent(struct work *w)
                                     ct_link_acceleration(b, (int)a, w->level));
 }
 
-// Rest of an anchor and the torques of its augmented bodies; anchors outboard are done.
+// Adds the inertia forces and torques of an augmented body. Outboard anchors are done already.
 static void sweep_augmented_body(struct work *w, const struct ct_augmented_body *s)
 {
     struct ct_build *b = w->b;
@@ -127,7 +129,7 @@ static void sweep_augmented_body(struct work *w, const struct ct_augmented_body 
     w->torque[s->cluster] = ct_ex3_add(x, w->torque[s->cluster], torque);
 }
 
-// I al + w x I w of a cluster's augmented inertia.
+// I al + w x I w for the augmented inertia of a cluster.
 static ct_ex3 inertia_torque(struct work *w, int c)
 {
     struct ct_build *b = w->b;
@@ -141,8 +143,9 @@ static ct_ex3 inertia_torque(struct work *w, int c)
                       ct_ex3_cross(x, omega, ct_ex33_apply(x, &I, omega)));
 }
 
-// The same in axes of the cluster, I constant: for clusters that turn against ground, where the rates are plain
-// and nobody further inboard asks for the torque. False where an axis is not fixed in the cluster.
+// The same in axes of the cluster, where I is constant. Only for clusters whose parent is ground:
+// their rates are short, and no inboard cluster needs the torque. False if an axis is not fixed in
+// the cluster.
 static bool local_inertia_torque(struct work *w, int c, ct_ex3 *torque)
 {
     struct ct_build *b = w->b;
@@ -162,7 +165,7 @@ static void sweep_anchors(struct work *w)
     int *first = CT_NEWN(b->arena, int, b->kinematics->nanchor),
         *next = CT_NEWN(b->arena, int, b->dynamics.masses.naugmented_body + 1);
     for (size_t i = 0; i < b->dynamics.masses.naugmented_body;
-         i++) { // chains end at 0: numbers are one too large
+         i++) { // lists end at 0: indices are stored plus one
         next[i] = first[b->dynamics.masses.augmented_body[i].anchor];
         first[b->dynamics.masses.augmented_body[i].anchor] = (int)i + 1;
     }
@@ -202,9 +205,9 @@ const struct ct_sweep *ct_sweep_run(struct ct_build *b, enum ct_level level)
     return s;
 }
 
-// ---- rows -----------------------------------------------------------------------------------------
+// ---- rows --------------------------------------------------------------------------------------
 
-// Sum over the motion of a speed or a driver: s . torque and p . force.
+// Adds s . torque or p . force for the motion of a speed or a driver.
 static ct_ex add_rotation_axis(struct ct_build *b, const struct ct_sweep *s, ct_ex sum,
                                size_t r, const struct ct_term *t)
 {
@@ -243,7 +246,7 @@ static void list_speed_axis(struct ct_build *b, int speed, bool slides, size_t a
     last[speed] = b->dynamics.nspeed_axis;
 }
 
-// What each speed moves, in the order of spins and anchors.
+// Lists the axes that each speed moves: rotation axes first, then anchors.
 static void list_speed_axes(struct ct_build *b)
 {
     size_t *last = CT_NEWN(b->ctx->scratch, size_t, b->eqs->nu + 1);
@@ -323,14 +326,15 @@ ct_ex ct_sweep_residual(struct ct_build *b, int speed)
     return ct_ex_sub(b->x, ct_sweep_row(b, speed), b->loads->effort[speed]);
 }
 
-// ---- efforts of joints ------------------------------------------------------------------------------
+// ---- efforts of joints -------------------------------------------------------------------------
 
 static ct_ex element(const struct ct_value *v, int k)
 {
     return v->given && (size_t)k < v->n && !v->hole[k] ? v->e[k] : CT_EX_ZERO;
 }
 
-// Generalised force `effort` along a coordinate: on its row, or, where it is measured, as a wrench pair.
+// Adds the generalised force `effort` along a coordinate: to its row or, for a measured coordinate,
+// as a wrench pair.
 static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct_ex potential,
                             ct_ex power)
 {
@@ -355,7 +359,7 @@ static void push_coordinate(struct ct_build *b, int coordinate, ct_ex effort, ct
                                          .power = power});
 }
 
-// What a joint does along coordinate k of its own: spring, damper, applied effort.
+// Efforts of a joint along its coordinate k: spring, damper, applied effort.
 struct effort {
     ct_ex total, potential, power;
 };
@@ -406,7 +410,7 @@ static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k
     const struct ct_coordinate *c = &b->kinematics->coordinate[e->first_coordinate + k];
     const struct ct_value *stiffness = ct_instance_value(e->self, "stiffness");
     if (!c->in_translation && !c->in_rotation)
-        return; // the joint reaches a particle: this freedom does not exist
+        return; // one end is a particle: this degree of freedom does not exist
     if (!ct_ex_is_zero(element(stiffness, k)) && e->trial->quaternion >= 0
         && k >= e->trial->quaternion) {
         ct_error(b->ctx, stiffness->mark, CT_E_STIFFNESS,
@@ -419,7 +423,7 @@ static void joint_effort(struct ct_build *b, const struct ct_edge_info *e, int k
         push_coordinate(b, e->first_coordinate + k, f.total, f.potential, f.power);
 }
 
-// Rates of the model's states, as generalised forces on them.
+// Sets Q of the states of the model to their rates.
 static void derive_rates(struct ct_build *b)
 {
     struct ct_equations *e = b->eqs;
@@ -452,7 +456,7 @@ bool ct_loads_derive(struct ct_build *b)
     derive_rates(b);
     loads->effort = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
-        loads->effort[k] = b->eqs->Q[k]; // so far these are all that is in Q
+        loads->effort[k] = b->eqs->Q[k]; // Q contains nothing else yet
     b->open_loads = NULL;
     return b->ctx->nerror == before;
 }

@@ -1,14 +1,17 @@
 // The mass matrix by cutset sums over composite bodies.
 //
-// Spin r about the axis s moves everything whose vectors turn with its cluster. With the reach
-// g (sum of the turning vectors on the path to a point) a point moves by s x g, and
+// Rotation r about the axis s moves every point whose path contains vectors that rotate with its
+// cluster. With the lever arm g (sum of these vectors on the path to a point) the point moves by
+// s x g, and
 //
-//   M_r'r = s' . [ sum over augmented bodies that turn with r' of  b x (s x g) + sum over links d x (s x h)
-//                  + (augmented inertia of what turns with both) s ]
+//   M_r'r = s' . [ sum over augmented bodies that rotate with r' of  b x (s x g)
+//                  + sum over links  d x (s x h)
+//                  + (augmented inertia of what rotates with both) s ]
 //
-// where b is a augmented body's first moment and h the sum of the first moments outboard of a link that turn
-// with r. Where everything outboard turns together, h and the inertia are composites that are summed
-// once. In a planar mechanism all this is scalar. Columns are taken for the outer of two spins.
+// where b is the first moment of an augmented body, d a link and h the sum of the outboard first
+// moments that rotate with r. If everything outboard rotates with r, h and the inertia are those of
+// a composite body, which are summed once. In a planar mechanism all terms are scalar. Of two
+// coupled rotations the outer one is the column.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/dynamics/composite_sums.h"
 #include "formulate/dynamics/couplings.h"
@@ -19,17 +22,17 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- torques of a column ----------------------------------------------------------------------------
+// ---- torques of a column -----------------------------------------------------------------------
 
-// The column under work: spin of `cluster` about `axis`.
+// The current column: rotation of `cluster` about `axis`.
 struct column {
     int cluster;
     ct_ex3 axis;
     ct_ex33 inertia;
-    bool is_local;   // the inertia is the cluster's own and the axis is fixed in it:
-    ct_ex3 momentum; // their product in its axes, constant
-    ct_ex3 *torque;  // by anchor, of everything outboard
-    int *has_torque; // by anchor: `number` where torque is of this column
+    bool is_local;   // the inertia contains no outboard cluster, and the axis is fixed in it
+    ct_ex3 momentum; // inertia * axis in axes of the cluster, constant
+    ct_ex3 *torque;  // by anchor: torque of everything outboard
+    int *has_torque; // by anchor: equal to `number` if torque is valid for this column
     int number;      // columns are numbered from 1
 };
 
@@ -57,7 +60,7 @@ static ct_ex3 augmented_body_torque(struct ct_composite_sums *s, const struct co
     return sum;
 }
 
-// Torque about an anchor of everything outboard, the inertia of the column itself left out.
+// Torque of everything outboard about an anchor, without the augmented inertia of the column.
 static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c, int anchor)
 {
     struct ct_build *b = s->b;
@@ -84,7 +87,7 @@ static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c,
     return sum;
 }
 
-// Torque on all that turns with a row's cluster.
+// Torque on everything that rotates with the cluster of a row.
 static ct_ex3 row_torque(struct ct_composite_sums *s, const struct column *c, int row,
                          int anchor)
 {
@@ -113,7 +116,7 @@ static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
     return ct_ex33_apply(b->x, &c->inertia, c->axis);
 }
 
-// ---- the matrix -------------------------------------------------------------------------------------
+// ---- the matrix --------------------------------------------------------------------------------
 
 static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np, ct_ex m)
 {
@@ -132,8 +135,8 @@ static bool has_unknown(const struct ct_term *p, int np)
     return false;
 }
 
-// Does the column of cluster c serve the row of cluster r? The outer one of two nested clusters is the
-// column; of two side by side the one whose vectors start farther out.
+// Is the entry of clusters r and c computed from column c? Of two nested clusters the outer one is
+// the column. Of two others it is the one whose rotating vectors start farther from ground.
 static bool is_row_of(const struct ct_build *b, const int *depth, int r, int c)
 {
     if (ct_cluster_is_outboard(b, r, c))
@@ -171,7 +174,7 @@ static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
         else
             ct_mass_spread(b, M, self->term, self->nterm, other->term, other->nterm, m);
     }
-    // slides carried by the spin, or that carry it: p . (s x (m g + h))
+    // translations inboard or outboard of the rotation: p . (s x (m g + h))
     const struct ct_index_list slides = ct_couplings_slides(couplings, c->cluster);
     for (size_t i = 0; i < slides.n; i++) {
         const size_t a = (size_t)slides.index[i];
@@ -217,11 +220,13 @@ static void translation_pair(struct ct_build *b, ct_ex *M, size_t i, size_t j)
         }
 }
 
-// Slides of an anchor and of those inboard of it, from ground outwards.
+// Entries between the translations of an anchor and those of its inboard anchors.
 static void translation_pairs(struct ct_build *b, ct_ex *M)
 {
-    int *sliding = CT_NEWN(b->arena, int,
-                           b->kinematics->nanchor), // the anchor or the next inboard; 0: none
+    int *sliding = CT_NEWN(
+            b->arena, int,
+            b->kinematics
+                ->nanchor), // nearest anchor inboard with translation, itself included; 0: none
         *path = CT_NEWN(b->arena, int, b->kinematics->nanchor);
     for (size_t i = 1; i < b->kinematics->nanchor; i++) {
         const bool slides = b->kinematics->anchor[i].ntranslation_axis > 0;
@@ -234,7 +239,7 @@ static void translation_pairs(struct ct_build *b, ct_ex *M)
     }
 }
 
-// Depth in anchors of the first augmented body that turns with a cluster.
+// Depth, in anchors, of the innermost augmented body that rotates with each cluster.
 static int *start_depths(struct ct_composite_sums *s)
 {
     struct ct_build *b = s->b;

@@ -1,7 +1,8 @@
-// Cutset sums node by node; see reaction.h.
+// Reactions by cutset sums over nodes; see reaction.h.
 //
-// A branch of T_T carries what its outboard nodes need (5.8); a branch of T_R the torques of its
-// outboard nodes and the moments of the translational branches whose tails lie there (5.9), (5.3).
+// A branch of T_T transmits the forces of its outboard nodes (5.8). A branch of T_R transmits the
+// torques of its outboard nodes and the moments of the translational branches with tails there
+// (5.9), (5.3).
 #include "formulate/dynamics/reaction.h"
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
@@ -28,7 +29,7 @@ static ct_ex3 pair_moment(struct ct_build *b, int tail, int head, ct_ex3 force)
     return ct_ex3_cross(b->x, ct_path_position(b, tail, head), force);
 }
 
-// Force that a node needs besides what it passes on: m (a - g) less applied forces.
+// Net force on a node: m (a - g) minus applied forces.
 static ct_ex3 own_force(struct ct_build *b, int node)
 {
     struct ct_exs *x = b->x;
@@ -116,7 +117,7 @@ static ct_ex3 own_torque(struct ct_build *b, int node)
 static ct_ex3 cut_force(struct ct_build *b, int node)
 {
     ct_ex3 sum = own_force(b, node);
-    for (int i = 1; i < b->T.nnode; i++) // children; the sums are shared by hash-consing
+    for (int i = 1; i < b->T.nnode; i++) // children; equal sums are one expression
         if (b->T.parent[b->T.order[i]] == node)
             add(b, &sum, cut_force(b, b->T.order[i]));
     return sum;
@@ -181,7 +182,7 @@ static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *
 
 // ---- planar mechanisms --------------------------------------------------------------------------
 
-// Does component i of a force lie in the plane, or that of a torque along its normal?
+// Is component i of a force in the plane, or of a torque along the normal?
 static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
 {
     const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[node], b->topology->plane[2]);
@@ -189,7 +190,7 @@ static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i
     return is_force ? along < CT_DATA_ROUNDOFF : along > 1 - CT_DATA_ROUNDOFF;
 }
 
-// Nodes that branch e cuts off from ground.
+// Marks the nodes that are cut off from ground if branch e is removed.
 static void mark_outboard(const struct ct_tree *t, int edge, bool *outboard)
 {
     for (int i = 1; i < t->nnode; i++) { // parents come first
@@ -211,8 +212,8 @@ static bool is_link(const struct ct_build *b, size_t edge)
         && !b->topology->edge[edge].never_branch;
 }
 
-// Nodes that hang on the head of an edge once it is cut; NULL if its tail is among them: it closes
-// a loop.
+// Nodes connected with the head of an edge after it is removed; NULL if its tail is one of them, as
+// the edge is then in a loop.
 static const bool *hanging_on(const struct ct_build *b, int edge)
 {
     bool *hangs = CT_NEWN(b->arena, bool, b->topology->nnode), grows = true;
@@ -229,8 +230,8 @@ static const bool *hanging_on(const struct ct_build *b, int edge)
     return hangs[b->topology->wiring[edge].tail] ? NULL : hangs;
 }
 
-// Do the trees cut off, below branch e of both, all that hangs on it? Chords out of the cut may
-// carry part of it.
+// Do both trees, cut at branch e, separate everything on its head side? Otherwise chords across the
+// cut transmit part of the load.
 static bool is_cut_by_trees(const struct ct_build *b, int edge)
 {
     if (is_chord(b, edge))
@@ -246,8 +247,7 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
         const int tail = b->topology->wiring[e].tail, head = b->topology->wiring[e].head;
         const bool is_open
             = b->topology->edge[e].kind != CT_EDGE_ARM && is_link(b, e) && is_chord(b, (int)e);
-        // a chord within the cut keeps what it transmits to itself, if both trees cut off both its
-        // ends
+        // the force of a chord is internal if both trees cut off both of its ends
         if (is_open && (cut[0][tail] || cut[1][tail] || cut[0][head] || cut[1][head])
             && !(cut[0][tail] && cut[1][tail] && cut[0][head] && cut[1][head]))
             return false;
@@ -255,14 +255,14 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
     return true;
 }
 
-// What an edge that closes no loop transmits, by the equilibrium of all that hangs on it, in no
-// tree's order: about the origin of its head P, sum f and sum (r - P) x f + t, f and t what a node
-// needs.
+// Force and torque of an edge in no loop, by the equilibrium of all nodes on its head side,
+// independent of the trees. About the origin P of its head they are sum f and sum (r - P) x f + t,
+// with f and t the net force and torque of a node.
 static void sum_over_side(struct ct_build *b, int edge, const bool *hangs, ct_ex3 *force,
                           ct_ex3 *torque)
 {
     const int head = b->topology->wiring[edge].head;
-    const bool is_inboard = hangs[0]; // ground hangs on the head: take the other side
+    const bool is_inboard = hangs[0]; // ground is on the head side: take the other side
     *force = *torque = zero3;
     for (int node = 1; node < (int)b->topology->nnode; node++) {
         if (hangs[node] == is_inboard)
@@ -284,7 +284,8 @@ static ct_ex3 part_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
     return ct_ex3_scale(b->x, ct_ex3_dot(b->x, v, n), n);
 }
 
-// Rows of chords lie in the plane: what leaves it comes from the sums over one side.
+// Adds the out-of-plane components. The rows of chords are in the plane, so that these components
+// come from the equilibrium of one side.
 static void complete(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
 {
     const bool *hangs = hanging_on(b, edge);
@@ -327,7 +328,7 @@ void ct_reaction_derive(struct ct_build *b, int joint, ct_ex3 *force, ct_ex3 *to
         const struct ct_multiplier_wrench *p = &b->rows->multiplier_wrench[i];
         if (p->joint != joint || p->head != b->topology->wiring[edge].head
             || p->tail != b->topology->wiring[edge].tail)
-            continue; // rows of the weld behind a joint carry its number, too
+            continue; // rows of the weld after a joint have its number, too
         const ct_ex lam = b->eqs->row[p->row].lam;
         add(b, force, ct_ex3_scale(b->x, lam, p->force));
         add(b, torque, ct_ex3_scale(b->x, lam, p->torque));

@@ -6,11 +6,11 @@
 #include <string.h>
 
 struct small {
-    struct ct_seed *seed; // the coordinates and speeds, each a direction of its own
+    struct ct_seed *seed; // one direction for each coordinate and speed
     ct_ex *symbol, *zero;
     size_t n, seed_cap, symbol_cap;
     bool *is_small; // by speed
-    bool follows;   // rotations of small beams follow (beam_dynamics.h)
+    bool follows;   // massless rotations of small beams are condensed (beam_dynamics.h)
 };
 
 static void add(struct ct_build *b, struct small *s, ct_ex symbol)
@@ -71,7 +71,8 @@ static bool collect(struct ct_build *b, struct small *s)
     return ok;
 }
 
-// f (n) and its derivatives by the seeds of all small symbols, where these are zero. *slope lives in scratch.
+// f (n) and its derivatives along the seeds of all small symbols, evaluated with these at zero.
+// *slope lives in scratch.
 static size_t expand(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n,
                      const struct ct_seed *seed, ct_ex *at_zero, struct ct_slope **slope)
 {
@@ -88,7 +89,7 @@ static size_t expand(struct ct_build *b, const struct small *s, const ct_ex *f, 
     return nslope;
 }
 
-// f(0) + sum of df/dx(0) x, x the small symbols, by the entries of that matrix.
+// f(0) + sum of df/dx(0) x, x the small symbols, by the entries of the Jacobian.
 static void cut_by_matrix(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n,
                           ct_ex *out)
 {
@@ -100,7 +101,7 @@ static void cut_by_matrix(struct ct_build *b, const struct small *s, const ct_ex
                         ct_ex_mul(b->x, slope[i].value, s->symbol[slope[i].direction]));
 }
 
-// The same by the derivative along one direction, x: what runs from node to node still does.
+// The same by one directional derivative along x. Recursive sums along a beam stay recursive.
 static void cut_by_direction(struct ct_build *b, const struct small *s, const ct_ex *f,
                              size_t n, ct_ex *out)
 {
@@ -123,7 +124,8 @@ static double cost_of(struct ct_build *b, const ct_ex *f, size_t n)
     return ct_counted_cost(&c);
 }
 
-// Could sums over the entries of the matrix cost less than f (n), which is of first order? An entry takes two operations.
+// Could sums over the entries of the Jacobian cost less than f (n) to first order? An entry takes
+// two operations.
 static bool may_be_sparse(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n)
 {
     struct ct_arena *scratch = b->ctx->scratch;
@@ -134,7 +136,8 @@ static bool may_be_sparse(struct ct_build *b, const struct small *s, const ct_ex
     return 2 * (double)nentry < cost_of(b, f, n) + (double)n;
 }
 
-// f (n) to first order. Where rotations follow, the matrix is full; the cheaper of both ways is taken.
+// f (n) to first order. With condensed rotations the Jacobian is full. The cheaper of both ways is
+// taken.
 static void truncate(struct ct_build *b, const struct small *s, ct_ex *f, size_t n)
 {
     ct_ex *matrix = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
@@ -154,7 +157,8 @@ static bool is_between_small(const struct small *s, const struct ct_entry *m)
     return s->is_small[m->row] && s->is_small[m->column];
 }
 
-// Entries between small speeds are those at rest. All at once: one by one each would walk through its expressions anew.
+// Mass matrix: entries between small speeds are taken at zero. All are processed in one call,
+// because each call traverses all expressions.
 static void truncate_masses(struct ct_build *b, const struct small *s)
 {
     struct ct_equations *e = b->eqs;

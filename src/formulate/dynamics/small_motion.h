@@ -4,17 +4,17 @@
 
 #include "formulate/build.h"
 
-/// Are there coordinates that are small?
+/// Does the model list small coordinates?
 bool ct_small_motion_is_wanted(const struct ct_build *b);
 /// M and Q to first order in the coordinates of all joints and beams that are small, and in their
 /// rates, about zero; constraint rows stay exact. In M the entries between two small coordinates
 /// are constant: their accelerations are small, too. Those between a small and another coordinate
 /// keep the first order in both rows, so that M stays symmetric; in the row of the other coordinate
-/// that is one term more than first order. After M and Q, before the solution. Errors: E204 for a
-/// coordinate that is no branch.
+/// this includes a second-order term. After M and Q, before the solution. Errors: E204 for a
+/// coordinate that is not on a branch.
 bool ct_small_motion_derive(struct ct_build *b);
-/// The momenta p (nu) to first order in the same coordinates and rates: what a jump of driven rates
-/// changes, as the forces of such rates do where they change fast. After ct_small_motion_derive().
+/// Truncates the momenta p (nu) to first order in the same coordinates and rates. A jump of driven
+/// rates uses these momenta, consistent with the truncated forces. After ct_small_motion_derive().
 void ct_small_motion_momenta(struct ct_build *b, ct_ex *p);
 
 #endif

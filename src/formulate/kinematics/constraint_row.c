@@ -19,7 +19,7 @@ static void add_term(struct ct_build *b, struct ct_linear *l, int speed, int dri
         l->driven = ct_ex_add(x, l->driven, ct_ex_mul(x, v, b->eqs->driver[driver].rate));
 }
 
-// One at a time.
+// Zero coefficients; the buffer is shared, so that only one row exists at a time.
 static struct ct_linear linear_zero(struct ct_build *b)
 {
     if (!b->cache.coefficient)
@@ -172,8 +172,8 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
     const int row = push_row(b, self->name, joint_index(b, self), &l, phi, gam);
     const int coupled[2] = {coordinate_a, coordinate_b};
     for (int i = 0; i < 2; i++) {
-        // a multiplier on a measured coordinate is a wrench pair; on a branch it is a force on its
-        // row
+        // on a measured coordinate the multiplier is a wrench pair; on a branch coordinate it is a
+        // generalised force
         struct ct_wrench w;
         const struct ct_coordinate *c = &b->kinematics->coordinate[coupled[i]];
         const struct ct_ends n = ct_edge_ends(b, c->edge);
@@ -199,7 +199,7 @@ void ct_row_couple(struct ct_build *b, const struct ct_instance *self, int coord
 
 // ---- translational rows of a joint --------------------------------------------------------------
 
-// Origins coincide: one row along each ground direction, in the plane two.  (4.2)
+// Rows for coincident origins: one along each ground axis, two in a plane.  (4.2)
 static void place_rows(struct ct_build *b, const struct ct_edge_info *e, struct ct_ends n)
 {
     struct ct_exs *x = b->x;
@@ -269,10 +269,10 @@ static void planar_angle_row(struct ct_build *b, int edge)
     const struct ct_ends n = ct_edge_ends(b, edge);
     const struct ct_wrench w = {zero3, b->topology->plane[2]};
     const ct_ex3 v = ct_ex33_apply_t(x, &b->topology->upright[n.tail], b->topology->plane[0]);
-    // the gap of an angle is not wrapped: it says which way round
+    // the offset of an angle is not reduced to one turn: its sign gives the direction of rotation
     const ct_ex diff = ct_constraint_offset_subtract(
         b, e, ct_ex_sub(x, ct_angle_in_plane(b, n.head, v), ct_angle_in_plane(b, n.tail, v)));
-    // wrapped, as one whole turn is as good as none
+    // reduced to (-pi, pi]: whole turns do not matter
     const ct_ex phi = ct_ex_fun2(x, CT_OP_ATAN2, ct_ex_fun(x, CT_OP_SIN, diff),
                                  ct_ex_fun(x, CT_OP_COS, diff));
     const ct_ex3 al
@@ -282,7 +282,8 @@ static void planar_angle_row(struct ct_build *b, int edge)
             ct_ex3_dot(x, b->topology->plane[2], al));
 }
 
-// Pair (s|t): s fixed in the tail's axes, t in the head's; s_local: s there.  (4.4)
+// Row s . t = 0 (4.4): s is fixed in the tail, t in the head. s_local: s in axes of the tail.
+// (4.4)
 static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
 {
     struct ct_exs *x = b->x;
@@ -304,7 +305,8 @@ static void pair_row(struct ct_build *b, int edge, int i, ct_ex3 s_local)
         ct_ex3_dot(x, turning, ct_cluster_path_velocity(b, from, to)));
     add_row(b, e->index, ct_arena_printf(b->arena, "%s.turn%d", e->name, i + 1), n, &w, true,
             phi, gam);
-    // the rows also hold half a turn away: the cosine between like axes tells
+    // the rows also hold after half a turn: the sign of the cosine between equal axes tells them
+    // apart
     const ct_ex3 axis = ct_node_turn(b, n.tail, ct_edge_motion(b, e)->rot_to[i]);
     if (ct_edge_motion(b, e)->nrot > 1)
         b->eqs->row[b->eqs->nrow - 1].assembly_sign = ct_ex3_dot(x, axis, t);
@@ -351,10 +353,11 @@ static void driven_row(struct ct_build *b, int coordinate)
     struct ct_row *row = &b->eqs->row[b->eqs->nrow - 1];
     row->v = ct_ex_sub(x, row->v, rate);
     b->eqs->power = ct_ex_add(x, b->eqs->power, ct_ex_mul(x, row->lam, rate));
-    b->open_rows->motion_row[coordinate] = (int)b->eqs->nrow; // one too large: 0 is none
+    b->open_rows->motion_row[coordinate] = (int)b->eqs->nrow; // row number plus one; 0: none
 }
 
-// Do joints close no loop? Gears couple coordinates across bodies, so that they count as one.
+// Is there no loop of joints? A gear counts as a loop, because it couples coordinates of different
+// bodies.
 static bool is_open(const struct ct_build *b)
 {
     const struct ct_model *m = b->model;

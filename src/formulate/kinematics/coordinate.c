@@ -34,8 +34,8 @@ ct_ex ct_memory_keep(struct ct_build *b, const char *name, int joint, ct_ex at_s
     return s;
 }
 
-// Angle about a from V to W, followed from its last value r: r + the angle that is left, which
-// stays small, so that no branch cut is met within a step.
+// Continuous angle about a from V to W: its last value r plus the remaining angle. This stays small
+// within a step, so that atan2 does not reach its branch cut.
 static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int place, ct_ex sine,
                         ct_ex cosine)
 {
@@ -50,8 +50,8 @@ static ct_ex angle_from(struct ct_build *b, const char *name, int joint, int pla
     return angle;
 }
 
-// Angle about the normal of the plane, of a vector of the plane given in the node's axes, from the
-// axes of its frame.
+// Angle about the normal of an in-plane vector, relative to the axes of its frame. v: in axes of
+// the node.
 static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
@@ -61,7 +61,7 @@ static ct_ex angle_in_frame(struct ct_build *b, int node, ct_ex3 v)
     return ct_ex_fun2(x, CT_OP_ATAN2, sine, ct_ex3_dot(x, e1, s));
 }
 
-// Does a direction point along the normal of the plane, or against it?
+// Does a direction parallel to the normal have the sense of the normal?
 static bool is_upward(const struct ct_build *b, const ct_ex3 *direction)
 {
     double sum = 0;
@@ -81,8 +81,8 @@ ct_ex ct_angle_in_plane(struct ct_build *b, int node, ct_ex3 v)
     return is_upward(b, &c->axis) ? ct_ex_add(x, own, c->angle) : ct_ex_sub(x, own, c->angle);
 }
 
-// In a plane angles add: the angle about a from V to W is the difference of two sums, and whole
-// turns that stay. False where V or W turns in its frame.
+// Angle in a plane: the angle about a from V to W is a difference of two angle sums plus a constant
+// number of whole turns. False if V or W is not fixed in its frame.
 static bool add_angles(struct ct_build *b, const struct ct_measure *m, struct ct_ends p,
                        ct_ex3 a, ct_ex *sum)
 {
@@ -105,7 +105,8 @@ static ct_ex measure_angle(struct ct_build *b, const struct ct_coordinate *c,
     const struct ct_ends p = ct_edge_ends(b, c->edge);
     const ct_ex3 a = ct_node_turn(b, m->reversed ? p.head : p.tail, m->about);
     const ct_ex3 V = ct_node_turn(b, p.tail, m->v), W = ct_node_turn(b, p.head, m->w);
-    // the parts of V and W along a do not turn; the one whose frame holds a is known there
+    // the components of V and W along a are constant; they are computed in the frame in which a is
+    // fixed
     const ct_ex along = ct_ex3_dot(x, m->about, m->reversed ? m->w : m->v);
     const ct_ex cosine = ct_ex_sub(x, ct_ex3_dot(x, V, W), ct_ex_mul(x, along, along));
     const ct_ex sine = ct_ex3_dot(x, a, ct_ex3_cross(x, V, W));
@@ -133,7 +134,7 @@ void ct_quaternion_follow(struct ct_build *b, const char *name, const ct_ex33 *R
     for (int i = 0; i < 4; i++)
         r[i] = ct_memory_new(b, CT_MEMORY_QUATERNION, name, -1, i);
     b->eqs->memory[first].R = *R;
-    // D = S(r)' R is a small rotation; its quaternion w = sqrt(1 + trace)/2, v = axial part/(4 w)
+    // D = S(r)' R is a small rotation with quaternion w = sqrt(1 + trace)/2, v = axial part/(4 w)
     const ct_ex two = ct_ex_const(x, 2);
     ct_ex33 S;
     for (int i = 0; i < 3; i++) {
@@ -226,7 +227,7 @@ bool ct_coordinate_wrench(struct ct_build *b, int coordinate, struct ct_wrench *
     case CT_MEASURE_QUATERNION: {
         ct_ex3 axis = zero3;
         const int i = c->index - b->kinematics->edge[c->edge].motion->quaternion;
-        if (i >= 3) // four numbers, three speeds
+        if (i >= 3) // four parameters, three speeds
             return false;
         axis.e[i] = CT_EX_ONE;
         w->torque = ct_node_turn(b, p.head, axis);
@@ -295,7 +296,7 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
         return CT_EX_ZERO;
     if (m->kind == CT_MEASURE_LENGTH)
         return ct_along_acceleration(b, p, w.force, level);
-    // h . al_rel + h' . w_rel, h = parts fixed in the tail's and in the head's axes
+    // h . al_rel + h' . w_rel, h = sum of a part fixed in the tail and a part fixed in the head
     const int from = b->kinematics->placement[p.tail].frame,
               to = b->kinematics->placement[p.head].frame;
     ct_ex3 turning = ct_cluster_cross_velocity(b, to, w.torque);

@@ -1,7 +1,8 @@
-// Kinematics by circuit equations: rotations along T_R, places along T_T.  (formulation 4.1)
+// Kinematics by circuit equations. This folder derives rotations along the tree T_R, positions,
+// velocities and accelerations along the tree T_T, the values of coordinates, and the constraint
+// rows of chords.  (formulation 4.1)
 //
-// An expression is generated when it is first asked for, and kept. What nobody asks for is not
-// generated.
+// Each expression is generated at the first request and then stored.
 #ifndef CT_FORMULATE_KINEMATICS_KINEMATICS_H
 #define CT_FORMULATE_KINEMATICS_KINEMATICS_H
 
@@ -11,17 +12,17 @@
 /// Accelerations with all u' = 0, or with the symbols of u'.
 enum ct_level { CT_BIAS, CT_FULL };
 
-/// Unknowns and drivers of the chosen trees; then clusters and spins, anchors and places.
+/// Three steps: unknowns and drivers of the chosen trees; clusters and rotation axes; anchors and
+/// node positions.
 void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics);
 void ct_rotation_derive(struct ct_build *b, struct ct_kinematics *kinematics);
 void ct_translation_derive(struct ct_build *b, struct ct_kinematics *kinematics);
-/// Slides and turns of the sections of beams anew, for other elastic coordinates at the same
-/// places.
+/// Derives the translation and rotation axes of beam sections again, for other elastic coordinates
+/// of the same sections.
 void ct_translation_slide_sections(struct ct_build *b, struct ct_kinematics *kinematics);
 void ct_rotation_turn_sections(struct ct_build *b, struct ct_kinematics *kinematics);
 
-/// d/dt of an expression of coordinates and time: coordinates change at their speeds; speeds are
-/// held.
+/// d/dt of an expression of coordinates and time; speeds in it are taken as constant.
 ct_ex ct_build_rate(struct ct_build *b, ct_ex e);
 /// The same for a vector.
 ct_ex3 ct_build_rate3(struct ct_build *b, ct_ex3 e);
@@ -33,10 +34,10 @@ ct_ex ct_edge_partial(struct ct_build *b, const struct ct_edge_info *e, ct_ex tr
 
 ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c);              // w [rad/s]
 ct_ex3 ct_cluster_acceleration(struct ct_build *b, int c, enum ct_level); // al [rad/s^2]
-/// The same in the cluster's own axes. False where it does not turn against ground, or about axes
-/// that are not fixed in it.
+/// w and al in axes of the cluster. False if its parent is not ground or an axis is not fixed in
+/// it.
 bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level, ct_ex3 *w, ct_ex3 *al);
-/// w and al of cluster `to` less those of `from`, along the path of the rotational tree.
+/// w and al of cluster `to` relative to `from`, summed along the path in the rotational tree.
 ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to);
 ct_ex3 ct_cluster_path_acceleration(struct ct_build *b, int from, int to, enum ct_level level);
 /// Axes of c -> axes of its parent.
@@ -47,7 +48,7 @@ ct_ex3 ct_cluster_turn(struct ct_build *b, int c, ct_ex3 local);
 ct_ex3 ct_cluster_cross_velocity(struct ct_build *b, int c, ct_ex3 v);
 ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v);
 
-/// Planar: does spin r turn about the normal (true) or its opposite?
+/// Planar: is rotation axis r the normal (true) or its opposite?
 bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r);
 
 // ---- links: the vector from an anchor's parent to the anchor ------------------------------------
@@ -55,7 +56,7 @@ bool ct_rotation_axis_is_positive(const struct ct_build *b, size_t r);
 ct_ex3 ct_link_vector(struct ct_build *b, int a);
 ct_ex3 ct_link_velocity(struct ct_build *b, int a);
 ct_ex3 ct_link_acceleration(struct ct_build *b, int a, enum ct_level level);
-/// The part of it that comes from sliding: Coriolis and along the slide.
+/// Its part due to translation: Coriolis and relative acceleration.
 ct_ex3 ct_link_sliding_acceleration(struct ct_build *b, int a, enum ct_level level);
 
 // ---- nodes -------------------------------------------------------------------------------------
@@ -68,33 +69,33 @@ ct_ex3 ct_node_velocity(struct ct_build *b, int node);
 ct_ex3 ct_node_acceleration(struct ct_build *b, int node, enum ct_level level);
 ct_ex3 ct_anchor_acceleration(struct ct_build *b, int a, enum ct_level level);
 
-/// Place, velocity and acceleration of node `head` less that of node `tail`, along the tree path
-/// that joins them: what both share cancels before it is written.
+/// Position, velocity and acceleration of node `head` relative to node `tail`, summed along the
+/// tree path between them. Their common part does not appear.
 ct_ex3 ct_path_position(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_velocity(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_level level);
-/// Place and velocity of node `head` as seen from node `tail`, in its axes. What turns with the
-/// tail is summed in those axes, so that what slides beside the tail has no round-off of the tail's
-/// own place in it.
+/// Relative position and velocity of node `head` in axes of node `tail`. Vectors fixed in the tail
+/// are summed in those axes, so that the round-off of the absolute position of the tail does not
+/// enter.
 ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head);
 ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head);
 
-/// marked (ncluster, out): clusters whose spins may change the path from tail to head or the axes
-/// at its ends.
+/// marked (ncluster, out): clusters whose rotation can change the path from tail to head or the
+/// axes at its ends.
 void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked);
 
-/// Sweep of node `head` seen from node `tail` for a unit rate of spin r: axis_r x the sum of the
-/// path's vectors that turn with r, less those that would turn with the tail when carried is true
-/// (then the path is seen from the tail's axes): dv_head - dv_tail (- dw_tail x d).  False if it is
-/// zero by structure.
+/// Partial velocity of node `head` relative to node `tail` for a unit rate of rotation axis r:
+/// dv_head - dv_tail, and - dw_tail x d if carried (velocity relative to the axes of the tail). It
+/// is axis_r x the sum of the path vectors that rotate with r (relative to the tail, if carried).
+/// False if it is structurally zero.
 bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
                    ct_ex3 *sweep);
-/// Vectors of the branches between the nodes that some spin turns against the other end (of a row
-/// seen from the tail's axes: against the tail), each in axes of its own. Coefficients of a row are
-/// sums over them, which may cancel; the sum of their lengths is what these were made of.
+/// Branch vectors between the nodes that rotate relative to the other end (relative to the tail, if
+/// carried), each in its own axes. Coefficients of a row are sums over them and may cancel; the sum
+/// of their lengths gives the scale of the round-off.
 const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carried, size_t *n);
-/// +1, -1 or 0: the slide of an anchor lies on the path's head side, tail side, or on neither
-/// (both).
+/// +1, -1 or 0: the translation axes of an anchor move only the head, only the tail, or both or
+/// neither.
 int ct_path_translation_side(struct ct_build *b, int tail, int head, int anchor);
 
 #endif

@@ -1,7 +1,8 @@
-// Rotations along the rotational tree: clusters of frames that turn together.
+// Rotations along the rotational tree. A cluster is a set of frames without relative rotation.
 //
-// A branch with axes adds one cluster an axis. Rotations about one and the same axis are accumulated:
-// R = R_base Rot(axis, angle), so that a chain of parallel revolutes needs one sine and cosine a body.
+// A branch adds one cluster for each of its axes. Rotations about parallel axes are accumulated: R
+// = R_base Rot(axis, angle). A chain of parallel revolute joints then needs one sine and cosine per
+// body.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/beam/section_rotation.h"
 #include "formulate/topology/linear_graph.h"
@@ -44,7 +45,7 @@ static int new_coordinate(struct ct_build *b, const char *name, int quaternion)
     return (int)s->nq - 1;
 }
 
-// Rates of a unit quaternion from body rates w.  (7.1)
+// Rates of a unit quaternion from the angular velocity w in body axes.  (7.1)
 static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
 {
     struct ct_exs *x = b->x;
@@ -57,7 +58,7 @@ static void quaternion_rates(struct ct_build *b, int first, const ct_ex w[3])
         q[1 + i].rate = ct_ex_scale(x, 0.5, ct_ex_add(x, ct_ex_mul(x, p0, W.e[i]), c.e[i]));
 }
 
-// The four numbers c[0..3] of a quaternion and the speeds of its three freedoms.
+// Adds the four parameters c[0..3] of a quaternion and its three speeds.
 static void choose_quaternion(struct ct_build *b, const struct ct_edge_info *e,
                               struct ct_coordinate *c)
 {
@@ -104,7 +105,8 @@ static void choose_plain(struct ct_build *b, const struct ct_edge_info *e,
     c->rate = b->eqs->q[c->q].rate = b->eqs->u[c->u].symbol;
 }
 
-// An arm of a beam: where its section is, and how that depends on the elastic coordinates.
+// Station of a beam arm: position and rotation of its section and their derivatives by the elastic
+// coordinates.
 static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
                          const struct ct_edge_info *e)
 {
@@ -136,7 +138,7 @@ static void find_station(struct ct_build *b, struct ct_kinematics *kinematics,
     k->motion = ct_motion_keep(b->arena, &m);
 }
 
-// A state of the model, as a speed that moves nothing.
+// Adds a state of the model as a speed that moves nothing.
 static void add_state(struct ct_build *b, const char *name)
 {
     struct ct_equations *s = b->eqs;
@@ -196,7 +198,7 @@ void ct_unknowns_choose(struct ct_build *b, struct ct_kinematics *kinematics)
         add_state(b, b->model->state[i].name);
 }
 
-// ---- rates ----------------------------------------------------------------------------------------
+// ---- rates -------------------------------------------------------------------------------------
 
 static bool is_moving(const struct ct_exs *x, ct_ex e, unsigned moving)
 {
@@ -211,7 +213,7 @@ ct_ex ct_build_rate(struct ct_build *b, ct_ex e)
         = 1u << CT_SYM_Q | (b->options->drivers_are_held ? 0 : 1u << CT_SYM_TIME);
     if (!(ct_ex_kinds(b->x, e) & moving))
         return CT_EX_ZERO;
-    // only the symbols below e matter; joints have few
+    // only the symbols in e matter; joints have few
     const size_t nwalk = ct_ex_walk(b->x, &e, 1);
     size_t n = 0;
     for (size_t i = 0; i < nwalk; i++)
@@ -236,7 +238,7 @@ ct_ex3 ct_build_rate3(struct ct_build *b, ct_ex3 e)
     return e;
 }
 
-// ---- clusters -------------------------------------------------------------------------------------
+// ---- clusters ----------------------------------------------------------------------------------
 
 static int add_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
                        int nspin)
@@ -268,7 +270,8 @@ static void add_term(struct ct_build *b, struct ct_rotation_axis *s, int speed, 
             = (struct ct_term){speed, driver, sign > 0 ? coef : ct_ex_neg(b->x, coef)};
 }
 
-// The i-th turn of a beam's section: slopes of its angle along the elastic coordinates.
+// Terms of the i-th rotation of a beam section: derivatives of its angle by the elastic
+// coordinates.
 static void section_terms(struct ct_build *b, const struct ct_edge_info *e, int i, int sign,
                           struct ct_rotation_axis *s)
 {
@@ -292,13 +295,13 @@ void ct_rotation_turn_sections(struct ct_build *b, struct ct_kinematics *kinemat
     }
 }
 
-// Spin of the i-th turn of branch e, whose axis is fixed in the parent; the coefficients of its rate
-// are sign * d angle / d q_k.
+// Adds the rotation axis of the i-th rotation of branch e, which is fixed in the parent. The
+// coefficients of its rate are sign * d angle / d q_k.
 static void add_rotation_axis(struct ct_build *b, struct ct_kinematics *kinematics, int cluster,
                               const struct ct_edge_info *e, int i, int sign, ct_ex3 local,
                               ct_ex angle)
 {
-    // fixed in the axes it starts from and in those it leads to
+    // the axis is fixed in the parent and in the child
     struct ct_rotation_axis s
         = {.cluster = cluster,
            .axis = ct_cluster_turn(b, kinematics->cluster[cluster].base, local)};
@@ -322,7 +325,7 @@ static void add_rotation_axis(struct ct_build *b, struct ct_kinematics *kinemati
             kinematics->rotation_axis_cap, s);
 }
 
-// Cluster turned about a local axis of `parent`; parallel axes accumulate.
+// Cluster rotated about a local axis of `parent`; rotations about parallel axes are accumulated.
 static int turn_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
                         const struct ct_edge_info *e, int i, int sign, ct_ex3 axis)
 {
@@ -353,7 +356,7 @@ static int turn_cluster(struct ct_build *b, struct ct_kinematics *kinematics, in
     return c;
 }
 
-// S(p) of a unit quaternion: 1 + 2 (p0 v~ + v~ v~), twelve products.  (7.2)
+// S(p) of a unit quaternion: 1 + 2 (p0 v~ + v~ v~), 12 products.  (7.2)
 static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
 {
     ct_ex33 R;
@@ -373,7 +376,7 @@ static ct_ex33 quaternion_matrix(struct ct_exs *x, const ct_ex p[4])
     return R;
 }
 
-// Cluster of a 3-dof rotation. The node of the axes of `to` is the child (sign +1) or the parent.
+// Cluster of a spherical rotation. The axes of `to` belong to the child (sign +1) or to the parent.
 static int quaternion_cluster(struct ct_build *b, struct ct_kinematics *kinematics, int parent,
                               const ct_ex33 *S, const struct ct_edge_info *e, int sign)
 {
@@ -404,7 +407,7 @@ static int quaternion_cluster(struct ct_build *b, struct ct_kinematics *kinemati
     return c;
 }
 
-// Axes of a node from those of its parent in the rotational tree.
+// Derives the axes of a node from those of its parent in the rotational tree.
 static void place_axes(struct ct_build *b, struct ct_kinematics *kinematics, int node)
 {
     const struct ct_edge_info *e = &b->topology->edge[b->R.parent_edge[node]];
@@ -412,7 +415,7 @@ static void place_axes(struct ct_build *b, struct ct_kinematics *kinematics, int
     struct ct_node_placement *self = &kinematics->placement[node];
     const int sign = b->R.sign[node];
     self->frame = p->frame;
-    ct_ex33 S = p->S; // of the axes that turns are about
+    ct_ex33 S = p->S; // of the axes in which the rotation axes are given
     if (e->kind == CT_EDGE_ARM) {
         const ct_ex33 own = sign > 0 ? e->S : ct_ex33_transpose(&e->S);
         S = ct_ex33_mul(b->x, &p->S, &own);
@@ -428,7 +431,7 @@ static void place_axes(struct ct_build *b, struct ct_kinematics *kinematics, int
     }
     if (e->kind == CT_EDGE_ARM)
         return;
-    if (e->kind == CT_EDGE_BODY) // from ground outwards always
+    if (e->kind == CT_EDGE_BODY) // always from ground outwards
         self->S = e->S;
     if (ct_edge_motion(b, e)->quaternion >= 0) {
         self->frame = quaternion_cluster(b, kinematics, self->frame, &p->S, e, sign);
@@ -436,7 +439,7 @@ static void place_axes(struct ct_build *b, struct ct_kinematics *kinematics, int
     }
 }
 
-// Preorder intervals; children are found by scanning, parents come first.
+// Sets the preorder intervals. Parents have smaller numbers than children.
 static void number_clusters(struct ct_build *b, struct ct_kinematics *kinematics)
 {
     int *size = CT_NEWN(b->arena, int, kinematics->ncluster),
@@ -480,7 +483,7 @@ void ct_rotation_derive(struct ct_build *b, struct ct_kinematics *kinematics)
         struct ct_cluster *self = &kinematics->cluster[c];
         self->w = ct_ex3_add(b->x, kinematics->cluster[self->parent].w,
                              relative_velocity(b, (int)c));
-        if (b->topology->is_planar) { // one spin, its axis is the normal or its opposite
+        if (b->topology->is_planar) { // a single axis: the normal or its opposite
             const struct ct_rotation_axis *s = &kinematics->rotation_axis[self->first_axis];
             const ct_ex inner = kinematics->cluster[self->parent].omega;
             self->omega = ct_rotation_axis_is_positive(b, (size_t)self->first_axis)
@@ -504,7 +507,7 @@ ct_ex3 ct_cluster_velocity(const struct ct_build *b, int c)
     return b->kinematics->cluster[c].w;
 }
 
-// bias + coef u': the derivative of a turn's rate.
+// bias + coef u': the angular acceleration about one axis.
 static ct_ex axis_acceleration(struct ct_build *b, const struct ct_rotation_axis *s,
                                enum ct_level level)
 {
@@ -534,8 +537,8 @@ bool ct_cluster_own_rates(struct ct_build *b, int c, enum ct_level level, ct_ex3
     return true;
 }
 
-// al - al_p = sum s (bias + coef u') + w_p x w_rel: the axis of a turn is fixed in both frames, those
-// of a quaternion in one of them; the formula is the same.  (4.1), (1.8)
+// al - al_p = sum s (bias + coef u') + w_p x w_rel: The axis of a single rotation is fixed in both
+// frames, the axes of a quaternion in one of them; the formula is the same.  (4.1), (1.8)
 static ct_ex3 relative_acceleration(struct ct_build *b, int c, enum ct_level level)
 {
     const struct ct_cluster *self = &b->kinematics->cluster[c];
@@ -572,7 +575,7 @@ ct_ex3 ct_cluster_path_velocity(struct ct_build *b, int from, int to)
         n++;
     if (from == 0 && n > CT_LONG_PATH)
         return ct_cluster_velocity(b, to);
-    while (from != to) // numbers grow outwards: the larger one steps inwards
+    while (from != to) // parents have smaller numbers: replace the larger one by its parent
         if (to > from) {
             sum = ct_ex3_add(b->x, sum, relative_velocity(b, to));
             to = b->kinematics->cluster[to].parent;
@@ -625,7 +628,7 @@ ct_ex3 ct_cluster_centripetal(struct ct_build *b, int c, ct_ex3 v)
     return ct_ex3_neg(x, ct_ex3_scale(x, ct_ex_mul(x, omega, omega), ct_build_in_plane(b, v)));
 }
 
-// ---- axes of nodes --------------------------------------------------------------------------------
+// ---- axes of nodes -----------------------------------------------------------------------------
 
 ct_ex33 ct_node_rotation(struct ct_build *b, int node)
 {

@@ -7,7 +7,8 @@ static bool changes_in_time(const struct ct_build *b, ct_ex e)
     return ct_ex_kinds(b->x, e) & ~still;
 }
 
-// What is compared with 0 in a node of an expression; the node itself where it compares nothing.
+// The quantity g that an expression node compares with 0; the node itself if it is not a
+// comparison.
 static ct_ex compared(struct ct_exs *x, ct_ex e)
 {
     const struct ct_exnode n = *ct_ex_node(x, e);
@@ -28,7 +29,7 @@ static ct_ex compared(struct ct_exs *x, ct_ex e)
     }
 }
 
-// g as the model writes it: with its signals, not what stands for them.
+// g as written in the model, with its signals instead of their replacements.
 static ct_ex as_written(struct ct_build *b, ct_ex g)
 {
     struct ct_exs *x = b->x;
@@ -50,7 +51,8 @@ static ct_ex as_written(struct ct_build *b, ct_ex g)
     return g;
 }
 
-// The 0/1 symbol of `g op 0`; one for equal questions. own: g before anything in it was held.
+// The 0/1 symbol of `g op 0`; equal comparisons share one. own: g before comparisons in it were
+// replaced.
 static ct_ex switch_symbol(struct ct_build *b, enum ct_op op, ct_ex g, ct_ex own)
 {
     struct ct_equations *s = b->eqs;
@@ -68,7 +70,7 @@ static ct_ex switch_symbol(struct ct_build *b, enum ct_op op, ct_ex g, ct_ex own
     return m.symbol;
 }
 
-// The held form of a node whose arguments are held already. own: what it compares before that.
+// The replacement of a node whose arguments are replaced already. own: its comparison before that.
 static ct_ex hold_node(struct ct_build *b, enum ct_op op, ct_ex e, ct_ex p, ct_ex q, ct_ex own)
 {
     struct ct_exs *x = b->x;
@@ -108,7 +110,7 @@ static void note_time_function(struct ct_build *b, ct_ex e)
     CT_PUSH(b->arena, s->time_function, s->ntime_function, s->time_function_cap, e);
 }
 
-// is_within: e is part of a function of time alone.
+// Replaces all comparisons in e. is_within: e is part of a function of time alone.
 static ct_ex hold(struct ct_build *b, ct_ex e, bool is_within)
 {
     struct ct_exs *x = b->x;
@@ -118,7 +120,7 @@ static ct_ex hold(struct ct_build *b, ct_ex e, bool is_within)
         return e;
     const bool is_first = !is_within && is_time_function(b, e);
     is_within |= is_first;
-    // expressions of a model are small trees, so plain recursion serves
+    // expressions of a model are small, so that recursion is safe
     const ct_ex p = hold(b, (ct_ex){n.a}, is_within);
     ct_ex held;
     if (n.op == CT_OP_TABLE) {

@@ -1,7 +1,7 @@
-// Places along the translational tree: anchors joined by links, nodes at constant offsets.
+// Positions along the translational tree: anchors connected by links, nodes at constant offsets.
 //
-// A branch whose vector is constant in the cluster of its predecessor's vector adds to that vector;
-// only where the cluster changes, or where the branch slides, does an anchor come into being.
+// Consecutive branch vectors that are constant in the same cluster are added to one vector. A new
+// anchor is made only where the cluster changes or the branch has translational coordinates.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/kinematics.h"
 
@@ -33,7 +33,7 @@ static int add_anchor(struct ct_build *b, struct ct_kinematics *kinematics, int 
     return (int)kinematics->nanchor - 1;
 }
 
-// The anchor at a place; one that stands there already is used again.
+// The anchor at a position; an existing one is reused.
 static int anchor_at(struct ct_build *b, struct ct_kinematics *kinematics,
                      const struct ct_node_placement *p)
 {
@@ -60,7 +60,7 @@ static void add_translation_axis(struct ct_build *b, struct ct_anchor *a, int sp
             = (struct ct_translation_axis){speed, driver, along, extra};
 }
 
-// The elastic coordinates' slides of a section whose beam has the axes of `tail`.
+// Translation axes of a beam section along its elastic coordinates; `tail`: axes of the beam.
 static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
                           const struct ct_node_placement *tail, int sign, struct ct_anchor *a)
 {
@@ -78,7 +78,7 @@ static void slide_section(struct ct_build *b, const struct ct_edge_info *e,
     }
 }
 
-// Node beyond a branch that slides: an anchor of its own.
+// Places a node after a branch with translational coordinates: it gets its own anchor.
 static void place_translating(struct ct_build *b, struct ct_kinematics *kinematics,
                               const struct ct_edge_info *e, const struct ct_node_placement *p,
                               const struct ct_node_placement *tail, int sign, ct_ex3 vector,
@@ -112,13 +112,13 @@ static void place_translating(struct ct_build *b, struct ct_kinematics *kinemati
     self->local = zero3;
 }
 
-// The place whose axes the branch to a node has.
+// Placement of the node whose axes the branch vector to `node` refers to.
 static const struct ct_node_placement *tail_of(const struct ct_build *b, int node)
 {
     return &b->kinematics->placement[b->T.sign[node] > 0 ? b->T.parent[node] : node];
 }
 
-// Along the branch to a node, in axes of its cluster.
+// Vector along the branch to a node, in axes of its cluster.
 static ct_ex3 branch_vector(struct ct_build *b, int node)
 {
     const struct ct_edge_info *e = &b->topology->edge[b->T.parent_edge[node]];
@@ -180,7 +180,7 @@ static void number_anchors(struct ct_build *b, struct ct_kinematics *kinematics)
     }
 }
 
-// The base of a beam is at an anchor, so that its masses are seen from there.
+// Makes an anchor at the base of a beam, as origin for its masses.
 static void anchor_base(struct ct_build *b, struct ct_kinematics *kinematics, int node)
 {
     struct ct_node_placement *p = &kinematics->placement[node];
@@ -328,8 +328,8 @@ static void add_piece(struct path *p, int anchor, int cluster, int sign, ct_ex3 
         p->piece[p->n++] = (struct ct_piece){anchor, cluster, sign, local};
 }
 
-// From tail to head: offsets and links up to where both chains of anchors meet. It holds until the
-// next one is sought: there are as many as pairs of a row and a speed.
+// Path from tail to head: offsets and links up to the common anchor. It is valid until the next
+// call; storing all of them would take rows times speeds.
 static struct path find_path(struct ct_build *b, int tail, int head)
 {
     const struct ct_node_placement *t = &b->kinematics->placement[tail],
@@ -344,7 +344,7 @@ static struct path find_path(struct ct_build *b, int tail, int head)
     add_piece(&p, -1, h->cluster, 1, h->local);
     add_piece(&p, -1, t->cluster, -1, t->local);
     int i = h->anchor, j = t->anchor;
-    while (i != j) // numbers grow outwards: the larger one steps inwards
+    while (i != j) // parents have smaller numbers: replace the larger one by its parent
         if (i > j) {
             add_piece(&p, i, b->kinematics->anchor[i].cluster, 1,
                       b->kinematics->anchor[i].local);
@@ -381,8 +381,8 @@ static ct_ex3 accumulate(struct ct_build *b, ct_ex3 sum, int sign, ct_ex3 v)
     return sign > 0 ? ct_ex3_add(b->x, sum, v) : ct_ex3_sub(b->x, sum, v);
 }
 
-// From ground over many pieces: places and velocities that nodes on the way share cost less than a
-// sum of one's own.
+// Is it a long path from ground? Then the stored positions and velocities of intermediate anchors
+// cost less than a separate sum for each node.
 static bool is_long(const struct ct_build *b, int tail, int head)
 {
     const struct ct_kinematics *k = b->kinematics;
@@ -424,8 +424,8 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
     return sum;
 }
 
-// Does the piece turn with node t? What it slides by is added to *slid then, what is fixed of it to
-// *fixed: arms on both sides cancel there before anything is rounded.
+// Is the piece fixed in the cluster of node t? Then its variable part is added to *slid and its
+// constant part to *fixed, where opposite arms cancel exactly.
 static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
                     const struct ct_piece *p, ct_ex3 *fixed, ct_ex3 *slid)
 {
@@ -472,8 +472,8 @@ ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
     return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
 }
 
-// local x v for a vector v of the spin's own cluster, in its axes; worth it where a component
-// vanishes.
+// axis x v in axes of the cluster of the axis, for v fixed there. False if no component vanishes:
+// then it is not cheaper.
 static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct_ex3 v,
                         ct_ex3 *sweep)
 {
@@ -524,7 +524,7 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
     return any;
 }
 
-// Does some spin turn a vector of `cluster` in the sweep of a row?
+// Does any rotation axis change a vector of `cluster` in the row?
 static bool is_swept(const struct ct_build *b, int tail, int head, bool carried, int cluster)
 {
     const int from = b->kinematics->placement[tail].frame,
@@ -545,7 +545,7 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
     const struct ct_tree *T = &b->T;
     ct_ex3 *lever = CT_NEWN(b->arena, ct_ex3, T->depth[tail] + T->depth[head] + 1);
     *n = 0;
-    for (int i = tail, j = head; i != j;) { // the deeper one steps inwards
+    for (int i = tail, j = head; i != j;) { // replace the deeper one by its parent
         int *const k = T->depth[i] > T->depth[j] ? &i : &j;
         const struct ct_edge_info *e = &b->topology->edge[T->parent_edge[*k]];
         const ct_ex3 d = ct_edge_kinematics(b, e)->d;

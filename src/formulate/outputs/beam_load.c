@@ -12,15 +12,15 @@ static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
 // ---- the part beyond a section ------------------------------------------------------------------
 
-// A section and the sums of what the part beyond it needs: force, and torque about the section's
-// origin; axes of the beam.
+// A cut at a section: force on the part beyond it, and torque about the origin of the section, in
+// axes of the beam.
 struct cut {
     const struct ct_flexible *f;
     struct ct_station s;
-    double x, tolerance; // where it is [m]
-    bool is_start;       // x = 0: what acts there belongs to the part before
-    ct_ex3 a, w,
-        al; // of the base: acceleration less gravity, angular velocity and acceleration
+    double x, tolerance; // position of the section [m]
+    bool is_start;       // x = 0: loads there act on the part before the section
+    // a, w, al: of the base: acceleration minus gravity, angular velocity and acceleration
+    ct_ex3 a, w, al;
     ct_ex3 force, torque;
 };
 
@@ -48,7 +48,7 @@ static void add_wrench(struct ct_build *b, struct cut *c, ct_ex3 force, ct_ex3 t
     c->torque = ct_ex3_add(b->x, c->torque, ct_ex3_cross(b->x, arm, force));
 }
 
-// Twist, -dw/dx, dv/dx of the dofs' values, rates or accelerations.
+// Twist, -dw/dx, dv/dx at a section, from the values, rates or accelerations of the dofs.
 static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                            const struct ct_element *e, const ct_ex *of, ct_ex xi)
 {
@@ -58,8 +58,8 @@ static ct_ex3 section_rate(struct ct_build *b, const struct ct_flexible *f,
                      ct_element_field(b, e, f->shape.rotation, of, 2, 4, xi)}};
 }
 
-// Mass m with the rotary inertia j at xi of an element. chain: acceleration of the foreshortening
-// at its start.  (5.4)
+// Adds the inertia force of mass m with rotary inertia j at xi of an element. chain: acceleration
+// of the foreshortening at the start of the element.  (5.4)
 static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element *e, ct_ex xi,
                      ct_ex m, const ct_ex j[3], ct_ex chain)
 {
@@ -94,7 +94,7 @@ static void add_mass(struct ct_build *b, struct cut *c, const struct ct_element 
     add_wrench(b, c, ct_ex3_scale(x, m, a), moment, r);
 }
 
-// Gauss points that integrate mu r x c: exact where sections are constant.
+// Number of Gauss points to integrate mu r x c, exact for constant sections.
 static int points_of(const struct ct_build *b, const struct ct_flexible *f)
 {
     unsigned kinds = ct_ex_kinds(b->x, f->beam->mass_per_length);
@@ -105,8 +105,8 @@ static int points_of(const struct ct_build *b, const struct ct_flexible *f)
     return f->kinematics == CT_AXIAL_LINEAR ? 4 : 6; // r and c are of degree 3 or 5
 }
 
-// The element beyond xi = from. Lumped masses sit at its ends; that at the section's own place
-// counts.
+// Adds the part of an element beyond xi = from. Lumped masses are at its ends; a mass at the
+// section itself is included.
 static void add_element(struct ct_build *b, struct cut *c, int number, ct_ex from, ct_ex chain)
 {
     struct ct_exs *x = b->x;

@@ -1,4 +1,4 @@
-// Columns of results: the outputs of a model and those that are asked for besides.  (format, section 6)
+// Columns of results: the outputs of a model and further requested ones.  (format, section 6)
 #include "formulate/outputs/output.h"
 #include "formulate/outputs/dynamic_signal.h"
 
@@ -20,7 +20,7 @@ static const char *with_component(struct ct_build *b, const char *name, const ch
     return ct_arena_printf(b->arena, "%.*s%s%s", n, name, component, axes ? axes : "");
 }
 
-// "J.q" of a joint with several coordinates stands for all of them.
+// Columns for "J.q" of a joint with several coordinates: all of them.
 static bool numbered_columns(struct ct_build *b, const char *name, struct ct_mark mark,
                              bool *done)
 {
@@ -68,7 +68,8 @@ static bool signal_columns(struct ct_build *b, const char *name, struct ct_mark 
     return true;
 }
 
-// A signal under a name of its own is one column of that name; else its columns are named after it.
+// Columns of an output with a user-defined name: a scalar gets that name, a vector that name with
+// components.
 static void named_columns(struct ct_build *b, const struct ct_output *o)
 {
     const size_t first = b->eqs->nresult;
@@ -78,7 +79,8 @@ static void named_columns(struct ct_build *b, const struct ct_output *o)
         b->eqs->result[first].name = o->name;
 }
 
-// Columns from `first` on are those of output i; none may be there already: "a.position" has "a.position.x".
+// Checks that the columns from `first` on, those of output i, do not exist already: "a.position"
+// contains "a.position.x".
 static void new_names(struct ct_build *b, struct ct_names *names, size_t first, size_t i)
 {
     const struct ct_output *output = b->model->output;
@@ -113,13 +115,13 @@ bool ct_outputs_derive(struct ct_build *b)
     return b->ctx->nerror == before;
 }
 
-// Columns of a signal whose first one is not there yet.
+// Adds the columns of a signal, unless its first column exists.
 static bool new_columns(struct ct_build *b, const char *name, struct ct_mark mark)
 {
     const size_t first = b->eqs->nresult;
     if (!signal_columns(b, name, mark))
         return false;
-    size_t kept = first; // drop those that repeat a column of the model
+    size_t kept = first; // drop columns that the model already has
     for (size_t i = first; i < b->eqs->nresult; i++) {
         bool is_new = true;
         for (size_t k = 0; k < first && is_new; k++)
@@ -160,7 +162,7 @@ static bool reaction_columns(struct ct_build *b, size_t j)
 {
     const struct ct_instance *joint = &b->model->joint[j];
     const int edge = b->topology->edge_of_joint[j];
-    if (edge < 0) // a gear: its effort on the first of its joints
+    if (edge < 0) // a gear: its effort on its first joint
         return new_columns(b, ct_arena_printf(b->arena, "%s.effort", joint->name), joint->mark);
     return new_columns(b, ct_arena_printf(b->arena, "%s.force", joint->name), joint->mark)
         && (!b->topology->edge[edge].has_rotation

@@ -43,8 +43,8 @@ static void add_to(struct ct_exs *x, ct_ex *sum, ct_ex v)
     *sum = ct_ex_add(x, *sum, v);
 }
 
-// Does a freedom that follows stand for itself? In a CHAIN elements see it; else where it turns a
-// section that members hang on.
+// Are condensed rotations kept as auxiliary unknowns? Yes in a CHAIN, where elements depend on
+// them, and where one rotates a section that carries members.
 static bool has_followers(const struct ct_articulated *w, size_t i)
 {
     const struct ct_flexible *f = &w->b->flexible[i];
@@ -82,7 +82,7 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     e->is_done = CT_NEWN(w->work, bool, n + 1);
 }
 
-// The place of number k of those that follow; that of its multiplier.
+// Index of condensed rotation k among the unknowns; index of its multiplier.
 static int follower(const struct ct_articulated_beam *e, int k)
 {
     return e->n + e->f->beam->nelement + k;
@@ -93,7 +93,7 @@ static int multiplier(const struct ct_articulated_beam *e, int k)
     return follower(e, k) + e->nfollow;
 }
 
-// Is a place the foreshortening at the start of an element?
+// Is the unknown at this index the foreshortening at the start of an element?
 static bool is_start(const struct ct_articulated_beam *e, int place)
 {
     return e->is_augmented && place >= e->n && place < follower(e, 0);
@@ -106,14 +106,14 @@ static int freedom_place(const struct ct_articulated_beam *e, int freedom)
     return k >= 0 ? follower(e, k) : d->npart ? d->part[0].k : -1;
 }
 
-// The place of dof j of element i and its sign; -1: it is fixed.
+// Index and sign of dof j of element i; -1: fixed.
 static int dof_place(const struct ct_articulated_beam *e, int i, int j, int *sign)
 {
     const struct ct_freedom *d = ct_dof_freedom(e->f, i, j, sign);
     return d ? freedom_place(e, (int)(d - e->f->freedom)) : -1;
 }
 
-// Mass of the elements by their own dofs and c.
+// Adds the mass matrix of the elements in terms of their dofs and c.
 static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k,
                          struct ct_articulated_beam *e, const ct_ex33 *A, struct ct_columns *c)
 {
@@ -134,14 +134,14 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
             for (int l = 0; l < CT_DOF; l++) {
                 int other;
                 const int to = dof_place(e, i, l, &other);
-                if (to >= 0 && to <= at) // the transposed pair comes, too
+                if (to >= 0 && to <= at) // the transposed pair is visited separately
                     add_to(x, entry_of(e, at, to), ct_ex_scale(x, sign * other, s[i].M[j][l]));
             }
             if (i > 0)
                 add_to(x, entry_of(e, carried, at), ct_ex_scale(x, sign, s[i].moved[j].e[0]));
         }
         if (i == 0)
-            continue; // nothing is before it
+            continue; // the first element has no predecessor
         const ct_ex3 along = {{s[i].m, CT_EX_ZERO, CT_EX_ZERO}};
         const ct_ex3 about = {{CT_EX_ZERO, s[i].moment.e[2], ct_ex_neg(x, s[i].moment.e[1])}};
         const ct_ex3 f = ct_ex33_apply(x, A, along), n = ct_ex33_apply(x, A, about);
@@ -151,8 +151,8 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
     }
 }
 
-// The beam's own inertia, stiffness and damping at its base, and what its velocity needs; in the
-// member's axes.
+// Adds inertia, stiffness, damping and velocity-dependent forces of the beam at its base, in axes
+// of the member.
 static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam *e,
                      const ct_ex33 *A)
 {
@@ -194,7 +194,7 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     }
 }
 
-// Elastic coordinates that move this member.
+// Adds the elastic coordinates that move this member.
 static void add_screws(struct ct_articulated *w, int i, struct ct_articulated_beam *e)
 {
     struct ct_exs *x = w->b->x;
@@ -227,7 +227,7 @@ static void add_screws(struct ct_articulated *w, int i, struct ct_articulated_be
     }
 }
 
-// What is left of the body: I - G C', and its forces.
+// Reduced inertia of the body after one elimination, I - G C', and its forces.
 static void reduce_body(struct ct_exs *x, struct ct_articulated_body *k,
                         const struct ct_spatial_vector *G, const struct ct_spatial_vector *C,
                         ct_ex rest)
@@ -242,7 +242,7 @@ static void reduce_body(struct ct_exs *x, struct ct_articulated_body *k,
     }
 }
 
-// What is left of the member's matrix when e'' number j is free to be what it likes.
+// Eliminates the elastic acceleration e_j''.
 static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body *k,
                             struct ct_articulated_beam *e, int j)
 {
@@ -273,8 +273,8 @@ static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body
     reduce_body(x, k, &e->G[j], &k->C[j], e->row[j]);
 }
 
-// One that follows and its multiplier, [h p; p q]: h q <= 0 < p^2, as h is an inertia and q of
-// multipliers the reverse.
+// Eliminates a condensed rotation together with its multiplier, block [h p; p q]. It is regular: h
+// >= 0 is an inertia and q <= 0 belongs to multipliers, so that h q <= 0 < p^2.
 static void free_follower(struct ct_articulated *w, struct ct_articulated_body *k,
                           struct ct_articulated_beam *e, int number)
 {
@@ -296,7 +296,7 @@ static void free_follower(struct ct_articulated *w, struct ct_articulated_body *
             e->G[at[i]].e[r] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], k->C[at[0]].e[r]),
                                          ct_ex_mul(x, inverse[i][1], k->C[at[1]].e[r]));
     }
-    *entry_of(e, at[0], at[1]) = CT_EX_ZERO; // known together on the way back
+    *entry_of(e, at[0], at[1]) = CT_EX_ZERO; // both are found together in the back substitution
     for (int l = e->nall; l-- > 0;) {
         if (e->is_done[l])
             continue;
@@ -323,7 +323,8 @@ static void free_follower(struct ct_articulated *w, struct ct_articulated_body *
         reduce_body(x, k, &e->G[at[i]], &k->C[at[i]], e->row[at[i]]);
 }
 
-// c of element i as a sum: places and weights (CT_AXIS_DOF + 1 of each). Returns their number.
+// c of element i as a weighted sum of unknowns: indices and weights (CT_AXIS_DOF + 1 of each).
+// Returns their number.
 static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam *e, int i,
                       int *place, ct_ex *weight)
 {
@@ -342,7 +343,7 @@ static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam
     return n;
 }
 
-// Put in what c of element i is; all beyond its start are eliminated.
+// Substitutes c of element i by its sum, after everything beyond its start is eliminated.
 static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
                    struct ct_articulated_beam *e, int i)
 {
@@ -379,7 +380,7 @@ static void free_followers(struct ct_articulated *w, struct ct_articulated_body 
     }
 }
 
-// Freedoms that follow satisfy their sums, which multipliers hold them to.
+// Adds the equilibrium equations of the condensed rotations, with their multipliers.
 static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
 {
     for (int k = 0; k < e->nfollow; k++) {
@@ -392,8 +393,8 @@ static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
     }
 }
 
-// Does anything act on freedoms that follow? Nothing does where sections are turned only for what
-// hangs on hinges or balls.
+// Does any force act on the condensed rotations? None does if they only rotate sections with
+// revolute or spherical joints.
 static bool feels_followers(struct ct_articulated_beam *e, const struct ct_spatial_vector *C)
 {
     for (int k = 0; k < e->nfollow; k++) {
@@ -465,7 +466,7 @@ static ct_ex sum_of_parts(struct ct_exs *x, const struct ct_articulated_beam *e,
     return sum;
 }
 
-// e'' of all coordinates; A of the root without its own motion by them.
+// Finds e'' of all coordinates; A is the acceleration of the root without its motion by them.
 static void find_accelerations(struct ct_articulated *w, const struct ct_articulated_body *root,
                                struct ct_articulated_beam *e, ct_ex *out)
 {

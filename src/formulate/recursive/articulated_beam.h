@@ -1,17 +1,18 @@
-// Between the files of articulated bodies: what hangs on a member, and the elastic coordinates of
-// beams.
+// Internal data of the articulated-body method: the articulated inertia of a member and the elastic
+// coordinates of beams.
 //
-// Elastic coordinates e of a beam move several members. Those that lie outboard of the base, and
-// the base, are summed first: on the way inwards what hangs on a member also feels their
-// accelerations, n, f += C e'', and its forces act on their rows,
+// Elastic coordinates e of a beam move several members. The recursion therefore first keeps them as
+// unknowns. The wrench of a member contains their accelerations, n, f += C e'', and its inertia
+// forces enter their rows,
 //
-//     M e'' + C' (al, a) + row = effort,    at a member they move by s:  M += s' I s + s' C + C' s,  row += s . f0,  C += I s
+//     M e'' + C' (al, a) + row = effort
+//     M += s' I s + s' C + C' s,  row += s . f0,  C += I s     at a member that e moves along s
 //
-// and at the innermost of these members they are eliminated one by one, from the tip of the beam
-// inwards. In a CHAIN an element moves with its own dofs and c, the foreshortening at its start
-// (flexible_body.h), which is one more coordinate until all beyond it are eliminated; then c of the
-// element before and g . dofs of that element are put in for it. So every element sees its
-// neighbours only.
+// At the innermost of these members they are eliminated one by one, from the tip of the beam
+// inwards. In a CHAIN an element moves with its own dofs and with c, the foreshortening at its
+// start (flexible_body.h). c is an additional unknown until everything beyond it is eliminated.
+// Then it is replaced by c of the previous element plus g . dofs of that element. So each element
+// is coupled with its neighbours only.
 #ifndef CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 #define CT_FORMULATE_RECURSIVE_ARTICULATED_BEAM_H
 
@@ -25,43 +26,45 @@ struct ct_spatial_vector {
     ct_ex e[CT_SPATIAL_SIZE];
 };
 
-/// What hangs on a member, at its origin, in its axes (articulated_body.c).
+/// Articulated body of a member, at its origin, in its axes (articulated_body.c).
 struct ct_articulated_body {
     ct_ex33 J, B, M;
     ct_ex3 n, f;
-    // of each freedom of a joint, in the order of elimination
+    // for each joint coordinate, in the order of elimination
     ct_ex G[CT_MAX_COORD][CT_SPATIAL_SIZE]; // P/D
     ct_ex u0[CT_MAX_COORD];                 // (effort - s . f0)/D
     ct_ex3 al, a;                           // accelerations
-    struct ct_spatial_vector *C;            // of a beam's member, by elastic coordinate
+    struct ct_spatial_vector *C;            // for a member of a beam, by elastic coordinate
 };
 
-/// Elastic coordinates of a beam (n), in a CHAIN also c of its elements, n + element, then its
-/// freedoms that follow, and as many multipliers of the sums that they satisfy (beam_dynamics.h).
+/// Unknowns of a beam in the elimination: its n elastic coordinates; in a CHAIN c of each element,
+/// n + element; then its condensed rotations and as many multipliers of their equilibrium equations
+/// (static_condensation.h).
 struct ct_articulated_beam {
     const struct ct_flexible *f;
     int n, nall, nfollow;
-    bool is_augmented; // there are c
-    bool
-        follows; // what follows is eliminated with its multipliers; else it is known afterwards, as a sum
-    int *number; // by speed: its place, or -1
-    ct_ex *M;    // nall x nall, lower triangle; eliminated: entries over the pivot
-    ct_ex *row;  // then what is left of the effort, over the pivot
+    bool is_augmented; // c of the elements are unknowns
+    // follows: condensed rotations are eliminated with their multipliers; else they are computed
+    // afterwards
+    bool follows;
+    int *number; // by speed: its index, or -1
+    ct_ex *M;    // nall x nall, lower triangle; after elimination divided by the pivot
+    ct_ex *row;  // right side; after elimination divided by the pivot
     struct ct_spatial_vector *G; // C over the pivot
     ct_ex *a;                    // e''
     int *order, nstep;           // of elimination
-    bool *is_done;               // by coordinate: eliminated; on the way back: known
+    bool *is_done;               // by unknown: eliminated; in back substitution: known
 };
 
 struct ct_articulated {
     struct ct_build *b;
-    struct ct_arena *work; // for what the solution does not need
+    struct ct_arena *work; // temporary memory
     const struct ct_members *s;
     const ct_ex *effort;
     ct_ex *pivot;
     struct ct_articulated_body *body;
     struct ct_articulated_beam *elastic; // by beam
-    ct_ex *M, *row; // of all beams alone, by speed: lower triangle (nu x nu), (nu)
+    ct_ex *M, *row; // of the beams alone, by speed: lower triangle (nu x nu), (nu)
 };
 
 /// Entry (i, j) of a body's matrix, its rows n, f and columns al, a.
@@ -74,15 +77,15 @@ ct_ex ct_screw_direction(const struct ct_screw *s, int i);
 ct_ex ct_articulated_project(struct ct_articulated *w, const struct ct_articulated_body *k,
                              const struct ct_screw *s, ct_ex P[CT_SPATIAL_SIZE]);
 
-/// Beam number i of w, empty.
+/// Initialises beam number i of w.
 void ct_articulated_beam_start(struct ct_articulated *w, size_t i);
-/// Add what member i of a beam is and how its elastic coordinates move it; at the root eliminate
-/// them.
+/// Adds the inertia of member i of a beam and its motion by elastic coordinates. Eliminates them at
+/// the root.
 void ct_articulated_beam_sum(struct ct_articulated *w, int i);
-/// C on its way to the parent of member i, with the rows of what is known of the accelerations.
+/// Transforms C to the parent of member i and adds known accelerations to the rows.
 void ct_articulated_beam_hand(struct ct_articulated *w, int i);
-/// The part of member i's acceleration that elastic coordinates give it, theirs into out by speed;
-/// at the root theirs are found.
+/// Adds the elastic part of the acceleration of member i. At the root it finds the elastic
+/// accelerations; they are stored in out by speed.
 void ct_articulated_beam_accelerate(struct ct_articulated *w, int i, ct_ex *out);
 
 #endif

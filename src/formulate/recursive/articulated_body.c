@@ -1,24 +1,24 @@
 // See articulated_body.h.
 //
-// What hangs on a member, its joints free to move, acts on it like one body that has no single mass:
+// A member and everything outboard of it, with free joints, form an articulated body:
 //
 //     [ n ]   [ J   B ] [ al ]   [ n0 ]
 //     [ f ] = [ B'  M ] [ a  ] + [ f0 ]       at the member's origin, in its axes
 //
-// A freedom along s transmits its effort only: with P = I s, D = s . P this is solved for its u', and what is left
-// of I is I - P P'/D. Of a freedom along one coordinate axis the row of that axis vanishes, and its result is the
-// acceleration itself instead of the difference u'.
+// A joint coordinate along s transmits only its effort. With P = I s and D = s . P this gives u',
+// and the reduced inertia is I - P P'/D. For s along a coordinate axis the row of that axis
+// vanishes, and the result is the total acceleration along it instead of the relative u'.
 //
 // Elastic coordinates of beams: articulated_beam.h.
 //
-//     leaves -> ground   eliminate the freedoms, turn and shift to the parent
-//     ground -> leaves   a'' = what the parent hands on;  u' = (effort - s . f0 - P . a'')/D
+//     leaves -> ground   eliminate the joint coordinates, rotate and shift to the parent
+//     ground -> leaves   a'' = acceleration due to the parent;  u' = (effort - s . f0 - P . a'')/D
 #include "formulate/recursive/articulated_body.h"
 #include "formulate/recursive/articulated_beam.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- the matrix of a body --------------------------------------------------------------------------------
+// ---- the matrix of a body ----------------------------------------------------------------------
 
 ct_ex ct_articulated_entry(const struct ct_articulated_body *k, int i, int j)
 {
@@ -47,7 +47,7 @@ ct_ex ct_screw_direction(const struct ct_screw *s, int i)
     return i < 3 ? s->rotation.e[i] : s->translation.e[i - 3];
 }
 
-// P = I s and D = s . P; axis: the one s points along, or -1.
+// P = I s and D = s . P; axis: the coordinate axis of s, or -1.
 ct_ex ct_articulated_project(struct ct_articulated *w, const struct ct_articulated_body *k,
                              const struct ct_screw *s, ct_ex P[CT_SPATIAL_SIZE])
 {
@@ -64,9 +64,10 @@ ct_ex ct_articulated_project(struct ct_articulated *w, const struct ct_articulat
     return D;
 }
 
-// ---- leaves to ground -----------------------------------------------------------------------------------
+// ---- leaves to ground --------------------------------------------------------------------------
 
-// The member's own inertia: n = J al + h x a, f = m a - h x al, and what its velocity and loads need.
+// Adds the inertia of the member, n = J al + h x a, f = m a - h x al, its velocity-dependent forces
+// and its loads.
 static void add_own(struct ct_articulated *w, int i)
 {
     struct ct_exs *x = w->b->x;
@@ -125,7 +126,7 @@ static void add_tensor(struct ct_exs *x, ct_ex33 *sum, const ct_ex33 *A)
         sum->e[i] = ct_ex_add(x, sum->e[i], A->e[i]);
 }
 
-// f and n that accelerations known beforehand take: n += J al + B a, f += B' al + M a.
+// Adds the wrench of known accelerations: n += J al + B a, f += B' al + M a.
 static void add_bias(struct ct_exs *x, struct ct_articulated_body *k, ct_ex3 al, ct_ex3 a)
 {
     k->n = ct_ex3_add(x, k->n,
@@ -144,7 +145,8 @@ static void turn(struct ct_articulated *w, const struct ct_member *m,
     k->f = ct_member_out(w->b, m, k->f);
 }
 
-// To an origin from which the present one is at r:  C = B + r~ M,  J + r~ B' + (r~ C')',  n + r x f.
+// Shifts to a new origin; r is the vector from it to the present one:  C = B + r~ M,  J + r~ B' +
+// (r~ C')',  n + r x f.
 static void shift(struct ct_articulated *w, struct ct_articulated_body *k, ct_ex3 r)
 {
     struct ct_exs *x = w->b->x;
@@ -182,7 +184,7 @@ static void hand_inwards(struct ct_articulated *w, int i)
     if (m->beam && i != w->s->beam[m->beam - 1].root)
         ct_articulated_beam_hand(w, i);
     add_bias(x, &k, m->al_relative, zero3);
-    if (m->is_absolute) { // torques go to ground
+    if (m->is_absolute) { // the torque acts on ground
         k.n = zero3;
         k.J = k.B = (ct_ex33){{{0}}};
     }
@@ -196,7 +198,7 @@ static void hand_inwards(struct ct_articulated *w, int i)
     p->f = ct_ex3_add(x, p->f, k.f);
 }
 
-// ---- ground to leaves -----------------------------------------------------------------------------------
+// ---- ground to leaves --------------------------------------------------------------------------
 
 static void accelerate(struct ct_articulated *w, int i, ct_ex *out)
 {

@@ -6,7 +6,7 @@
 
 /// u' (nu) for the members of an open system and the efforts along its speeds (nu).
 ///
-/// pivot   out   inertia against each speed with everything outboard free to move (nu); 0 where a speed moves no mass
+/// pivot   out   articulated inertia D of each speed (nu); 0 if a speed moves no mass
 ///
 /// Cost    O(members)
 /// Source  Featherstone (2008), key featherstone2008, section 7.3

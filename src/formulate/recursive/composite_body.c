@@ -1,9 +1,10 @@
 // Composite bodies; see composite_body.h.
 //
-//     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  n = J al + w x J w + h x a,  A = U + al~
-//         leaves -> ground   f, n less loads, turned and shifted;   Q_k = effort - s_k . (n, f)
-//     M   leaves -> ground   mass, first moment, inertia of everything outboard as if it were one body
-//         column of s_k      (n, f) = I s_k, handed inwards;        M_kl = s_l . (n, f)
+//     Q   ground -> leaves   w, al, a at u' = 0;   f = m a + A h,  A = U + al~,
+//                            n = J al + w x J w + h x a
+//         leaves -> ground   f, n minus loads, rotated and shifted;   Q_k = effort - s_k . (n, f)
+//     M   leaves -> ground   mass, first moment, inertia of everything outboard as one rigid body
+//         column of s_k      (n, f) = I s_k, moved inwards;        M_kl = s_l . (n, f)
 #include "formulate/recursive/composite_body.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
@@ -28,15 +29,15 @@ static ct_ex power(struct ct_build *b, const struct ct_screw *s, const struct wr
                      ct_ex3_dot(b->x, s->translation, w->f));
 }
 
-// ---- forces ---------------------------------------------------------------------------------------------
+// ---- forces ------------------------------------------------------------------------------------
 
 struct forward { // by member, in its axes
     enum ct_level level;
-    ct_ex3 *al, *a; // of its origin
+    ct_ex3 *al, *a; // of the origin
     ct_ex33 *A;     // al x v + w x (w x v) = A v
 };
 
-// What u' adds to a member's own accelerations.
+// Adds the contribution of u' to the relative acceleration of a member.
 static void add_rates(struct ct_build *b, const struct ct_member *m, ct_ex3 *al, ct_ex3 *a)
 {
     struct ct_exs *x = b->x;
@@ -87,7 +88,7 @@ static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 
     return w;
 }
 
-// Efforts that the motion takes, by speed: with u' = 0 or with the symbols u'.
+// Inverse dynamics: generalised forces by speed, with u' = 0 or with the symbols u'.
 static void find_efforts(struct ct_build *b, const struct ct_members *s, enum ct_level level,
                          ct_ex *out)
 {
@@ -125,7 +126,7 @@ void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const
         r[k] = ct_ex_sub(b->x, r[k], effort[k]);
 }
 
-// ---- mass matrix ----------------------------------------------------------------------------------------
+// ---- mass matrix -------------------------------------------------------------------------------
 
 struct composite {
     ct_ex mass;
@@ -158,7 +159,7 @@ static void shift_inertia(struct ct_build *b, ct_ex33 *J, ct_ex3 r, ct_ex3 h)
     }
 }
 
-// What a member and everything outboard of it hand to the parent.
+// Adds the composite inertia of a member to its parent.
 static void gather(struct ct_build *b, const struct ct_member *m, const struct composite *own,
                    struct composite *parent)
 {
@@ -167,7 +168,7 @@ static void gather(struct ct_build *b, const struct ct_member *m, const struct c
     ct_ex3 h = zero3;
     const ct_ex3 carried = ct_ex3_scale(x, own->mass, m->r),
                  half = ct_ex3_scale(x, ct_ex_const(x, 0.5), carried);
-    if (!m->is_absolute) { // else it does not turn with the parent: a mass at its origin
+    if (!m->is_absolute) { // otherwise it does not rotate with the parent: only its mass counts
         J = own->J;
         h = ct_member_out(b, m, own->h);
         ct_member_turn_tensor(b, m, &J);

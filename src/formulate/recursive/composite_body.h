@@ -5,7 +5,7 @@
 
 #include "formulate/recursive/member.h"
 
-/// M (lower triangle of nu x nu, out, column-major; zero where two speeds do not act on each other)
+/// M (lower triangle of nu x nu, out, column-major; zero if two speeds are not coupled)
 /// and Q (nu, out) for the members of an open system and the efforts along its speeds.
 ///
 /// Cost    O(members times depth)
@@ -13,7 +13,7 @@
 void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
                          ct_ex *M, ct_ex *Q);
 
-/// r = M u' - Q (nu, out) with the symbols u': inverse dynamics less the efforts along the speeds.
+/// r = M u' - Q (nu, out) with the symbols u': inverse dynamics minus the efforts along the speeds.
 ///
 /// Cost    O(members)
 void ct_composite_residual(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,

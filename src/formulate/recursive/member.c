@@ -1,15 +1,15 @@
 // See member.h.
 //
-// Built node by node along the translational tree. A joint is taken apart into what slides and into turns, each
-// with a member of its own; those in between have no mass. Where one coordinate does both, as in a screw, one
-// member has both.
+// Members are built node by node along the translational tree. A joint is divided into a
+// translation and single rotations, each with its own member; intermediate members have no mass. If
+// one coordinate is both, as in a screw, one member has both.
 #include "formulate/recursive/member_internal.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- components -------------------------------------------------------------------------------------
+// ---- components --------------------------------------------------------------------------------
 
 ct_ex3 ct_member_express(struct ct_build *b, int cluster, ct_ex3 local)
 {
@@ -32,7 +32,7 @@ ct_ex3 ct_member_express_ground(struct ct_build *b, int cluster, ct_ex3 v)
     return out;
 }
 
-// ---- adding members -----------------------------------------------------------------------------------
+// ---- adding members ----------------------------------------------------------------------------
 
 int ct_member_add(struct ct_member_build *w, int parent, int cluster, ct_ex3 r)
 {
@@ -62,8 +62,8 @@ static int coordinate_axis(struct ct_build *b, ct_ex3 v)
     return -1;
 }
 
-// Axis of a spin in the member's axes. That of a quaternion seen backwards is fixed in the parent, as column i
-// of S there.
+// A rotation axis in axes of the member. The axis of a reversed quaternion is fixed in the parent;
+// it is column i of S there.
 static ct_ex3 rotation_axis_of(struct ct_member_build *w, const struct ct_member *m,
                                const struct ct_rotation_axis *s, const ct_ex33 *S, int i)
 {
@@ -80,7 +80,7 @@ static ct_ex3 rotation_axis_of(struct ct_member_build *w, const struct ct_member
     return ct_ex33_apply_t(b->x, &m->R, ct_ex3_neg(b->x, fixed));
 }
 
-// The member has the axes of a cluster.
+// Gives the member the axes of a cluster.
 struct ct_member *ct_member_take_cluster(struct ct_member_build *w, int member, int cluster)
 {
     struct ct_member *m = &w->s->member[member];
@@ -93,7 +93,7 @@ struct ct_member *ct_member_take_cluster(struct ct_member_build *w, int member, 
     return m;
 }
 
-// Number i of the spins of a cluster, but for its screws. Returns its axis.
+// Adds rotation axis i of a cluster without its screws. Returns the axis.
 ct_ex3 ct_member_rotation_axis(struct ct_member_build *w, struct ct_member *m, const ct_ex33 *S,
                                int i)
 {
@@ -115,7 +115,7 @@ void ct_member_screw_turn(struct ct_build *b, struct ct_member *m, int speed, ct
     f->rotation = ct_ex3_add(b->x, f->rotation, ct_ex3_scale(b->x, by, axis));
 }
 
-// The member turns as a cluster does; S: axes of the node the joint starts from.
+// Gives the member the rotation of a cluster; S: axes of the node at which the joint starts.
 static void add_turn(struct ct_member_build *w, int member, int cluster, const ct_ex33 *S)
 {
     struct ct_build *b = w->b;
@@ -130,7 +130,7 @@ static void add_turn(struct ct_member_build *w, int member, int cluster, const c
     }
 }
 
-// The member's place moves with coordinates of joint e; r is in axes of the parent's cluster.
+// Adds the translation axes of joint e to the member; r is in axes of the parent's cluster.
 static void add_translations(struct ct_member_build *w, int member,
                              const struct ct_edge_info *e)
 {
@@ -152,7 +152,7 @@ static void add_translations(struct ct_member_build *w, int member,
     }
 }
 
-// ---- joints -------------------------------------------------------------------------------------------
+// ---- joints ------------------------------------------------------------------------------------
 
 static bool is_moving(const struct ct_build *b, ct_ex3 v)
 {
@@ -172,7 +172,7 @@ static bool moves_slide(const struct ct_build *b, const struct ct_edge_info *e,
     return false;
 }
 
-// Does a coordinate that turns also slide?
+// Does one coordinate rotate and translate?
 static bool is_coupled(const struct ct_build *b, const struct ct_passage *p)
 {
     for (int i = 0; i < p->ncluster; i++) {
@@ -187,7 +187,7 @@ static bool is_coupled(const struct ct_build *b, const struct ct_passage *p)
     return false;
 }
 
-// Do two turns of the joint share a coordinate?
+// Do two rotations of the joint depend on the same coordinate?
 static bool turns_share(const struct ct_build *b, const struct ct_passage *p)
 {
     for (int i = 0; i < p->ncluster; i++)
@@ -229,7 +229,7 @@ static int pass_rotations(struct ct_member_build *w, int member, const struct ct
     return member;
 }
 
-// One member that slides and turns.
+// Adds one member that translates and rotates.
 static int pass_coupled(struct ct_member_build *w, int member, const struct ct_passage *p,
                         ct_ex3 *offset)
 {
@@ -264,10 +264,10 @@ static bool pass(struct ct_member_build *w, const struct ct_passage *p, int *mem
     return true;
 }
 
-// ---- nodes --------------------------------------------------------------------------------------------
+// ---- nodes -------------------------------------------------------------------------------------
 
-// The clusters between the axes of a node and those of its parent, or of ground in a plane. False where the node
-// turns with something else.
+// Finds the clusters between the axes of a node and those of its parent (of ground in a plane).
+// False if the parent of its cluster is another one.
 static bool find_clusters(struct ct_member_build *w, int from, int to, struct ct_passage *p)
 {
     const struct ct_build *b = w->b;
@@ -286,7 +286,7 @@ static bool find_clusters(struct ct_member_build *w, int from, int to, struct ct
     return true;
 }
 
-// A particle has no axes: it is a point of its parent, or of what slides there.
+// A particle has no axes: it is a point of its parent or of a translating member there.
 static bool place_particle(struct ct_member_build *w, struct ct_passage *p, int parent,
                            int *member, ct_ex3 *offset)
 {
@@ -344,7 +344,7 @@ static bool place_nodes(struct ct_member_build *w)
     return true;
 }
 
-// Each speed must move one member.
+// Does each speed move exactly one member?
 static bool own_speeds(struct ct_member_build *w)
 {
     const size_t nu = w->b->eqs->nu;
@@ -363,7 +363,7 @@ static bool own_speeds(struct ct_member_build *w)
     return true;
 }
 
-// ---- into the axes that are used ----------------------------------------------------------------------------
+// ---- axes of the members -----------------------------------------------------------------------
 
 static void find_axes(struct ct_member_build *w, struct ct_member *m)
 {
@@ -394,7 +394,7 @@ static void find_axes(struct ct_member_build *w, struct ct_member *m)
     }
 }
 
-// Lumping in a plane keeps to what lies in it.
+// In a plane only the in-plane components are needed.
 static void flatten(struct ct_member_build *w)
 {
     struct ct_build *b = w->b;

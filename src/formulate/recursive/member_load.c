@@ -1,4 +1,4 @@
-// Inertia of members and what acts on them; see member.h.
+// Inertia of members and loads on them; see member.h.
 #include "formulate/recursive/member_internal.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -13,8 +13,8 @@ static void add_tensor(struct ct_build *b, ct_ex33 *sum, const ct_ex33 *A)
         sum->e[i] = ct_ex_add(b->x, sum->e[i], A->e[i]);
 }
 
-// c (d.h 1) - (d h' + h d')/2 twice over: the inertia of first moments h at d, and with h = m d/2
-// that of a mass.
+// Adds 2 (d.h) 1 - d h' - h d': the change of inertia by a first moment h at d; with h = m d/2 that
+// of a point mass m.
 static void add_arm(struct ct_build *b, ct_ex33 *J, ct_ex3 d, ct_ex3 h)
 {
     struct ct_exs *x = b->x;
@@ -30,7 +30,7 @@ static void add_arm(struct ct_build *b, ct_ex33 *J, ct_ex3 d, ct_ex3 h)
     }
 }
 
-// Mass m, first moment h and inertia J about a point, all at v from the member's origin.
+// Adds mass m, first moment h and inertia J about a point at v from the origin of the member.
 static void add_inertia(struct ct_member_build *w, int member, ct_ex3 v, ct_ex mass, ct_ex3 h,
                         const ct_ex33 *J)
 {
@@ -65,8 +65,7 @@ void ct_members_add_bodies(struct ct_member_build *w)
     }
 }
 
-// A first moment along the axis of a turn and the inertia of a rod along it are the parent's as
-// well.
+// Moves a first moment along a rotation axis, and the inertia of a rod along it, to the parent.
 static void take_off_axis(struct ct_build *b, struct ct_member *m, ct_ex3 *h, ct_ex33 *J)
 {
     struct ct_exs *x = b->x;
@@ -79,13 +78,13 @@ static void take_off_axis(struct ct_build *b, struct ct_member *m, ct_ex3 *h, ct
     m->J.e[k + 3 * k] = ct_ex_sub(x, m->J.e[k + 3 * k], rod);
 }
 
-// Hand over to the parent what motion in the joint does not feel.
+// Moves inertia that the joint does not move to the parent.
 static void lump(struct ct_member_build *w, struct ct_member *m)
 {
     ct_ex33 J = {{{0}}};
     ct_ex3 h = zero3;
     ct_ex mass = CT_EX_ZERO;
-    if (m->rotates && !m->translates) { // the origin is a point of the parent
+    if (m->rotates && !m->translates) { // the origin is fixed in the parent
         mass = m->mass;
         m->mass = CT_EX_ZERO;
         if (m->axis >= 0 && !w->b->topology->is_planar)

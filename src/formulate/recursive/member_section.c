@@ -1,5 +1,4 @@
-// Beams among members: their base, and what slides and turns between it and a section; see
-// member.h.
+// Members of beams: the base, and the translation and rotation from it to a section; see member.h.
 #include "formulate/recursive/member_internal.h"
 
 #include "formulate/beam_dynamics/beam_dynamics.h"
@@ -14,7 +13,8 @@ static int beam_of(const struct ct_build *b, const struct ct_flexible *f)
     return (int)(f - b->flexible);
 }
 
-// Axes of the beam -> those of its base: its cluster's, in a plane (x, n x x, n).
+// Rotation from axes of the beam to axes of its base: those of the cluster; in a plane (x, n x x,
+// n).
 static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
 {
     if (!b->topology->is_planar)
@@ -22,7 +22,7 @@ static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
     const ct_ex3 n
         = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->plane[2]);
     ct_ex33 A = {{{0}}};
-    double v[3]; // one of the beam's axes, but for round-off
+    double v[3]; // one of the axes of the beam, up to round-off
     for (int i = 0; i < 3; i++) {
         v[i] = rint(ct_ex_value(b->x, n.e[i], b->value)) + 0.0; // no negative zero
         A.e[2 + 3 * i] = ct_ex_const(b->x, v[i]);
@@ -33,7 +33,7 @@ static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
     return A;
 }
 
-// In a plane: axes of the beam's base -> those of the plane.
+// In a plane: rotation from axes of the beam base to axes of the plane.
 static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
 {
     const struct ct_node_placement *p = &b->kinematics->placement[f->base];
@@ -43,8 +43,7 @@ static ct_ex33 beam_turn(struct ct_build *b, const struct ct_flexible *f)
                       CT_EX_ZERO, CT_EX_ZERO, CT_EX_ONE}};
 }
 
-// In a plane: member m has the axes of the beam, its parent those of the plane, or the other way
-// round.
+// In a plane: changes the axes at member m, from axes of the plane to axes of the beam or back.
 static void change_axes(struct ct_member_build *w, int m, const struct ct_flexible *f,
                         bool into_beam)
 {
@@ -75,8 +74,8 @@ void ct_member_attach_base(struct ct_member_build *w, const struct ct_flexible *
         change_axes(w, beam->base, f, true);
 }
 
-// Per unit of what moves a section: slides and turns, in axes of the beam. By coordinate, and where
-// these are of nodes, by what follows apart.
+// Partial derivatives of translation and rotation of a section, in axes of the beam: by elastic
+// coordinate and, for nodal coordinates, separately by condensed rotation.
 struct section_partials {
     int n;
     const ct_ex3 *slide, *turn;
@@ -95,14 +94,14 @@ static struct section_partials section_partials(struct ct_build *b,
     return (struct section_partials){n, slide, turn};
 }
 
-// Of number k of these: the speed, or what stands for one (struct ct_screw).
+// Speed of derivative k, or the negative number that stands for one (struct ct_screw).
 static int section_speed(const struct ct_flexible *f, int k)
 {
     return k < f->nelastic ? f->elastic[k].u : f->nelastic - k - f->beam->nelement;
 }
 
-// What slides between the base and a section, from the member at whose origin r begins; in axes of
-// the base.
+// Adds the translation between the base and a section; r starts at the origin of member `from`, in
+// axes of the base.
 static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
                          const struct ct_edge_info *e, int sign)
 {
@@ -134,7 +133,7 @@ static int slide_section(struct ct_member_build *w, int from, ct_ex3 r,
     return i;
 }
 
-// Number i of the turns of a section, by which cluster c turns.
+// Adds rotation i of a section, which is that of cluster c.
 static int add_section_turn(struct ct_member_build *w, int from, ct_ex3 r,
                             const struct ct_passage *p, int i, int sign)
 {
@@ -156,7 +155,7 @@ static int add_section_turn(struct ct_member_build *w, int from, ct_ex3 r,
     return new;
 }
 
-// Turns of a section, in a plane with the change of axes.
+// Adds the rotations of a section; in a plane also the change of axes.
 static int turn_section(struct ct_member_build *w, int from, ct_ex3 r,
                         const struct ct_passage *p, int sign)
 {
@@ -191,7 +190,7 @@ bool ct_member_pass_section(struct ct_member_build *w, const struct ct_passage *
         *member = slide_section(w, turned, is_new ? zero3 : *offset, p->e, sign);
         beam->root = (int)first;
         beam->base = *member;
-        if (b->topology->is_planar) { // what else the base carries
+        if (b->topology->is_planar) { // for other sections at the base
             *member = rigid_member(w, *member, f, zero3);
             change_axes(w, *member, f, false);
         }

@@ -1,4 +1,4 @@
-// Kinematics of members: turned axes, angular velocities, biases; see member.h.
+// Kinematics of members: transformations, angular velocities, biases; see member.h.
 #include "formulate/recursive/member_internal.h"
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
@@ -21,9 +21,9 @@ static bool is_symmetric(const ct_ex33 *A)
         && ct_ex_same(A->e[5], A->e[7]);
 }
 
-// The part of A in the plane across the axis turns by twice the angle, all but its trace and its
-// skew part: with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by c y, -c y and s
-// y.
+// Rotates a tensor A about a coordinate axis. Its symmetric trace-free part normal to the axis
+// rotates by twice the angle: with D = A_jj - A_kk, T = A_jk + A_kj, y = c D - s T these change by
+// c y, -c y and s y.
 static void turn_about(struct ct_build *b, const struct ct_member *m, ct_ex33 *A)
 {
     struct ct_exs *x = b->x;

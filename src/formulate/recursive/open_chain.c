@@ -1,5 +1,5 @@
-// See open_chain.h. A formulation is tried by generating it and counting; what cannot win by the
-// pattern of the mass matrix alone is not generated.
+// See open_chain.h. Each formulation is generated and its operations are counted. One that is too
+// expensive by the pattern of the mass matrix alone is not generated.
 #include "formulate/recursive/open_chain.h"
 #include "formulate/formulate.h"
 #include "formulate/operation_count.h"
@@ -10,11 +10,11 @@
 
 #include <math.h>
 
-// A call of a solver for dense matrices, in operations of straight-line code.
-// Chosen: about the time of a call.
+// Cost of one call of a dense solver, in operations of straight-line code. Chosen: about the time
+// of a call.
 static const double call_cost = 300;
-// Limit: operations of a program, which take memory; below, repeats are rolled up
-// (codegen/reroll.h), beyond, a solver for sparse matrices is called.
+// Limit: operations of a program, because they take memory. Shorter programs have their loops
+// rerolled (codegen/reroll.h); for longer ones a sparse solver is called.
 static const double longest_program = 1e7;
 
 static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
@@ -25,7 +25,7 @@ static double cost_of(struct ct_build *b, const ct_ex *e, size_t n)
 
 // ---- M u' = Q -----------------------------------------------------------------------------------
 
-// A pivot, and its reciprocal where it divides more than two numbers: that is cheaper, but rounds
+// A pivot, and its reciprocal if it divides more than two numbers: that is cheaper, but rounds
 // twice.
 struct pivot {
     ct_ex value, reciprocal;
@@ -49,9 +49,9 @@ static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
 }
 
 // M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards,
-// so this order makes no fill in a branched chain, and entries that are zero by structure cost
-// nothing. M is positive definite, so no pivots are sought. H: lower triangle of M. Source:
-// Featherstone (2008), key featherstone2008, 8.5.
+// so that this order causes no fill-in in a branched chain, and structural zeros cost nothing. M is
+// positive definite, so that no pivoting is needed. H: lower triangle of M. Source: Featherstone
+// (2008), key featherstone2008, 8.5.
 static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex *pivots)
 {
     struct ct_exs *x = b->x;
@@ -84,7 +84,8 @@ static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex
     return u;
 }
 
-// Operations of the unrolled solution by the nonzeros of the lower triangle H: pivot k touches d of them.
+// Operation count of the symbolic solution from the nonzeros of the lower triangle H; d: nonzeros
+// in the row of pivot k.
 static double symbolic_cost(const ct_ex *H, size_t n)
 {
     double cost = 0;
@@ -106,10 +107,11 @@ static double dense_cost(double n)
 
 struct trial {
     ct_ex *solution, *pivot;
-    double cost; // INFINITY: does not apply
+    double cost; // INFINITY: not applicable
 };
 
-// Speeds act on each other along a branch only: nonzeros of the lower triangle.
+// Lower bound of the cost with a mass matrix: speeds are coupled only along a branch, which gives
+// the nonzeros of the lower triangle.
 static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
 {
     const size_t n = b->eqs->nu;
@@ -120,7 +122,7 @@ static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
         const int own = is_root ? b->flexible[m->beam - 1].nelastic : m->beam ? 0 : m->nfree;
         above[i] = above[m->parent] + own;
         const bool is_band = m->beam && b->flexible[m->beam - 1].kinematics != CT_AXIAL_CHAIN;
-        for (int k = 0; k < own; k++) { // within a band more may be zero
+        for (int k = 0; k < own; k++) { // in a band more entries may be zero
             const double d = above[m->parent] + (is_band ? 0 : k);
             cost += d * d + 6 * d + 5;
             nonzeros += d + 1;
@@ -140,7 +142,7 @@ static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
     for (size_t i = 0; i < n; i++)
         CT_PUSH(b->ctx->scratch, all, k, cap, Q[i]);
     const double unrolled = symbolic_cost(H, n), dense = dense_cost((double)n);
-    // nodes are at least as many as operations: only where they are very many need these be counted
+    // there are at least as many nodes as operations: count operations only for very many nodes
     const double most = (double)b->x->nnode + unrolled;
     const bool is_short = unrolled < dense && most < longest_program;
     const double assembly = is_short ? 0 : cost_of(b, all, k);
@@ -176,7 +178,7 @@ static struct trial try_composite(struct ct_build *b, const struct ct_members *s
     struct trial t = try_matrix(b, H, Q);
     ct_arena_destroy(work);
     if (!t.solution)
-        t.cost = INFINITY; // a call of a solver takes M and Q of the equations
+        t.cost = INFINITY; // a solver call uses M and Q of the equations
     return t;
 }
 
@@ -187,7 +189,7 @@ static struct trial try_articulated(struct ct_build *b, const struct ct_members 
     return (struct trial){u, pivot, cost_of(b, u, b->eqs->nu)};
 }
 
-// The mass matrix is what people look at, and its pivots lose least: another form must be clearly
+// The mass matrix is the readable form and the most accurate one. Another form must be clearly
 // cheaper.
 
 double ct_open_cost(struct ct_build *b, double by_matrix)
@@ -224,7 +226,7 @@ void ct_open_solve(struct ct_build *b, enum ct_formulation which)
     if (by_matrix && s && !s->nbeam && which != CT_FORMULATION_ARTICULATED
         && !b->topology->is_planar)
         t[CT_FORMULATION_COMPOSITE] = try_composite(b, s);
-    // in space axes of the bodies always need fewer operations than those of ground
+    // in space body axes always need fewer operations than ground axes
     if (by_matrix && !isfinite(t[CT_FORMULATION_COMPOSITE].cost))
         t[CT_FORMULATION_CUTSETS] = try_cutsets(b);
     e->formulation = cheapest(t, which);

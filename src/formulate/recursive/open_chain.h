@@ -1,19 +1,20 @@
-// Accelerations of an open system in closed form, by composite bodies (mass matrix) or articulated
+// Recursive dynamics of open systems. This folder represents an open system as a tree of members
+// and derives its accelerations in closed form: by composite bodies (mass matrix) or by articulated
 // bodies, whichever needs fewer operations.
 #ifndef CT_FORMULATE_RECURSIVE_OPEN_CHAIN_H
 #define CT_FORMULATE_RECURSIVE_OPEN_CHAIN_H
 
 #include "formulate/build.h"
 
-/// That of the accelerations by articulated bodies where they would be taken, else by_matrix, what
-/// the mass matrix costs. After ct_loads_derive.
+/// Operation count of the accelerations: by articulated bodies if they would be chosen, else
+/// by_matrix, the cost with the mass matrix. After ct_loads_derive.
 double ct_open_cost(struct ct_build *b, double by_matrix);
 
-/// Fill b->eqs->solution and b->eqs->formulation for a system without constraints. The solution
-/// stays NULL where a call of a solver for dense matrices is cheaper. M and Q of the equations stay
-/// open where no formulation that is in question needs them. After ct_loads_derive.
+/// Sets b->eqs->solution and b->eqs->formulation for a system without constraints. The solution
+/// stays NULL if a call of a dense solver is cheaper. M and Q are derived only if a candidate needs
+/// them. After ct_loads_derive.
 ///
-/// which    CT_FORMULATION_AUTO, or the one to take; another one where it does not apply
+/// which    CT_FORMULATION_AUTO or the requested one; if that does not apply another one is taken
 void ct_open_solve(struct ct_build *b, enum ct_formulation which);
 
 #endif

@@ -1,8 +1,8 @@
 // See auxiliary_unknowns.h.
 //
-// The graph of single operations of r is thinned out step by step (scarcity.h), and what factors of
-// the matrix with the nodes that are left would take is looked up on its pattern: too many nodes
-// are as bad as too few.
+// The computational graph of r is reduced step by step (scarcity.h). For each degree of reduction
+// the cost of factoring the extended matrix is predicted from its pattern. Too many auxiliary
+// unknowns are as bad as too few.
 #include "formulate/residual/auxiliary_unknowns.h"
 
 #include "expr/scarcity.h"
@@ -20,7 +20,7 @@ struct search {
     size_t nseed, nu, nrow;
 };
 
-// Places of a square matrix, symmetric.
+// Pattern of a symmetric square matrix.
 struct places {
     struct ct_arena *a;
     int *row, *column;
@@ -36,11 +36,11 @@ static void add_entry(struct places *p, int row, int column)
     }
 }
 
-// What assembly, one factorisation and the solutions of a step take; entries are sums of a few
-// terms in three parts.
+// Cost of assembly, one factorisation and the solutions of a step. An entry is a sum of three parts
+// of a few terms.
 static double work_of(double nz, double factorization, double fill)
 {
-    // Chosen: corrections of a step with one factorisation, terms of an entry
+    // Chosen: solutions per factorisation; operations per entry
     const double solutions = 8, assembly = 8;
     return assembly * nz + factorization + solutions * 2 * fill;
 }
@@ -50,7 +50,7 @@ static double full_work(double n)
     return work_of(n * n / 2, 2. / 3 * n * n * n, n * n);
 }
 
-// Of a matrix with these entries, the rows of constraints, and n unknowns.
+// Cost with a matrix of these entries, the constraint rows and n unknowns.
 static double sparse_work(const struct search *s, const int *row, const int *column,
                           size_t nentry, size_t n)
 {
@@ -60,7 +60,7 @@ static double sparse_work(const struct search *s, const int *row, const int *col
     const int size = (int)(n + 2 * s->nrow);
     for (size_t i = 0; i < nentry; i++)
         add_entry(&p, row[i], column[i]);
-    for (size_t i = 0; i < 2 * e->nJ; i++) { // one multiplier for places, one for speeds
+    for (size_t i = 0; i < 2 * e->nJ; i++) { // one multiplier for positions, one for speeds
         const struct ct_entry *J = &e->J[i / 2];
         add_entry(&p, (int)(n + (i % 2) * s->nrow) + J->row, J->column);
     }
@@ -76,7 +76,7 @@ static double sparse_work(const struct search *s, const int *row, const int *col
     return work;
 }
 
-// Without inner values.
+// Cost without auxiliary unknowns.
 static double plain_work(const struct search *s)
 {
     struct ct_arena *a = ct_arena_create_under(s->a);
@@ -98,7 +98,7 @@ static double plain_work(const struct search *s)
     return work;
 }
 
-// With those that are left of g.
+// Cost with the remaining nodes of g as auxiliary unknowns.
 static double thinned_work(const struct search *s, const struct ct_scarcity *g, size_t ninner)
 {
     struct ct_arena *a = ct_arena_create_under(s->a);
@@ -109,10 +109,10 @@ static double thinned_work(const struct search *s, const struct ct_scarcity *g, 
     return work;
 }
 
-// The best of several degrees of thinning, if it takes less than `work`.
+// Takes the best of several degrees of reduction, if it costs less than `work`.
 static size_t thin_out(const struct search *s, double work, ct_ex **inner)
 {
-    // Edges that a node may add. Limit: of a search by doubling
+    // Number of edges that the elimination of a node may add. Limit: of a search by doubling
     const long first = 4, last = 256;
     struct ct_scarcity *g
         = ct_scarcity_create(s->b->x, s->a, s->r, s->nu, s->seed, s->nseed, (uint32_t)s->nu);
@@ -131,8 +131,8 @@ static size_t thin_out(const struct search *s, double work, ct_ex **inner)
     return nbest;
 }
 
-// A search takes as long as a thousand steps with full matrices of so few: what takes less for each
-// unknown is not worth one, and none has been seen to find anything there.
+// Is the matrix expensive enough for a search? The search takes as long as a thousand steps with
+// small full matrices.
 static bool is_worth_a_search(const struct search *s, double work)
 {
     // Limit: of the time of the search

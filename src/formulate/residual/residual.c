@@ -1,6 +1,6 @@
 // See residual.h.
 //
-// Coordinates are varied along the motions that speeds stand for: dq_i = sum_k Z_ik de_k with q' =
+// Coordinates are varied along the directions of the speeds: dq_i = sum_k Z_ik de_k with q' =
 // Z(q) u. For a plain coordinate that is the coordinate itself, for a quaternion a body rotation.
 #include "formulate/residual/residual.h"
 #include "formulate/recursive/composite_body.h"
@@ -9,8 +9,7 @@
 
 #include <string.h>
 
-// Directions of the seeds: the speeds k as variations of the place, of the speed, of u'; behind
-// them inner values.
+// Groups of seed directions: position, speed and u' along each speed k, then auxiliary unknowns.
 enum { PLACE, SPEED, ACCELERATION, INNER, NLEVEL = INNER };
 
 struct seeds {
@@ -31,7 +30,7 @@ static size_t direction(const struct ct_build *b, int level, size_t speed)
     return (size_t)level * b->eqs->nu + speed;
 }
 
-// Z, as seeds of the coordinates.
+// Adds the seeds of the coordinates: the entries of Z.
 static void plant_places(struct ct_build *b, struct seeds *s)
 {
     const struct ct_equations *e = b->eqs;
@@ -49,7 +48,7 @@ static void plant_places(struct ct_build *b, struct seeds *s)
         plant(b, s, e->q[Z[i].row].symbol, direction(b, PLACE, Z[i].direction), Z[i].value);
 }
 
-// The entries of one level out of all, their directions counted from 0.
+// Picks the entries of one group; their directions are then counted from 0.
 static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int level,
                    struct ct_slope **out)
 {
@@ -66,7 +65,7 @@ static size_t pick(struct ct_build *b, const struct ct_slope *all, size_t n, int
     return nout;
 }
 
-// M u' - Q - J' lam, where M and Q are not those of the sweep.
+// M u' - Q - J' lam, where M and Q differ from those of the sweep (truncated equations).
 static void assemble_rows(struct ct_build *b, ct_ex *r)
 {
     const struct ct_equations *e = b->eqs;
@@ -85,8 +84,8 @@ static void assemble_rows(struct ct_build *b, ct_ex *r)
     }
 }
 
-// The sweep in ground axes or, in space, inverse dynamics in axes of the bodies, whichever takes
-// fewer operations.
+// Derives r by the sweep in ground axes or, in space, by inverse dynamics in body axes, whichever
+// needs fewer operations.
 static void derive_rows(struct ct_build *b, ct_ex *r)
 {
     const size_t n = b->eqs->nu;
@@ -106,12 +105,12 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 
 // ---- derivatives --------------------------------------------------------------------------------
 
-// Predicted use: so many evaluations in a run. Making an operation (nodes, listing, machine code)
-// costs as much as executing it so often; side by side in lanes it costs a quarter and something
-// for the loads. Chosen: time to make a program against its use.
+// expected_evaluations: predicted number of evaluations in a run. making: the cost of generating
+// one operation (nodes, listing, machine code), in executions of it. Chosen: time to make a program
+// against its use.
 static const double expected_evaluations = 300, making = 1500;
 
-// What both ways start from: r with inner values behind it, v, and the motions they vary along.
+// Common input of both ways: r followed by the auxiliary unknowns, v, and the seeds.
 struct slopes {
     ct_ex *r, *v;
     size_t nu, ninner, nr, nrow; // nr: nu + ninner
@@ -139,7 +138,7 @@ static void sort_out(struct ct_build *b, struct ct_residual *f, const struct ct_
     f->ndk = pick(b, all, n, INNER, &f->dk);
 }
 
-// Entry by entry, as expressions.
+// Derives each entry as an expression.
 static void derive_entries(struct ct_build *b, struct ct_residual *f, const struct slopes *s)
 {
     struct ct_arena *scratch = b->ctx->scratch;
@@ -160,7 +159,8 @@ static ct_ex derivative_along(struct ct_build *b, ct_ex f, const struct seeds *s
              : CT_EX_ZERO;
 }
 
-// r' and v' along a motion of places, speeds and accelerations whose numbers are inputs.
+// Derives r' and v' along one direction of positions, speeds and accelerations, whose components
+// are inputs.
 static struct ct_directional *derive_along(struct ct_build *b, const struct slopes *s)
 {
     const struct ct_equations *e = b->eqs;
@@ -197,7 +197,7 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
 
 // ---- colours ------------------------------------------------------------------------------------
 
-// Slopes by direction: entry[start[d] ... start[d + 1]) are rows.
+// Entries by direction: entry[start[d] ... start[d + 1]) are the rows of direction d.
 struct columns {
     size_t *start;
     uint32_t *row;
@@ -216,9 +216,9 @@ static struct columns list_columns(struct ct_arena *a, const struct ct_slope *s,
     return c;
 }
 
-// Directions of one colour share no row, so that one derivative along their sum gives all their
-// entries. Greedy, in the order of the directions. Source: Curtis, Powell and Reid (1974), key
-// curtis1974.
+// Directions of one colour have no row in common, so that one derivative along their sum gives all
+// their entries. Greedy colouring in the order of the directions. Source: Curtis, Powell and Reid
+// (1974), key curtis1974.
 static void colour(struct ct_build *b, struct ct_directional *along, const struct ct_slope *s,
                    size_t n, size_t nrow)
 {
@@ -253,7 +253,7 @@ static double cost_along(struct ct_build *b, const struct ct_directional *along,
          * (making + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
 }
 
-// Along directions, if that is asked for or costs less than entry by entry. True: done.
+// Derives along directions if that is requested or cheaper than entry by entry. True: done.
 static bool try_along(struct ct_build *b, struct ct_residual *f, const struct slopes *s,
                       enum ct_slope_form form)
 {
@@ -264,7 +264,7 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n,
                              (uint32_t)ndirection, &all, &operations);
     const double entries = operations * (making + expected_evaluations);
-    // what a single colour would cost bounds the gain
+    // the cost of a single colour is a bound of the gain
     const struct ct_tape_counts c = ct_ex_count(scratch, b->x, s->r, s->nu);
     if (form == CT_SLOPES_AUTO && entries < 2 * making * ct_counted_cost(&c))
         return false;
@@ -309,7 +309,7 @@ void ct_residual_rows(struct ct_build *b)
         derive_rows(b, e->residual->r);
 }
 
-// Inner values of f as rows behind r, and as seeds behind the others.
+// Appends the auxiliary unknowns of f to the rows and to the seeds.
 static void add_inner(struct ct_build *b, struct ct_residual *f, struct slopes *s)
 {
     f->nauxiliary = ct_auxiliary_unknowns_choose(b, f->r, s->all.e, s->all.n, &f->auxiliary);
@@ -329,7 +329,7 @@ void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
     struct slopes s = {.nu = e->nu, .nrow = e->nrow};
     ct_residual_rows(b);
     struct ct_residual *f
-        = CT_NEW(b->arena, struct ct_residual); // an earlier one stays as it is
+        = CT_NEW(b->arena, struct ct_residual); // an earlier one does not change
     *f = (struct ct_residual){.r = e->residual->r, .has_slopes = true};
     b->eqs->residual = f;
     s.v = CT_NEWN(b->ctx->scratch, ct_ex, e->nrow + 1);

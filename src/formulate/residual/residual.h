@@ -1,31 +1,32 @@
-// Residual form and its Jacobians, for implicit integration.  (formulation 5.2, 8.2)
+// Residual form of the equations for implicit integrators. This folder derives the residual r, its
+// sparse Jacobians and the auxiliary unknowns that keep them sparse.  (formulation 5.2, 8.2)
 #ifndef CT_FORMULATE_RESIDUAL_RESIDUAL_H
 #define CT_FORMULATE_RESIDUAL_RESIDUAL_H
 
 #include "formulate/dynamics/dynamics.h"
 
-/// r = M u' - Q - J' lam by the full sweep, and its derivatives along the coordinates, by u and by
-/// u'; dv/dq of the rows. The rest is in the equations: dr/dlam = -J', dPhi/dq = dv/du = J. Into
-/// b->eqs->residual.
+/// r = M u' - Q - J' lam by the full sweep, and its derivatives with respect to q, u and u'; dv/dq
+/// of the constraint rows. The other blocks are known: dr/dlam = -J', dPhi/dq = dv/du = J. The
+/// result is b->eqs->residual.
 ///
-/// As entries each slope has an expression. Along directions r' and v' are derived once for a
-/// motion whose numbers are inputs; entries that share no row are read off one evaluation, and
-/// several evaluations go side by side in lanes. AUTO takes what is predicted to cost less in a run
-/// of some hundred Jacobians, making the code included.
+/// ENTRIES: each Jacobian entry is an expression. ALONG: r' and v' are derived once along a
+/// direction whose components are inputs. One evaluation gives all entries of one colour, and
+/// several evaluations run in SIMD lanes. AUTO takes the way of lower predicted cost in a run of
+/// some hundred Jacobians, code generation included.
 ///
 /// Cost    ENTRIES: O(nodes of r times the speeds each depends on); ALONG: O(nodes of r)
 enum ct_slope_form { CT_SLOPES_AUTO, CT_SLOPES_ENTRIES, CT_SLOPES_ALONG };
 void ct_residual_derive(struct ct_build *b, enum ct_slope_form form);
-/// Only r.
+/// Derives only r.
 void ct_residual_rows(struct ct_build *b);
-/// What its derivatives are taken by: symbols and their rates of change in the directions k of the
-/// places, nu + k of the speeds, 2 nu + k of u'. Returns their number; *nplace: those of the
-/// places, which come first. *out lives in a.
+/// The seeds of differentiation: symbols and their derivatives in the directions k of positions, nu
+/// + k of speeds, 2 nu + k of u'. Returns their number; *nplace: number of position seeds, which
+/// come first. *out lives in a.
 size_t ct_residual_seeds(struct ct_build *b, struct ct_arena *a, struct ct_seed **out,
                          size_t *nplace);
 
-/// Derivatives of f (nf) in the directions: places, speeds, u' (nu each), multipliers (nrow), then
-/// the symbols of `more` (nmore). *out lives in a.
+/// Derivatives of f (nf) in the directions of positions, speeds, u' (nu each), multipliers (nrow),
+/// then the symbols of `more` (nmore). *out lives in a.
 size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, size_t nf,
                         const ct_ex *more, size_t nmore, struct ct_slope **out);
 

@@ -21,16 +21,15 @@ const struct ct_flexible *ct_beam_signal_beam(const struct ct_build *b, int fram
     return ct_flexible_of(b, b->model->frame[frame].body);
 }
 
-// Undeformed place of a frame, axes of the beam.
+// Undeformed position of a frame, axes of the beam.
 ct_ex3 ct_beam_signal_place(const struct ct_build *b, int frame)
 {
     const struct ct_frame *p = &b->model->frame[frame];
     return frame == b->model->body[p->body].frame ? zero3 : p->at;
 }
 
-// Place of a frame on the deformed beam, axes of the beam; a frame off the axis turns with its
-// section. The axis is foreshortened where its forces are, also if the kinematics leaves that
-// out.
+// Position of a frame on the deformed beam, axes of the beam. A frame off the axis rotates with its
+// section. Foreshortening is included if the forces include it, also if the kinematics neglects it.
 static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct_ex3 rest)
 {
     const ct_ex3 across = {{CT_EX_ZERO, rest.e[1], rest.e[2]}};
@@ -40,7 +39,7 @@ static ct_ex3 deformed_place(struct ct_build *b, const struct ct_flexible *f, ct
     return ct_ex3_add(b->x, s.position, ct_ex33_apply(b->x, &S, across));
 }
 
-// R' v, R the smallest rotation that turns x into the unit vector n.
+// R' v, R the smallest rotation from x to the unit vector n.
 static ct_ex3 seen_along(struct ct_build *b, ct_ex3 n, ct_ex3 v)
 {
     struct ct_exs *x = b->x;
@@ -65,7 +64,8 @@ static ct_ex3 chord_deflection(struct ct_build *b, const struct ct_flexible *f, 
     return ct_ex3_sub(x, seen_along(b, n, from_start), rest);
 }
 
-// Stretch of the element by its length; LOCAL coordinates are places, so that bending adds to it.
+// Axial elongation of the element over its length. LOCAL coordinates are positions, so that the
+// foreshortening by bending is added.
 ct_ex ct_beam_signal_strain(struct ct_build *b, int frame)
 {
     struct ct_exs *x = b->x;

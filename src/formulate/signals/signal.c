@@ -1,5 +1,5 @@
-// See signal.h: names taken apart, the signals of kinematics, and expressions of the model that
-// use them.
+// See signal.h: parses names, derives kinematic signals, and replaces signals in expressions of the
+// model.
 #include "formulate/signals/signal.h"
 #include "formulate/beam_dynamics/beam_dynamics.h"
 #include "formulate/kinematics/constraint_row.h"
@@ -11,8 +11,7 @@
 
 static const ct_ex3 zero3 = {{{0}, {0}, {0}}};
 
-// ---- taking names apart
-// -----------------------------------------------------------------------------------
+// ---- parsing names -----------------------------------------------------------------------------
 
 static const char *const axis_names[] = {"x", "y", "z"};
 
@@ -29,8 +28,8 @@ bool ct_signal_unknown(struct ct_build *b, const struct ct_signal *s, const char
     return ct_error(b->ctx, s->mark, CT_E_SIGNAL, "there is no signal '%s': %s", s->name, why);
 }
 
-// The signal follows from forces: what it is, for those who know them. number: of the joint, the
-// coordinate, the energy, the frame or the body.
+// Records that the signal needs the dynamics, its kind, and the number of its joint, coordinate,
+// energy, frame or body.
 static bool leave_to_dynamics(struct ct_signal *s, enum ct_dynamic_signal kind, int number)
 {
     s->dynamic = kind;
@@ -38,8 +37,7 @@ static bool leave_to_dynamics(struct ct_signal *s, enum ct_dynamic_signal kind, 
     return true;
 }
 
-// ---- frames
-// ---------------------------------------------------------------------------------------------------
+// ---- frames ------------------------------------------------------------------------------------
 
 static const char *const vector_properties[]
     = {"position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"};
@@ -72,7 +70,7 @@ static bool in_axes(struct ct_build *b, const struct ct_signal *s, ct_ex3 *v)
     return true;
 }
 
-// What is one number has neither components nor axes: "j.q.x", "energy.total in b".
+// Rejects components and axes for a scalar signal: "j.q.x", "energy.total in b".
 bool ct_signal_is_number(struct ct_build *b, const struct ct_signal *s)
 {
     if (s->component)
@@ -98,7 +96,8 @@ bool ct_signal_component(struct ct_build *b, const struct ct_signal *s, ct_ex3 v
     return true;
 }
 
-// The quaternion of a frame is followed in time, so its four numbers are made together and kept.
+// Parameter i of the quaternion of a frame. It is continuous in time, so that its four parameters
+// are made together and stored.
 static ct_ex frame_quaternion(struct ct_build *b, int node, int i)
 {
     if (!b->signals.quaternion)
@@ -148,8 +147,7 @@ static bool frame_signal(struct ct_build *b, int frame, const struct ct_signal *
               "angular_acceleration, rotation and quaternion");
 }
 
-// ---- joints
-// ----------------------------------------------------------------------------------------------------
+// ---- joints ------------------------------------------------------------------------------------
 
 // "joint 'pin' (cylindrical) has q1 and q2"
 static const char *coordinates_of(struct ct_build *b, const struct ct_instance *self,
@@ -189,7 +187,7 @@ static bool effort_signal(struct ct_build *b, int joint, int k, struct ct_signal
     return true;
 }
 
-// The number of "q2": 1 without one; 0 for what is no number from 1, as in "q0", "q02", "q2x".
+// The number of "q2": 1 without digits; 0 if invalid, as in "q0", "q02", "q2x".
 static int number_of(const char *digits)
 {
     const size_t n = strspn(digits, "0123456789");
@@ -244,8 +242,7 @@ static bool joint_signal(struct ct_build *b, int joint, struct ct_signal *s, ct_
     return ct_signal_unknown(b, s, "a joint has q, u, a, effort, force and torque");
 }
 
-// ---- forces
-// ---------------------------------------------------------------------------------------------------
+// ---- forces ------------------------------------------------------------------------------------
 
 static bool force_signal(struct ct_build *b, const struct ct_instance *self,
                          const struct ct_signal *s, ct_ex *out)
@@ -266,8 +263,7 @@ static bool force_signal(struct ct_build *b, const struct ct_instance *self,
     return !s->axes || ct_signal_component(b, s, v, out);
 }
 
-// ---- the whole system
-// ----------------------------------------------------------------------------------------------
+// ---- the whole system --------------------------------------------------------------------------
 
 static ct_ex largest(struct ct_build *b, bool position)
 {
@@ -320,8 +316,7 @@ static ct_ex3 body_com(struct ct_build *b, int body)
                       ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
 }
 
-// ---- beams
-// -----------------------------------------------------------------------------------------------------------
+// ---- beams -------------------------------------------------------------------------------------
 
 static bool beam_signal(struct ct_build *b, int frame, struct ct_signal *s, ct_ex *out)
 {
@@ -337,10 +332,10 @@ static bool beam_signal(struct ct_build *b, int frame, struct ct_signal *s, ct_e
     return ct_signal_component(b, s, ct_beam_signal_vector(b, frame, s->property), out);
 }
 
-// ---- any signal
-// ----------------------------------------------------------------------------------------------------
+// ---- any signal --------------------------------------------------------------------------------
 
-// Split at dots after the longest prefix that names something; " in AXES" is taken off the end.
+// Split at dots after the longest prefix that names something; removes " in AXES" from the end
+// first.
 static bool split(struct ct_build *b, const char *name, struct ct_signal *s, int *frame)
 {
     char *text = ct_arena_strdup(b->arena, name);
@@ -447,13 +442,12 @@ const char *const *ct_signal_components(struct ct_build *b, const char *name)
     return !strcmp(s.property, "quaternion") ? four : NULL;
 }
 
-// ---- expressions of the model
-// ------------------------------------------------------------------------------------------
+// ---- expressions of the model ------------------------------------------------------------------
 
 static const int deepest_signal
-    = 64; // Limit: with a message; a force that measures a force that measures ... itself
+    = 64; // Limit: with a message; a force that depends on a force that depends on ... itself
 
-// The error of a force, or the rate of a state, that depends on what follows from forces.
+// Error: a force or the rate of a state depends on a signal that needs the dynamics.
 static void refuse(struct ct_build *b, const struct ct_signal *s)
 {
     ct_error(b->ctx, s->mark, CT_E_SIGNAL_USE,
@@ -464,7 +458,7 @@ static void refuse(struct ct_build *b, const struct ct_signal *s)
                  : "follow from it");
 }
 
-// The signal e, in an expression of a force.
+// The value of signal e in an expression of a force.
 static ct_ex signal_value(struct ct_build *b, ct_ex e)
 {
     const struct ct_sym symbol = *ct_ex_symbol(b->x, e);

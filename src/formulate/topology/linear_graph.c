@@ -1,8 +1,8 @@
-// Model -> linear graph: nodes are frames, edges are components.  (formulation 1)
+// Builds the linear graph of a model: nodes are frames, edges are components.  (formulation 1)
 //
 //   node 0       ground
 //   node         one per frame; one per centre of mass that is not at its body's origin;
-//                one between a joint that must be a branch and the weld that closes its loop
+//                one between a joint that must be a branch and the weld that closes the loop
 //   edge         body  0 -> centre of mass     arm  body -> point or centre of mass
 //                joint from -> to              force, rod  from -> to (always chords)
 #include "formulate/topology/linear_graph.h"
@@ -51,7 +51,7 @@ static ct_ex33 turns_to_matrix(struct ct_exs *x, const struct ct_turn *turn, int
     return R;
 }
 
-// Arm of a beam, from its base to the section at x.
+// Adds the arm of a beam: the edge from its base to the section at x.
 static struct ct_edge_info *add_section(struct ct_build *b, struct ct_topology *t,
                                         struct ct_flexible *f, const char *name,
                                         struct ct_mark mark, int node, ct_ex x)
@@ -65,7 +65,7 @@ static struct ct_edge_info *add_section(struct ct_build *b, struct ct_topology *
     return e;
 }
 
-// A point of a beam turns with its section; one off the axis hangs on it by a rigid arm.
+// Adds a point of a beam. It rotates with its section. A rigid arm connects a point off the axis.
 static void add_beam_point(struct ct_build *b, struct ct_topology *t, struct ct_flexible *f,
                            size_t frame)
 {
@@ -89,8 +89,8 @@ static void add_beam_point(struct ct_build *b, struct ct_topology *t, struct ct_
     e->has_rotation = e->must_be_branch = true;
 }
 
-// The base of a beam is its own frame; with a frame on the chord the section at x = 0 turns against
-// that.
+// Adds the base of a beam, which is its frame. If the frame lies on the chord, the section at x = 0
+// rotates relative to it.
 static void add_base(struct ct_build *b, struct ct_topology *t, struct ct_flexible *f)
 {
     const struct ct_body *body = &b->model->body[f->body];
@@ -133,7 +133,8 @@ static void add_frames(struct ct_build *b, struct ct_topology *t)
     }
 }
 
-// The body edge runs from ground to the centre of mass; in absolute coordinates it is the branch.
+// Adds the body edges, from ground to the centre of mass. In absolute coordinates they are
+// branches.
 static void add_bodies(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
@@ -193,12 +194,12 @@ static void add_joints(struct ct_build *b, struct ct_topology *t)
         const struct ct_instance *joint = &m->joint[j];
         t->edge_of_joint[j] = -1;
         if (joint->from < 0)
-            continue; // a gear couples coordinates, it joins no frames
+            continue; // a gear couples coordinates and connects no frames
         const int from = t->node_of_frame[joint->from];
         int to = t->node_of_frame[joint->to], closure = -1;
         if (joint->cls->always_branch) {
             if (find(set, from) == find(set, to)) {
-                // the loop is closed by a weld behind the joint
+                // a weld after the joint closes the loop
                 closure = to;
                 to = add_node(b, t, ct_arena_printf(b->arena, "%s.end", joint->name),
                               joint->mark, t->node[to].body);
@@ -239,9 +240,9 @@ static void add_forces(struct ct_build *b, struct ct_topology *t)
 
 // ---- motions and coordinates --------------------------------------------------------------------
 
-// Body edge: place of the centre of mass in ground axes and orientation. In a planar mechanism two
-// lengths and an angle, beyond the rotation that lays the body into the plane; of a particle the
-// place alone.
+// Motion of a body edge: position of the centre of mass in ground axes, and orientation. In a
+// planar mechanism it has two lengths and an angle, after a constant rotation into the plane. A
+// particle has a position only.
 static void body_motion(struct ct_build *b, const struct ct_edge_info *e, struct ct_motion *m)
 {
     struct ct_exs *x = b->x;
@@ -331,7 +332,8 @@ void ct_linear_graph_edge_motion(struct ct_build *b, const struct ct_edge_info *
     }
 }
 
-// Joints: as in signals. Bodies: place of the centre of mass, angle or quaternion.
+// Name of a coordinate. Joints: as in signals. Bodies: position of the centre of mass, angle or
+// quaternion.
 static const char *coordinate_name(struct ct_build *b, const struct ct_edge_info *e,
                                    const struct ct_motion *m, int k)
 {
@@ -346,7 +348,8 @@ static const char *coordinate_name(struct ct_build *b, const struct ct_edge_info
                           : ct_arena_printf(b->arena, "%s.q%d", e->name, k + 1);
 }
 
-// Coordinates of an edge with trial symbols, to learn which graph each belongs to.
+// Adds the coordinates of an edge. Trial symbols show whether each enters the translation or the
+// rotation.
 static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
 {
     struct ct_edge_info *e = &t->edge[edge];
@@ -370,7 +373,8 @@ static void add_coordinates(struct ct_build *b, struct ct_topology *t, int edge)
         CT_PUSH(b->arena, t->coordinate, t->ncoordinate, t->coordinate_cap, c);
         const bool in_quaternion = m.quaternion >= 0 && k >= m.quaternion;
         if (!c.is_driven
-            && !(in_quaternion && k == m.quaternion)) { // four numbers, three freedoms
+            && !(in_quaternion
+                 && k == m.quaternion)) { // four parameters, three degrees of freedom
             e->weight_t += c.in_translation;
             e->weight_r += c.in_rotation;
         }
@@ -389,7 +393,7 @@ void ct_linear_graph_derive(struct ct_build *b, bool planar_allowed)
     add_bodies(b, t);
     add_joints(b, t);
     add_forces(b, t);
-    for (size_t e = 0; e < t->nedge; e++) // joints first: they decide whether all is planar
+    for (size_t e = 0; e < t->nedge; e++) // joints first: planarity depends on them
         if (t->edge[e].kind == CT_EDGE_JOINT || t->edge[e].kind == CT_EDGE_CLOSURE)
             add_coordinates(b, t, (int)e);
     ct_planarity_detect(b, t, planar_allowed);

@@ -1,4 +1,4 @@
-// Planar mechanisms, class K: does all that moves stay in a plane?  (formulation 5.6 d)
+// Planar mechanisms, class K: do all bodies move parallel to one plane?  (formulation 5.6 d)
 #include "formulate/topology/linear_graph.h"
 
 #include "formulate/beam/deformation_selection.h"
@@ -32,7 +32,7 @@ static bool is_across(const double a[3], const double n[3])
     return fabs(a[0] * n[0] + a[1] * n[1] + a[2] * n[2]) < CT_DATA_ROUNDOFF;
 }
 
-// The motion of joint e keeps to the plane with normal n (in axes of `from`).
+// Is the motion of joint e parallel to the plane with normal n (in axes of `from`)?
 static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, const double n[3])
 {
     const struct ct_motion *m = e->trial;
@@ -50,7 +50,7 @@ static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, co
             p.e[i] = ct_ex_diff(b->x, m->d.e[i], m->coord[k]);
         if (ct_ex3_is_zero(p))
             continue;
-        for (int i = 0; i < 3; i++) // a direction that turns with q is not looked into
+        for (int i = 0; i < 3; i++) // a direction that depends on q is not accepted
             if (ct_ex_kinds(b->x, p.e[i]) & 1u << CT_SYM_LOCAL)
                 return false;
         value3(b, p, v);
@@ -60,14 +60,14 @@ static bool joint_is_planar(struct ct_build *b, const struct ct_edge_info *e, co
     return true;
 }
 
-// Arms and joints with motion: they tell how their frames stand to each other.
+// Does the edge define the relative orientation of its frames? Arms and joints with motion do.
 static bool holds_axes(const struct ct_edge_info *e)
 {
     return e->kind != CT_EDGE_BODY && e->kind != CT_EDGE_FORCE && !e->never_branch;
 }
 
-// Edges that hold axes, in the order in which they take them from known nodes to others; turning:
-// only those with rotation.
+// Edges that define orientations, in an order that propagates them from known nodes to others.
+// turning: only edges with rotation.
 static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
 {
     const struct ct_graph g
@@ -81,15 +81,15 @@ static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
     return order;
 }
 
-// Where joints stand still, the axes of every node are a constant rotation away from ground's;
-// turns about the normal change nothing in how they see it. Nodes that no joint holds stay at NULL.
+// Rotation from the axes of each node to ground axes with all joint coordinates at zero. Rotations
+// about the normal do not change its components. NULL: no joint connects the node to ground.
 static ct_ex33 **upright_axes(struct ct_build *b)
 {
     ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->topology->nnode);
     bool *known = CT_NEWN(b->arena, bool, b->topology->nnode);
     for (size_t i = 0; i < b->topology->nnode; i++)
         if (i == 0
-            || b->topology->node[i].is_particle) { // axes of particles stay those of ground
+            || b->topology->node[i].is_particle) { // axes of particles are parallel to ground
             U[i] = CT_NEW(b->arena, ct_ex33);
             *U[i] = ct_ex33_identity();
             known[i] = true;
@@ -108,7 +108,7 @@ static ct_ex33 **upright_axes(struct ct_build *b)
     return U;
 }
 
-// How far an arm or a joint reaches out of the plane [m]; the coordinates of a joint keep to it.
+// Out-of-plane component of the vector of an arm or a joint [m]. Coordinates do not change it.
 static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
 {
     const struct ct_edge_info *e = &b->topology->edge[edge];
@@ -124,7 +124,7 @@ static double longest_arm(const struct ct_build *b)
 {
     double longest = 0, at[3];
     unsigned char *decided = b->x->decided;
-    b->x->decided = NULL; // a scale of round-off errors: the equations do not depend on it
+    b->x->decided = NULL; // a scale of round-off only: the equations do not depend on it
     for (size_t i = 0; i < b->topology->nedge; i++) {
         value3(b, b->topology->edge[i].at, at);
         longest = fmax(longest, sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]));
@@ -133,7 +133,7 @@ static double longest_arm(const struct ct_build *b)
     return longest;
 }
 
-// Places of the nodes along the normal, where joints keep to the plane.
+// Positions of the nodes along the normal, if all joints are planar.
 static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
     bool *known = CT_NEWN(b->arena, bool, t->nnode),
@@ -153,8 +153,8 @@ static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *cons
     }
 }
 
-// Does every joint keep to the plane, and do its loops close out of it? Every body must hang on
-// joints.
+// Is every joint planar, and do the loops close in the direction of the normal? Every body must be
+// connected by joints.
 static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *U)
 {
     double(*n)[3] = ct_arena_calloc(b->arena, t->nnode, sizeof *n);
@@ -182,7 +182,8 @@ static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *
     return true;
 }
 
-// Nodes that see the normal as ground does need no rotation of their own.
+// Stores the node rotations; identity for nodes where the normal has the same components as in
+// ground.
 static void keep_uprights(struct ct_build *b, struct ct_topology *t, ct_ex33 **U)
 {
     double g[3], n[3];
@@ -194,8 +195,8 @@ static void keep_uprights(struct ct_build *b, struct ct_topology *t, ct_ex33 **U
     }
 }
 
-// Does everything keep to the plane across an axis (ground components)? The sense does not matter;
-// prefer the one along +z, +y, +x, so that coordinates read as usual.
+// Takes an axis (ground components) as normal if the mechanism is planar about it. Of its two
+// senses the one along +z, +y or +x is preferred, the usual convention.
 static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U, ct_ex3 axis)
 {
     double n[3];
@@ -208,8 +209,8 @@ static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U,
     return true;
 }
 
-// The normal can only be the axis of the first joint that turns, as ground sees it; where none
-// does, an axis that a beam bends about.
+// Finds the normal. The only candidate is the axis of the first rotating joint, in ground
+// components; if there is none, a bending axis of a beam.
 static bool find_normal(struct ct_build *b, struct ct_topology *t)
 {
     ct_ex33 **U = upright_axes(b);

@@ -1,14 +1,14 @@
-// See tree_selection.h: what the equations of a pair of trees cost to evaluate and to solve.
+// See tree_selection.h: operation count to evaluate and solve the equations of a pair of trees.
 #include "formulate/topology/tree_selection.h"
 
 #include "expr/tape.h"
 #include "formulate/operation_count.h"
 
-// Graph of a symmetric matrix under elimination.
+// Graph of a symmetric matrix during elimination.
 struct minor {
     size_t n;
     bool *near;     // n x n
-    size_t *degree; // neighbours that are left; SIZE_MAX: eliminated
+    size_t *degree; // number of remaining neighbours; SIZE_MAX: eliminated
 };
 
 static void join(struct minor *g, size_t i, size_t j)
@@ -44,7 +44,7 @@ static size_t least_degree(const struct minor *g)
 static double factor_cost(struct ct_arena *scratch, const struct ct_equations *e)
 {
     const size_t n = e->nu + e->nrow;
-    if (n > 4000) // the table would be larger than what it is for
+    if (n > 4000) // the adjacency matrix would be too large
         return (double)n * (double)n * (double)n / 3;
     struct minor g = minor_of(scratch, e);
     double cost = 0;
@@ -80,8 +80,8 @@ double ct_equations_cost(struct ct_arena *scratch, const struct ct_equations *e)
     for (size_t i = 0; i < e->nrow; i++)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
-    // In multiplications: state to be copied, scaled and added up by a method of several stages.
-    // Chosen: fewer speeds against shorter equations.
+    // In multiplications: the vector operations of a multi-stage integrator.
+    // Chosen: weight of the number of speeds against the length of the equations.
     const double per_speed = 20;
     return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }

@@ -1,4 +1,4 @@
-// See tree_selection.h: which edges are branches by rule, and which come first.
+// See tree_selection.h: rules for branches and chords, and the order among equal weights.
 #include "formulate/topology/tree_selection.h"
 
 #include "base/sort.h"
@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-// Distance of each node from ground over edges that can be branches: in edges, or in rotational
-// freedoms.
+// Distance of each node from ground along possible branches, as number of edges or of rotational
+// degrees of freedom.
 static int *node_depths(struct ct_build *b, bool by_rotation)
 {
     int *depth = CT_NEWN(b->arena, int, b->topology->nnode),
@@ -24,9 +24,9 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
     return depth;
 }
 
-// Is an end of the edge on a beam whose sections may follow the other nodes for want of inertia?
-// What is counted through such a section moves with all of them, and fills the mass matrix. The
-// start of a clamped beam does not follow.
+// Is an end of the edge at a beam section whose rotation may be condensed statically because it has
+// no inertia? Such a rotation depends on all nodes of the beam, so that a body attached there fills
+// the mass matrix. The start of a clamped beam is fixed.
 static bool turns_follower(const struct ct_build *b, size_t i)
 {
     const int end[2] = {b->topology->wiring[i].tail, b->topology->wiring[i].head};
@@ -41,7 +41,7 @@ static bool turns_follower(const struct ct_build *b, size_t i)
     return false;
 }
 
-// Does no edge that can be a branch close a loop, and is no joint a constraint alone?
+// Do the possible branches contain no loop, and is no joint always a chord?
 static bool is_without_loops(const struct ct_build *b)
 {
     int *weight = CT_NEWN(b->ctx->scratch, int, b->topology->nedge + 1),
@@ -62,8 +62,8 @@ static bool is_without_loops(const struct ct_build *b)
     return nusable + (size_t)npiece == b->topology->nnode;
 }
 
-// Is a beam in an open system that fills the mass matrix by itself (CHAIN), where all beams can be
-// articulated bodies (6.9b)?
+// Is there a beam in an open system whose own coordinates fill the mass matrix (CHAIN), while all
+// beams allow the articulated-body method (6.9b)?
 static bool fills_matrix(const struct ct_build *b)
 {
     bool any = false;
@@ -72,9 +72,8 @@ static bool fills_matrix(const struct ct_build *b)
     return any && ct_flexible_may_be_articulated(b) && is_without_loops(b);
 }
 
-// Is the farther end of the edge a section of a beam that its frame is not fixed to? A beam that is
-// entered there has the form of articulated bodies only if what it hangs on turns it: an angle from
-// ground is that of its frame.
+// Does the edge connect to a beam at a section other than its base? The articulated-body method
+// then needs a joint coordinate there, because an absolute angle is that of the frame of the beam.
 static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
 {
     const int tail = b->topology->wiring[i].tail, head = b->topology->wiring[i].head,
@@ -83,10 +82,10 @@ static bool enters_section(const struct ct_build *b, size_t i, const int *depth)
     return f && end != f->base;
 }
 
-// Order among equal weights. In a plane the angle of a body weighs as much as that of a joint and
-// gives shorter expressions; a passive joint on a body that turns yields to it, but for beams
-// entered at a section: where sections follow, if only articulated bodies do without a full mass
-// matrix.  (section 2.3)
+// Order among equal weights (section 2.3). In a plane the angle of a body has the same weight as
+// the angle of a joint and gives shorter expressions. It is therefore preferred to a passive joint
+// on a rotating body. Exception: joints at a beam section that is not the base. If the rotation of
+// that section is condensed, the exception holds only where the mass matrix would be full.
 static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const int *turned,
                     enum ct_tree_choice choice, bool fills)
 {
@@ -112,8 +111,8 @@ static int order_names(const void *build, const void *left, const void *right)
     return strcmp(b->topology->edge[*i].name, b->topology->edge[*k].name);
 }
 
-// Equal ranks in the order of names: the trees of assembly, and with them the assembly found where
-// there are several, do not depend on the order of the file.
+// Orders equal ranks by name. Then the trees for assembly, and the solution that assembly finds, do
+// not depend on the order of components in the file.
 static void rank_by_name(const struct ct_build *b, int *rank)
 {
     const int n = (int)b->topology->nedge;
@@ -121,7 +120,7 @@ static void rank_by_name(const struct ct_build *b, int *rank)
     for (int i = 0; i < n; i++)
         sorted[i] = i;
     ct_sort(b->arena, sorted, b->topology->nedge, sizeof *sorted, order_names, b);
-    for (int k = 0; k < n; k++) { // place: how many names come before
+    for (int k = 0; k < n; k++) { // place: number of names that come before
         if (k && order_names(b, &sorted[k - 1], &sorted[k]) != 0)
             place = k;
         rank[sorted[k]] = n * (rank[sorted[k]] + 1) + place;

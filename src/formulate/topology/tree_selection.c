@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-// Is every chord of the least-weight trees a body edge, a force or a rod? Then there is no loop to cut.
+// Is every chord of the least-weight trees a body edge, a force or a rod? Then the system has no
+// loop of joints.
 static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
 {
     for (size_t i = 0; i < b->topology->nedge; i++) {
@@ -22,7 +23,7 @@ static bool is_open(const struct ct_build *b, const struct ct_tree_pair *p)
     return true;
 }
 
-// Rows that the chords leave, and unknowns, by (2.1).
+// Number of constraint rows and of unknowns, by (2.1).
 static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p, int *nrow,
                           int *nu)
 {
@@ -40,8 +41,9 @@ static void count_weights(const struct ct_build *b, const struct ct_tree_pair *p
     }
 }
 
-// In a plane angles are chosen from ground even in open chains, and joints are then chords without rows. For a long
-// chain there is nothing to gain by a search, whose trials would need its mass matrix.
+// Is it a long open chain? In a plane absolute angles are chosen also in open chains, and joints
+// are then chords without rows. A search gains nothing there, and its trials would derive the full
+// mass matrix.
 static bool is_long_chain(const struct ct_build *b, const struct ct_tree_pair *p)
 {
     int nrow, nu;
@@ -69,14 +71,15 @@ static bool least_weight(struct ct_build *b, const struct ct_pair_rules *r,
     return true;
 }
 
-// Work of the search is bounded by nodes generated, not by time: same model, same tree.
-// Limit: about a second.
+// The work of the search is bounded by the number of expression nodes, not by time, so that the
+// result is deterministic. Limit: about a second.
 static const double search_nodes = 600000;
-// Fewer pairs than these are not worth their time: exchanges seldom find a cheaper one among so few.
-// Limit: of the time to make large systems.
+// No search if the bound allows fewer pairs than this: few exchanges seldom find a cheaper pair.
+// Limit: of the time to formulate large systems.
 static const double fewest_pairs = 16;
-// All pairs are tried up to so many, else a descent takes so many, of weights up to so much above
-// the least. Limit: of the time of the search; the pairs found differ by some operations.
+// most_pairs: up to this number all pairs are tried. Otherwise a descent tries descent_pairs of
+// them, with weights up to `excess` above the least. Limit: of the time of the search; the pairs
+// found differ by some operations.
 static const double most_pairs = 2000, descent_pairs = 400;
 static const int excess = 2;
 
@@ -157,20 +160,22 @@ static bool given_trees(struct ct_build *b, const struct ct_formulate_options *o
     return ok;
 }
 
-// Unknowns of a body: those of its joint are as many at least.
+// Estimated number of unknowns of a body: one for its joint, and the coordinates of its beam
+// elements.
 static double own_unknowns(const struct ct_build *b, size_t body)
 {
     const struct ct_beam *beam = b->model->body[body].beam;
     return 1 + (beam ? 6. * beam->nelement : 0);
 }
 
-// Entries of the mass matrix between different bodies, roughly: each body against all that carry it in the tree.
+// Estimated number of entries of the mass matrix between different bodies: each body with all its
+// inboard bodies.
 static double coupling(struct ct_build *b, const bool *branch)
 {
     struct ct_tree t;
     ct_tree_from_branches(b->arena, &b->topology->graph, branch, &t);
     double *inboard = CT_NEWN(b->ctx->scratch, double, b->topology->nnode), sum = 0;
-    for (size_t k = 0; k < b->topology->nnode; k++) { // in the order from ground
+    for (size_t k = 0; k < b->topology->nnode; k++) { // from ground outwards
         const int v = t.order[k], from = t.parent[v];
         if (from < 0)
             continue;
@@ -183,13 +188,15 @@ static double coupling(struct ct_build *b, const bool *branch)
     return sum;
 }
 
-// Long chains of many unknowns: with each body counted from its neighbour the mass matrix is full, with each counted from
-// ground it is not. The rows of the joints are sparse either way.
+// Choice of trees for the analysis of large systems. With relative coordinates the mass matrix of a
+// long chain is full; with absolute coordinates it is sparse. The rows of the joints are
+// sparse in both.
 static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
                                                const struct ct_formulate_options *o,
                                                const struct ct_tree_pair *p)
 {
-    // Entries for each unknown. Chosen: sparse rows are worth more unknowns.
+    // Entries per unknown above which absolute coordinates are chosen. Chosen: sparsity against the
+    // number of unknowns.
     const double most = 400;
     double n = 0;
     for (size_t i = 1; i < b->model->nbody; i++)
@@ -200,7 +207,7 @@ static enum ct_tree_choice choose_for_analysis(struct ct_build *b,
     return CT_TREE_ABSOLUTE;
 }
 
-// Trees in which each body is counted from ground.
+// Trees of absolute coordinates.
 static bool absolute_trees(struct ct_build *b, const struct ct_formulate_options *o,
                            struct ct_tree_pair *p)
 {
@@ -210,7 +217,7 @@ static bool absolute_trees(struct ct_build *b, const struct ct_formulate_options
     return least_weight(b, &absolute, p);
 }
 
-// Has it loops of several beams whose motion does not depend on the trees?
+// Does it have several beams, none of a formulation that depends on the trees?
 static bool has_loops_of_beams(const struct ct_build *b)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
@@ -221,8 +228,9 @@ static bool has_loops_of_beams(const struct ct_build *b)
     return b->nflexible > 1;
 }
 
-// Through joints, what beams in loops move fills the mass matrix, and their rows it reaches; counted from ground there are
-// more unknowns and rows, which all stay sparse. That is taken where it promises a tenth less by its count.
+// Tries absolute coordinates for loops of beams. With relative coordinates such beams fill the mass
+// matrix and the constraint rows. Absolute coordinates give more unknowns and rows, but sparse
+// ones. They are taken if their operation count is a tenth smaller.
 static void count_from_ground(struct ct_build *b, const struct ct_formulate_options *o,
                               const struct ct_pair_trials *trials, struct ct_tree_pair *p,
                               struct ct_tree_report *report)
@@ -242,7 +250,7 @@ static void count_from_ground(struct ct_build *b, const struct ct_formulate_opti
         = "absolute coordinates: through the joints the beams would fill the mass matrix";
 }
 
-// A pair that is asked for by its number among those weighed.
+// Takes the pair that the user gives by its number in the list.
 static bool pick(struct ct_build *b, int number, struct ct_tree_pair *p,
                  struct ct_tree_report *report)
 {
