@@ -15,9 +15,10 @@ bool *ct_initial_equilibrium_fixed_joints(struct ct_arena *a, const struct ct_mo
 /// t = 0, everything at rest. Other coordinates stay as in the start; in closed loops those that
 /// are given, then others, as far as the loops leave them free, while the rest follows.
 ///
-/// e       in      for held drivers (formulate.h: `held`), all joints measured, on trees through joints with those given first
-/// moving  in      the same on the same trees, drivers not held: for speeds; used in closed loops alone
-/// start   in/out  elastic; in closed loops q and u of all coordinates, too, and elastic_rate where these move by bending alone
+/// e       in      for held drivers (formulate.h: `held`), all joints measured, on trees through
+/// joints with those given first moving  in      the same on the same trees, drivers not held: for
+/// speeds; used in closed loops alone start   in/out  elastic; in closed loops q and u of all
+/// coordinates, too, and elastic_rate where these move by bending alone
 ///
 /// Newton's method with the exact derivative.
 /// Errors: CT_E_SETTLE when no equilibrium is found.

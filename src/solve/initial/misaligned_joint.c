@@ -17,7 +17,9 @@ struct plane {
     bool *known;                       // (nbody)
 };
 
-static const double straight = 1e-6; // [rad], of axes that are given to some digits
+// Axes count as parallel up to this angle [rad].
+// Chosen: digits of the axes that a user gives against small errors of an axis.
+static const double straight = 1e-6;
 
 // v = R v, or R' v, with the rotation by `angle` about the unit vector u.
 static void turn(const double u[3], double angle, double v[3])
@@ -93,12 +95,12 @@ static bool is_odd(const struct plane *p, size_t joint)
     return !keeps(p, joint, n);
 }
 
-// The only joint that leaves the plane of the hinge `joint`; -1: there is none, or several, or too
-// few hinges tell.
+// The only joint that does not keep the plane of motion of the hinge `joint`. -1: there is none,
+// there are several, or too few hinges share that plane.
 static int find_odd(struct plane *p, size_t joint)
 {
     const struct ct_model *m = p->m;
-    const int least = 2; // other hinges
+    const int least = 2; // Chosen: other hinges in the plane, which show that it is meant
     int odd = -1, nodd = 0, nhinge = 0;
     memset(p->known, 0, m->nbody * sizeof *p->known);
     const int body = m->frame[m->joint[joint].from].body;

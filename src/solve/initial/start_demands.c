@@ -8,9 +8,10 @@
 
 #include <math.h>
 
-// Of a demanded value, against itself and 1 rad or the natural length. Beside a singular
-// configuration, by 1e-5 rad, round-off of constraints moves speeds by 3e-6; a freedom that is lost
-// takes all of the value.
+// Error of a demanded value that is accepted, relative to the value, or to 1 rad or the natural
+// length if that is more. A value whose degree of freedom is lost is missed by all of itself.
+// Derived: thirty times 3e-6, which round-off of constraints does to speeds 1e-5 rad from a
+// singular configuration.
 static const double kept = 1e-4;
 
 double ct_start_shown(double value)
