@@ -16,7 +16,7 @@ enum { STEPS_BETWEEN = 7 };
 // steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
 // evaluations, and the ratio may change more. Chosen: time of estimates against errors in between.
 static const double steady[CT_OUTPUT_KINDS] = {0.02, 0.5};
-enum { MOST_BETWEEN = 15 };
+enum { MOST_BETWEEN = 15 }; // Chosen: as above
 // Steps without an estimate after one in which outputs err by at most `harmless` of their
 // tolerance.
 // Chosen: as above.

@@ -77,6 +77,8 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
     return jump;
 }
 
+// A jump of a driven coordinate, or an open row after an event, that is still none [m or rad].
+// Chosen: round-off of tables and functions against jumps that are meant.
 const double ct_run_jump_tolerance = 1e-9;
 
 bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
@@ -88,7 +90,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
         jump, t);
 }
 
-// Rows were met before; one that is not any more belongs to a driver on a chord.
+// Are all rows still closed after an event? They were before it: an open one belongs to a driver
+// that jumps, in a joint that is a chord of the tree.
 bool ct_run_chords_are_closed(struct ct_run *r, double t)
 {
     const struct ct_row *row = r->e->row;
@@ -105,7 +108,7 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
     return true;
 }
 
-// Speeds have jumped, past roots of switches maybe.
+// After an impulse: speeds have jumped, and may have passed roots of switches.
 static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);

@@ -1,5 +1,6 @@
-// Method switching on stiffness, the choice of the method while a run goes on: steps end where the motion turns stiff, an implicit method is tried, and
-// the one that gets farther for its work goes on.  (section 8.1)
+// Method switching on stiffness during a run. When the motion becomes stiff, explicit steps end and
+// an implicit method is tried from there. The method that advances more for its work goes on.
+// (section 8.1)
 #include "solve/run/run_internal.h"
 
 #include "integrate/implicit/newton_sparse.h"
@@ -10,11 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-// A vibration that is a smaller part of all outputs is not told from the motion, whose forces change how it is borne as it goes on. Steps
-// whose errors come to 50 T of it at the end of 2e5 radians leave half of T in outputs.
+// A vibration with a smaller part in all outputs does not limit the steps.
+// Derived: steps that lose 50 T of a vibration over 2e5 rad, as measured, then leave half of T in
+// outputs.
 static const double noticed = 0.01;
 
-// Outputs that feel the phase of vibrations which an explicit method follows: steps whose errors come to T at the end.  (8.14)
+// The step with which an explicit method has an error of T in outputs at the end, from the phase of
+// the fast vibrations that it resolves.  (8.14)
 static double wanted_step(const struct ct_run *r)
 {
     const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
@@ -32,7 +35,8 @@ static double accurate_step(void *user)
                 fmin(stable, wanted_step(r)));
 }
 
-// What outputs change by for a change e (ny) of y, in parts of them. Those that are hardly more than round-off do not count.
+// The largest relative change of outputs for a change e (ny) of y. Outputs that are hardly more
+// than round-off do not count.
 static double change_of_outputs(struct ct_run *r, double t, const double *y, const double *e)
 {
     const double place = DBL_EPSILON * ct_vector_largest(y, r->m->nq),
@@ -50,8 +54,9 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
     return most;
 }
 
-// The part of an output that vibrations make which the explicit method follows, far from the motion; at most all of it, which outputs
-// that amplify are taken to feel. Errors in what dies have died with it at the end.
+// The part of an output that vibrations make which the explicit method follows, far from the
+// motion; at most all of it, which outputs that amplify are taken to feel. Errors in what dies have
+// died with it at the end.
 static double find_vibration_effect(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_time_before_event(r, t), *e, *later;
@@ -110,14 +115,16 @@ static double operations_of_accelerations(const struct ct_run *r)
     return operations(&r->m->motion) + ct_partition_operations(r->s);
 }
 
-// Arithmetic operations, and some that stand for calls, copies and vectors: as measured on systems of few operations.
+// Cost of the methods in arithmetic operations, with an overhead for calls, copies and vectors.
 static struct ct_cost find_cost(const struct ct_run *r)
 {
     const struct ct_evaluator *m = r->m;
+    // Derived: measured on systems with few operations
     const double explicit_overhead = 150, implicit_overhead = 400;
     const struct ct_newton_work w
         = ct_newton_work(r->problem->dae->plan[1], (int)m->nu + 2 * r->s->rank);
-    const double complex_also = 5;
+    const double complex_also
+        = 5; // Derived: one real system, and a complex one of four times the work
     return (struct ct_cost){
         .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
@@ -129,7 +136,8 @@ static struct ct_cost find_cost(const struct ct_run *r)
     };
 }
 
-// Time that the implicit method gains for its work, from here, begun with steps of `first_step`; nothing has changed afterwards.
+// Trial of the implicit method from the present state, with a first step of `first_step`: returns
+// the time that it advances per work. The state of the run is the same afterwards.
 static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                            const struct ct_integrate_options *io, double first_step)
 {
@@ -153,7 +161,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->trial = &trial;
     ct_integrate(r->ctx, r->o->stiff_method, p, &trial_io, y, &r->stats);
     r->trial = NULL;
-    // a trial may fail, and may have met events: all that is as if it had not been
+    // a trial may fail or meet events: restore what it has changed
     r->ctx->ndiagnostic = ndiagnostic;
     r->ctx->nerror = nerror;
     r->pending = pending;
@@ -202,8 +210,8 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     report->method = r->method;
 }
 
-// Where nothing fast is left, steps of the size that wins: from those of the explicit method they would grow for most of the trial, or
-// not at all where their errors are round-off errors.
+// Where nothing fast is left, steps of the size that wins: from those of the explicit method they
+// would grow for most of the trial, or not at all where their errors are round-off errors.
 static double first_of_trial(const struct ct_run *r, const struct ct_integrate_options *io,
                              double least_gain)
 {
@@ -211,14 +219,15 @@ static double first_of_trial(const struct ct_run *r, const struct ct_integrate_o
     return r->stiffness->is_dead ? fmax(io->first_step, winning) : io->first_step;
 }
 
-// Over to the implicit method if it gets farther for its work. True: it does. That says nothing of the motion behind a jump of speeds,
-// which excites vibrations: there the explicit method goes on.
+// Over to the implicit method if it gets farther for its work. True: it does. That says nothing of
+// the motion behind a jump of speeds, which excites vibrations: there the explicit method goes on.
 static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
                                struct ct_integrate_options *io)
 {
-    // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
-    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth. Steps as
-    // long as stability allows do not follow them either.
+    // What is counted is not quite what is spent, and its errors are larger; more so where
+    // vibrations are no longer followed: a slider-crank of flexible rods gained no time from 2.8
+    // times as far, and erred by the tolerance in place of a thousandth. Steps as long as stability
+    // allows do not follow them either.
     const bool gives_up = r->stiffness->is_far && !r->stiffness->is_dead
                        && !ct_stiffness_is_unstable(r->stiffness);
     const double least_gain = gives_up ? 5 : 2;
@@ -271,9 +280,10 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
     sum->last_rtol = s->last_rtol;
 }
 
-// Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose errors go on undamped, long
-// before its steps are suspicious: a method that damps them begins, where there are none yet, and goes on as long as it is not
-// slower than the other would have to be.
+// Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose
+// errors go on undamped, long before its steps are suspicious: a method that damps them begins,
+// where there are none yet, and goes on as long as it is not slower than the other would have to
+// be.
 static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
                             struct ct_stiffness *stiffness)
 {

@@ -89,7 +89,9 @@ static const double aimed_turn = 2, most_turn = 3; // [rad]
 
 static double turning(struct ct_run *r, double t, const double *y)
 {
-    const double glance = 1e-6; // of the run, or [s]
+    // Time over which angles are compared, part of the run, or [s].
+    // Chosen: half the digits, for a difference of which no angle turns far.
+    const double glance = 1e-6;
     const double dt = glance * (r->o ? fmin(1, r->o->duration) : 1);
     return ct_memory_turning(r->m, ct_run_time_before_event(r, t), y, dt > 0 ? dt : glance);
 }
@@ -182,10 +184,12 @@ static void note_given(struct ct_run *r, const struct ct_initial_state *start)
             r->is_given[r->e->coordinate[i].u] = start->is_given[i];
 }
 
-// Rows of mechanisms whose largest length is less are closed to less. [m] (6.3c)
+// Loops of mechanisms whose largest length [m] is less are closed more accurately, in proportion.
+// Chosen: accuracy of small mechanisms against iterations on round-off.  (6.3c)
 static const double small_length = 0.01;
 
-// What rows are measured by: 1, or the largest length of a body against that length.
+// Unit of the residuals of rows: 1, or the largest length of a body over small_length if it is
+// less.
 static double find_scale(const struct ct_model *model)
 {
     double largest = 0;
@@ -501,10 +505,13 @@ static bool over_step(void *user, const struct ct_step_view *step)
     return true;
 }
 
-// Results along one vector z of null(J'): those that change depend on the choice of multipliers.
+// Results with multipliers lam and lam + z, with z in null(J'): those that change depend on the
+// choice of multipliers.
 static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
-    const double change_tolerance = 1e-9; // of a result against its size; z is of order one
+    // Relative change of a result that is still none; z is of order one.
+    // Chosen: round-off against a small part of a multiplier in a result.
+    const double change_tolerance = 1e-9;
     double *lam = r->m->input + r->m->at_lam, largest_lam = 1;
     for (size_t i = 0; i < r->m->nrow; i++)
         largest_lam = fmax(largest_lam, fabs(lam[i]));
@@ -599,10 +606,12 @@ static void find_requested(struct ct_run *r, struct ct_problem *p)
     }
 }
 
-// Steps in double precision are held to no less than this.
+// The tightest tolerance for which cancellation of inertias is judged.
+// Chosen: below it round-off of double precision is near.
 static const double sharpest = 1e-10;
 
-// Steps of the implicit method are held to this part of what is wanted.
+// A round-off error of states counts if it changes an output by this part of the wanted tolerance.
+// Chosen: truncation errors have the rest.
 static const double held_to = 0.1;
 
 static double input_limited_step(void *user, double t, double h)
@@ -616,7 +625,7 @@ bool ct_run_starts_near_singular(struct ct_run *r)
     return ct_singular_starts_near(r->singular, r->y, r->dy);
 }
 
-// A start in or near a singular configuration: steps begin a little before it.
+// If the run starts in or near a singular configuration, begin steps a little before it.
 bool ct_run_start_steps(struct ct_run *r)
 {
     const struct ct_problem p = {.user = r,
