@@ -26,7 +26,7 @@ static struct symbolic_solver *symbolic_solver_of(struct ct_solver *f)
     return (struct symbolic_solver *)f; // its first member
 }
 
-// ---- creation ---------------------------------------------------------------------------------------
+// ---- creation ----------------------------------------
 
 struct list {
     struct ct_arena *a;
@@ -101,7 +101,7 @@ static void compile_closing(struct symbolic_solver *f, struct ct_evaluator *m,
     f->form.shift = c->nshift ? f->form.du + m->nu : NULL;
 }
 
-// ---- evaluation -----------------------------------------------------------------------------------------
+// ---- evaluation ----------------------------------------
 
 static double strength(struct symbolic_solver *f, const double *pivot)
 {

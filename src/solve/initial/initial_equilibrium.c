@@ -26,7 +26,7 @@ bool *ct_initial_equilibrium_fixed_joints(struct ct_arena *a, const struct ct_mo
     return first;
 }
 
-// ---- what moves -----------------------------------------------------------------------------------------
+// ---- what moves ----------------------------------------
 
 // Is the joint coordinate that moves at speed k given?
 static bool is_given(const struct ct_equations *e, const struct ct_initial_state *start,
@@ -68,7 +68,7 @@ static void find_still(struct ct_evaluator *m, struct ct_arena *a,
             }
 }
 
-// ---- the start ------------------------------------------------------------------------------------------
+// ---- the start ----------------------------------------
 
 // Change the speeds in y of joints and bodies outside `still` so that the loops stay closed, as
 // little as possible; beams do not deform. False if that does not satisfy all loops.

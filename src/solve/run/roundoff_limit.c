@@ -38,8 +38,9 @@ static double part_of(size_t i)
 struct roundoff {
     double *speed; // (nu) in so many round-off errors, after damping
     double *share; // (nu) omega/(the largest omega)
-    double *
-        sum; // (nu) root of the steps whose round-off errors are still there: of either sign, n add up to the root of n
+    // (nu) factor of the accumulation: n errors of random sign add up to sqrt(n); n is the number
+    // of steps whose errors are not damped yet
+    double *sum;
     double place; // largest, in so many round-off errors
 };
 
@@ -196,8 +197,8 @@ static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, d
 
 struct cancellation {
     double *part; // (nu) round-off of each of these inertias, as a part of it
-    double *
-        noise; // (nu) of u' where that of `worst` was largest: what a round-off of its inertia does to all speeds
+    // (nu) errors of all u' in the sample in which that of `worst` was largest
+    double *noise;
     size_t worst; // the speed whose acceleration errs most
 };
 

@@ -8,7 +8,7 @@
 #include <float.h>
 #include <string.h>
 
-// ---- evaluation -------------------------------------------------------------------------------------------
+// ---- evaluation ----------------------------------------
 
 void ct_run_find_multipliers(struct ct_run *r)
 {
@@ -150,7 +150,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     return CT_EVAL_OK;
 }
 
-// ---- creation -------------------------------------------------------------------------------------------------
+// ---- creation ----------------------------------------
 
 static bool uses(const struct ct_equations *e, ct_ex v, enum ct_sym_kind kind)
 {
@@ -356,7 +356,7 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
     return CT_EVAL_OK;
 }
 
-// ---- the run ------------------------------------------------------------------------------------------------------
+// ---- the run ----------------------------------------
 
 // Energy, constraints: the ledger of a sample.
 static void update_energy_balance(struct ct_run *r, const double *y)
@@ -460,7 +460,7 @@ bool ct_run_at_step(void *user, double t, const double *y)
     return !r->is_suspect;
 }
 
-// ---- what is taken over the run -------------------------------------------------------------------------
+// ---- what is taken over the run ----------------------------------------
 
 struct ct_take_scan *ct_run_take_create(struct ct_arena *a, const struct ct_run_options *o)
 {
