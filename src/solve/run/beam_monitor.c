@@ -1,7 +1,7 @@
 // Monitoring of beams during a run: largest slopes, validity indicators of linear beams, and their
 // estimated error. See run_internal.h.
 //
-// Indicators and slopes are evaluated at samples. The error estimate integrates the motion of the
+// Indicators and slopes are evaluated at samples. The estimated error depends on the motion of the
 // beam's base, so it is updated at every step.
 #include "beam_error/beam_error_coupled.h"
 #include "beam_error/validity.h"

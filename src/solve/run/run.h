@@ -68,7 +68,7 @@ struct ct_run_report {
             beyond_since; // time since which the indicator is above the limit; negative: it is not
         double left_at; // that time when the mean first passed the limit; negative: never
         double error_beyond_since; // the same of the estimated error; negative: it is not
-        struct ct_beam_error_modal modal;          // error estimate by vibration modes
+        struct ct_beam_error_modal modal;          // estimated error, by vibration modes
         struct ct_beam_error_coupled_run *coupled; // the same with a base that is free to move
     } * validity;                                  // by indicator of the equations
     struct ct_slope_report *slopes;                // by bent beam of the equations
