@@ -1,10 +1,12 @@
 // See assembly.h.
 //
-// First the loops are closed and the given values met: Newton steps, damped as Levenberg and
-// Marquardt do, so that rows which depend on each other in the solution do not throw it off. Then
-// Gauss-Newton steps along these constraints take all other coordinates to their guesses, each
-// followed by closing again. This ends in a local minimum of the distance to the guesses. Further
-// starts look for a nearer one.
+// 1. Close the loops and meet the given values by Levenberg-Marquardt steps. The damping handles
+// rows
+//    that become dependent at the solution.
+// 2. Minimise the distance of all other coordinates to their guesses by Gauss-Newton steps along
+// the
+//    constraints, and close the loops after each step. This ends in a local minimum.
+// 3. Search for a nearer position from other starts.
 #include "solve/initial/assembly_internal.h"
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"

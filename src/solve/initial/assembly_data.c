@@ -1,15 +1,17 @@
-// Assembly of data that are redundant but for their last digits; see assembly_internal.h.
+// Assembly with constraints that are redundant except for the last digits of the data; see
+// assembly_internal.h.
 //
-// Two coaxial hinges whose places are given to some digits have rows that should repeat others and
-// instead leave singular values of the tolerance of the data, delta, and gaps of that size: closed
-// exactly, the door would turn by gap/delta, anything, or lock. Such a row says what its neighbours
-// say; its small part is left out. With Q an orthonormal basis of the columns of
+// Example: a door on two coaxial hinges whose positions are given to some digits. Rows that should
+// be redundant leave singular values of the tolerance delta of the data, and gaps of that size. To
+// close the gaps exactly the door would have to turn by gap/delta, which may be anything. So the
+// component of these rows that is independent of the others is left out. With Q an orthonormal
+// basis of the columns of
 //
 //     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
 //         [ w G S    ]  given values, w large: they are kept
 //
-// of which columns with less than the tolerance left are left out, Newton's iteration on A', r'
-// ends where the gaps are least in the sum of squares.
+// without the columns that have less than the tolerance left, Newton's iteration on A', r' ends
+// where the sum of squares of the gaps is least.
 #include "solve/initial/assembly_internal.h"
 
 #include "numeric/dense.h"

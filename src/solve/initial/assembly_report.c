@@ -1,4 +1,4 @@
-// Why a mechanism has no start: see assembly_internal.h.
+// Error messages of an assembly that failed; see assembly_internal.h.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>

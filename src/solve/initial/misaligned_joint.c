@@ -1,10 +1,8 @@
-// The one axis that keeps a plane mechanism from closing: a joint whose `axis` was forgotten or
-// mistaken.
+// Diagnosis of a planar mechanism that does not close since one joint's `axis` is missing or wrong.
 //
-// If all joints but one move in planes of one normal, which each of them hands on from body to body
-// (a hinge about it, a guide across it, a weld), the odd one is most often meant to do so, too.
-// Only hinges, guides and welds are looked at: with other joints a mechanism is meant to be
-// spatial.
+// The normal of the plane is passed from body to body: hinges about it, guides across it and welds
+// keep it. If all joints but one keep it, that one is most likely wrong. Only hinges, guides and
+// welds are considered: with other joints the mechanism is meant to be spatial.
 #include "solve/initial/assembly.h"
 
 #include <math.h>

@@ -1,9 +1,8 @@
-// Is a demanded `initial` kept, in the assembled start and on the constraints of the equations of
-// motion? See assembly.h.
+// Test whether the start still has the values demanded by `initial`. See assembly.h.
 //
-// The assembly meets demands or fails. Afterwards beams that settle may move joints, and the
-// equations of motion, on other trees, may judge the rank of the constraints differently: a freedom
-// that is lost there takes its speed along.
+// The assembly meets demands or fails. Later the initial equilibrium of beams may move joints. The
+// equations of motion, with other trees, may also find another rank of the constraints; a degree of
+// freedom that is lost then loses its demanded speed.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>
