@@ -1,11 +1,9 @@
 // See assembly.h.
 //
 // 1. Close the loops and meet the given values by Levenberg-Marquardt steps. The damping handles
-// rows
-//    that become dependent at the solution.
+//    rows that become dependent at the solution.
 // 2. Minimise the distance of all other coordinates to their guesses by Gauss-Newton steps along
-// the
-//    constraints, and close the loops after each step. This ends in a local minimum.
+//    the constraints, and close the loops after each step. This ends in a local minimum.
 // 3. Search for a nearer position from other starts.
 #include "solve/initial/assembly_internal.h"
 #include "formulate/beam/flexible_body.h"

@@ -1,4 +1,4 @@
-// Events of a run: switches, jumps of driven rates, and the impulses that these mean. See
+// Events of a run: switches change side, rates of drivers jump, and impulses change speeds. See
 // run_internal.h.
 #include "solve/run/run_internal.h"
 
@@ -192,7 +192,7 @@ enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double 
     return i < 0 ? CT_EVAL_OK : report_held(r, t, i);
 }
 
-// Where the next singular configuration is for speeds that have jumped.
+// Predict the next singular configuration again after a jump of speeds.
 static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
@@ -214,8 +214,8 @@ static void set_sides(struct ct_run *r, double t, const double *y, const double 
     ct_switches_start(r->m, t, y, dy, r->crossed);
 }
 
-// In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no
-// speed jumps.
+// After an event while a singular configuration is crossed. The motion of drivers is known
+// beforehand, and no speed jumps.
 static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, const double *dy,
                                   const signed char *crossed)
 {

@@ -43,7 +43,7 @@ static bool advance_step(struct ct_run *r, double t, double t1, const double *y,
     const double h = t1 - t;
     double most = 0, worst = 0, *d = r->scratch;
     memcpy(out, y, r->ny * sizeof *y);
-    if (!nu) // rows between driven coordinates alone: they hold or they do not
+    if (!nu) // constraints between driven coordinates only: they can be checked, not satisfied
         return ct_partition_project(r->s, ct_run_time_before_event(r, t1), out) == CT_EVAL_OK;
     if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, t), y) != CT_EVAL_OK)
         return false;

@@ -54,9 +54,9 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
     return most;
 }
 
-// The part of an output that vibrations make which the explicit method follows, far from the
-// motion; at most all of it, which outputs that amplify are taken to feel. Errors in what dies have
-// died with it at the end.
+// The part of an output that is due to vibrations much faster than the motion, which the explicit
+// method resolves; at most 1, which is assumed for sensitive outputs. Vibrations that are damped
+// out by the end do not count.
 static double find_vibration_effect(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_time_before_event(r, t), *e, *later;
@@ -72,7 +72,7 @@ static double find_vibration_effect(struct ct_run *r, double t, const double *y)
     return fmin(felt, 1);
 }
 
-// After an event, and next to a singular configuration, steps had better go on.
+// No change of the method right after an event or near a singular configuration.
 bool ct_run_suspects_stiffness(struct ct_run *r, double t, const double *y)
 {
     const bool may_stop = t > r->last_event && !(r->singular->time_to_singular < INFINITY);
@@ -150,7 +150,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                              .has_to_damp = r->stiffness->is_far && !r->stiffness->is_dead};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
-    const struct ct_rank_monitor singular = *r->singular; // none is near
+    const struct ct_rank_monitor singular = *r->singular; // no configuration is near
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
@@ -177,7 +177,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     return ct_trial_pace(&trial);
 }
 
-// What the implicit method needs, and the pace of the explicit one to compare it with.
+// Prepare the implicit method, and measure the time per work of the explicit one to compare with.
 static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
 {
     if (!p->dae) {
@@ -191,7 +191,7 @@ static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
     r->explicit_pace = ct_stiffness_pace(r->stiffness, &r->implicit.cost);
 }
 
-// It goes on from here. gain: NAN where there was no trial.
+// The implicit method takes over. gain: NAN if there was no trial.
 static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, double gain)
 {
     struct ct_run_report *report = r->report;
@@ -210,8 +210,9 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     report->method = r->method;
 }
 
-// Where nothing fast is left, steps of the size that wins: from those of the explicit method they
-// would grow for most of the trial, or not at all where their errors are round-off errors.
+// The first step of a trial. If fast vibrations have died out it is the step with which the
+// implicit method would win. From the step of the explicit method it would grow for most of the
+// trial, or not at all if errors are round-off.
 static double first_of_trial(const struct ct_run *r, const struct ct_integrate_options *io,
                              double least_gain)
 {
@@ -219,15 +220,16 @@ static double first_of_trial(const struct ct_run *r, const struct ct_integrate_o
     return r->stiffness->is_dead ? fmax(io->first_step, winning) : io->first_step;
 }
 
-// Over to the implicit method if it gets farther for its work. True: it does. That says nothing of
-// the motion behind a jump of speeds, which excites vibrations: there the explicit method goes on.
+// Change to the implicit method if it advances more for its work; true if it does. After a jump of
+// speeds, which excites vibrations, the trial says nothing and the explicit method goes on.
 static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
                                struct ct_integrate_options *io)
 {
-    // What is counted is not quite what is spent, and its errors are larger; more so where
-    // vibrations are no longer followed: a slider-crank of flexible rods gained no time from 2.8
-    // times as far, and erred by the tolerance in place of a thousandth. Steps as long as stability
-    // allows do not follow them either.
+    // The gain must be clearly above 1: operations are not exactly time, and errors of the implicit
+    // method are larger, more so if it does not resolve vibrations. A slider-crank with flexible
+    // rods gained no time with a gain of 2.8, and its error was the tolerance instead of a
+    // thousandth of it. Explicit steps at the limit of stability do not resolve the vibrations
+    // either.
     const bool gives_up = r->stiffness->is_far && !r->stiffness->is_dead
                        && !ct_stiffness_is_unstable(r->stiffness);
     const double least_gain = gives_up ? 5 : 2;
@@ -242,7 +244,7 @@ static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
     return true;
 }
 
-// Steps have ended at io->t0: which method is to go on?
+// Steps have ended at io->t0: choose the method to go on with.
 static void consider_explicit(struct ct_run *r, struct ct_problem *p,
                               struct ct_integrate_options *io)
 {
@@ -253,7 +255,7 @@ static void consider_explicit(struct ct_run *r, struct ct_problem *p,
     if (was_implicit || !switch_to_implicit(r, p, io)) {
         if (was_implicit)
             r->report->returned_at = io->t0;
-        // what the implicit method, or its trial, left open of the constraints is closed now
+        // close the constraints, which the implicit method or its trial may have left open
         ct_rank_monitor_forget_motion(r->singular);
         r->method = r->o->method;
         io->rtol = r->o->rtol;
@@ -280,10 +282,10 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
     sum->last_rtol = s->last_rtol;
 }
 
-// Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose
-// errors go on undamped, long before its steps are suspicious: a method that damps them begins,
-// where there are none yet, and goes on as long as it is not slower than the other would have to
-// be.
+// With sensitive outputs the run begins with the implicit method if no vibrations are excited yet.
+// An explicit method does not damp the errors of fast vibrations, and sensitive outputs amplify
+// them long before stiffness is detected. The implicit method goes on as long as it is not slower
+// than the explicit one, with the steps that such outputs ask for.
 static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
                             struct ct_stiffness *stiffness)
 {
@@ -317,11 +319,11 @@ bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o)
         r->start_stiffness
             = ct_stiffness_create(r->arena, p, &r->stats, o->output_rtol, nq, last);
     }
-    r->start_stiffness->fast = 0; // nothing is left of other runs
+    r->start_stiffness->fast = 0; // forget earlier runs
     return begins_implicit(r, o, r->start_stiffness);
 }
 
-// From start to end, with another method from where that pays.
+// Integrate from start to end, and change the method when that pays.
 bool ct_run_integrate(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
 {
     const double *sample = io.sample;
@@ -351,7 +353,7 @@ bool ct_run_integrate(struct ct_run *r, struct ct_problem *p, struct ct_integrat
             r->resolves_vibrations = false;
             p->longest_step = accurate_step;
             io.first_step = io.t0 - r->t_before;
-            r->stiffness->window_evaluations = 0; // counts begin anew with the next steps
+            r->stiffness->window_evaluations = 0; // count anew from the next step
         } else {
             consider_explicit(r, p, &io);
             add_stats(&r->report->stats, &r->stats);
