@@ -80,8 +80,7 @@ struct ct_evaluator {
     double *M, *Q, *J, *gam, *rate; // of the last ct_evaluator_dynamics
     double *phi, *v;                // of the last ct_evaluator_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_evaluator_measure_rows; 1 before
-    double
-        rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
+    double rank_tolerance;          // a row with less left, relative to its size, is dependent
     // Data close to their tolerance only: rows keep what they leave open at the start, phi - open =
     // 0; those that are left out, as they depend on others to that tolerance, read 0.
     bool is_inexact, *left_out; // (nrow)

@@ -5,12 +5,12 @@
 // are inaccurate as the states are: with stiff forces the round-off of coordinates, eps q, gives
 // accelerations eps |f'(q) q|. Vibration and damping limit the resulting error of a speed to
 //
-//     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|                                  (8.15)
+//     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|     (8.15)
 //
 // The speed of a body that creeps on a stiff damped spring has as few digits as the force of the
 // spring. Round-off errors of the n steps of an explicit method add up if nothing damps them, to
 //
-//     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off                           (8.18)
+//     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off     (8.18)
 //
 // Inertias may cancel, as those of a light beam section in free flight. The remaining inertia has a
 // relative error of eps times the ratio of the terms to it, which is nearly constant during the

@@ -52,15 +52,14 @@ struct ct_rank_monitor {
     struct ct_tangent_basis *there, *here,
         *along;      // the view from there, from where a step ends, and on the way
     double *u, *a;   // (nu) speeds and accelerations there, where that is known
-    double swiftest; // largest speed at looks
-    long nover;      // positions that fixed steps have come across
-    double over;     // when first
+    double swiftest; // largest speed at accepted states
+    long nover;      // singular configurations that fixed steps have passed
+    double over;     // time of the first
     double closest,
         t_closest;  // the smallest part of a step that was not made to cross, and when
     bool has_poles; // they are asked for
     int npole;
-    double pole
-        [CT_MOST_POLES]; // times of positions on the last crossing, to all digits, that the run may begin behind or end before
+    double pole[CT_MOST_POLES]; // exact times of singular configurations on the last crossing
     long npassed;
     struct ct_singular_configuration *passed; // the first of them (CT_MOST_SINGULAR)
     double *last;                             // the last accepted state  (nq + nu)
@@ -119,8 +118,8 @@ struct ct_singular_start {
     struct ct_partition *s;
     const struct ct_problem *p;
     struct ct_integrate_stats *stats;
-    const double *
-        assembled; // (ny) as demanded: rows in a singular configuration would take off more than they see
+    const double
+        *assembled;       // (ny) as demanded, before the projection onto nearly dependent rows
     const bool *is_given; // (nu) speeds whose coordinates the start is given by
     const char *joints;   // whose constraints are dependent at the start only; NULL: none
     double rtol, atol, output_rtol;
