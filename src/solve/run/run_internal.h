@@ -113,7 +113,8 @@ bool ct_run_at_step(void *user, double t, const double *y);
 void ct_run_monitor_sample(struct ct_run *r, double t);
 void ct_run_monitor_start(struct ct_run *r, double t, const double *y);
 /// Pass the motion of the beams' bases at t, y to the estimate of their error: at the start; after
-/// a step, which may be skipped; before an event; after an event that changes no speed of a base.
+/// a step, which may be skipped; before an event and after an impulse there; after a jump that does
+/// not act on beams.
 enum ct_monitor_when { CT_MONITOR_START, CT_MONITOR_STEP, CT_MONITOR_EVENT, CT_MONITOR_SMOOTH };
 void ct_run_monitor_base(struct ct_run *r, double t, const double *y, enum ct_monitor_when how);
 void ct_run_monitor_impulse(struct ct_run *r, double t, const double *y);
