@@ -192,7 +192,8 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 
 // ---- forms ------------------------------------------------------------------------------------------
 
-// Large systems have very many choices, and take long to get a form: only that of the start has one.
+// Large systems have very many choices, and take long to get a form: only that of the start has
+// one.
 static bool is_allowed(const struct ct_batch *s)
 {
     // Chosen: time to compile against time to run.
@@ -402,8 +403,8 @@ static void start_lane(struct ct_batch *s, struct ct_lane *lane, const struct ct
     lane->nstiff = lane->nother = 0;
 }
 
-// The member that the run has been started with into lane l; also into lanes that never had one, which run
-// beside it for finite numbers.
+// The member that the run has been started with into lane l; also into lanes that never had one,
+// which run beside it for finite numbers.
 static void fill(struct ct_batch *s, int l, const double *y)
 {
     for (int i = 0; i < W; i++)

@@ -1,4 +1,5 @@
-// What the files of lanes share: numbers of all lanes at once, and the lanes themselves. See batch.h.
+// What the files of lanes share: numbers of all lanes at once, and the lanes themselves. See
+// batch.h.
 //
 //     batch.c        members come and go
 //     batch_step.c    a try in all lanes: stages, error, projection, step control
@@ -75,7 +76,8 @@ struct ct_lane_user {
     int lane;
 };
 
-// Events of one member. A step with a state event is taken again, to where the root function should vanish, until it does.
+// Events of one member. A step with a state event is taken again, to where the root function should
+// vanish, until it does.
 struct ct_lane_events {
     struct ct_run_options options;
     struct ct_arena *arena; // of the member's times
@@ -197,7 +199,8 @@ static inline void ct_lane_run(struct ct_lane_program *p, const vec *input)
 /// Take numbers (n) of a lane out of vectors, or put them there.
 void ct_lane_take(double *out, const vec *v, int lane, size_t n);
 void ct_lane_put(vec *v, int lane, const double *in, size_t n);
-/// The lane takes the choice of rows and columns that the run has now, and the form for it. False if there is none.
+/// The lane takes the choice of rows and columns that the run has now, and the form for it. False
+/// if there is none.
 bool ct_lane_choose(struct ct_batch *s, int lane);
 /// The next step of the lane, which the run has become at t, y, follows what turns.
 void ct_lane_limit_turn(struct ct_batch *s, int lane, double t, const double *y);
@@ -206,8 +209,8 @@ void ct_lane_limit_turn(struct ct_batch *s, int lane, double t, const double *y)
 
 /// Room for the events of all lanes.
 void ct_lane_make_events(struct ct_batch *s);
-/// The run has been started with the member of this lane, which has these options: the sides it is on. False: the motion
-/// cannot begin.
+/// The run has been started with the member of this lane, which has these options: the sides it is
+/// on. False: the motion cannot begin.
 bool ct_lane_begin_events(struct ct_batch *s, int lane, const struct ct_run_options *o);
 /// At t, y, where a member begins or an event has put it. False: roots cannot be evaluated.
 bool ct_lane_take_bearings(struct ct_batch *s, int lane, double t, const double *y,
@@ -216,22 +219,25 @@ bool ct_lane_take_bearings(struct ct_batch *s, int lane, double t, const double 
 double ct_lane_stop(const struct ct_lane *lane);
 /// A try of a step that has an event in it.
 void ct_lane_plan_again(struct ct_batch *s, int lane);
-/// The try ends in s->end at lane->end. It may be accepted, then with an event at its end if events.is_event; it is refused;
-/// or it is taken again, to an event.
+/// The try ends in s->end at lane->end. It may be accepted, then with an event at its end if
+/// events.is_event; it is refused; or it is taken again, to an event.
 enum ct_lane_found {
     CT_LANE_GOES_ON,
     CT_LANE_REFUSED,
     CT_LANE_AGAIN
 } ct_lane_search(struct ct_batch *s, int lane);
-/// The lane has come to t, y, which ends the try: what the event there changes, if there is one. It may be given up.
+/// The lane has come to t, y, which ends the try: what the event there changes, if there is one. It
+/// may be given up.
 void ct_lane_pass(struct ct_batch *s, int lane);
 
 // ---- batch_single.c -----------------------------------------------------------------------------------
 
-/// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or for everything.
+/// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or
+/// for everything.
 void ct_lane_load_run_whole(struct ct_batch *s, int lane, double t, const vec *y);
 void ct_lane_load_run(struct ct_batch *s, int lane, double t, const vec *y);
-/// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma. False: not there.
+/// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma.
+/// False: not there.
 bool ct_lane_solve(struct ct_batch *s, int lane, double t, const vec *y, vec *dy);
 /// The lane of y onto the constraints at t by matrices; may give it up.
 bool ct_lane_project(struct ct_batch *s, int lane, double t, vec *y);
@@ -244,8 +250,9 @@ void ct_lane_multipliers(struct ct_batch *s, int lane, double t, const vec *y, c
 /// Which outputs of this kind do constraints determine, at the end of the step as it was tried?
 void ct_lane_find_constrained_outputs(struct ct_batch *s, enum ct_output_kind kind, int lane,
                                       const struct ct_tolerance *tolerance);
-/// Angles and rotations that are followed may turn by so much in a step [rad], else the member runs alone, where steps are
-/// held back: less than a fifth of a turn, as the step that follows may be five times as long.
+/// Angles and rotations that are followed may turn by so much in a step [rad], else the member runs
+/// alone, where steps are held back: less than a fifth of a turn, as the step that follows may be
+/// five times as long.
 static const double ct_lane_most_turn = 1;
 /// The strength of the lane's form belongs to its sigma, found by matrices just now.
 void ct_lane_compare(struct ct_batch *s, int lane);

@@ -1,5 +1,5 @@
-// Closed forms in lanes: accelerations, projections, and whether the forms are still good; see partition_solver.c for the
-// same of a run alone. Included by batch_step.c.
+// Closed forms in lanes: accelerations, projections, and whether the forms are still good; see
+// partition_solver.c for the same of a run alone. Included by batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_SOLVER_H
 #define CT_SOLVE_BATCH_BATCH_SOLVER_H
 
@@ -28,8 +28,8 @@ static inline mask judge_pivots(struct ct_batch *s, const struct ct_solver_code 
     return is_sound;
 }
 
-// q', u' into dy by the forms of lanes in `wanted`, and the power where they have it. Returns the lanes where they are
-// sound.
+// q', u' into dy by the forms of lanes in `wanted`, and the power where they have it. Returns the
+// lanes where they are sound.
 static inline set solve_by_solvers(struct ct_batch *s, vec *dy, set wanted)
 {
     const set able = wanted & ~ct_batch_lanes_without_solver(s);
@@ -64,7 +64,8 @@ static inline set solve_by_solvers(struct ct_batch *s, vec *dy, set wanted)
 
 // ---- are they still good? ---------------------------------------------------------------------------
 
-// Largest of r (nu + rank) against the largest terms of the equations; infinite where it is not finite.
+// Largest of r (nu + rank) against the largest terms of the equations; infinite where it is not
+// finite.
 static inline vec weigh_left(const struct ct_batch *s, const struct ct_lane_solver *f,
                              const vec *r)
 {
@@ -146,7 +147,8 @@ static inline void add_speeds(struct ct_batch *s, vec *y, const vec *du, set lan
         y[s->nq + k] = choose(m, y[s->nq + k] + du[k], y[s->nq + k]);
 }
 
-// Lanes whose correction of speeds is so large that its round-off counts; else one is enough, as v is linear in u.
+// Lanes whose correction of speeds is so large that its round-off counts; else one is enough, as v
+// is linear in u.
 static inline set large_speeds(const struct ct_batch *s, const vec *du)
 {
     vec most = {0};
@@ -155,8 +157,8 @@ static inline set large_speeds(const struct ct_batch *s, const vec *du)
     return set_of(most > ct_small_change);
 }
 
-// What a Newton iteration does next in each active lane: arrived, lost (also taken out of `wanted`), or another step,
-// which is what is returned.
+// What a Newton iteration does next in each active lane: arrived, lost (also taken out of
+// `wanted`), or another step, which is what is returned.
 static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *before,
                         set active, set *wanted)
 {
@@ -179,8 +181,8 @@ static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *be
     return active;
 }
 
-// Lanes of `formed` onto the constraints by the form. Returns those that are there; the others go on by matrices, or
-// are taken out of `wanted` when they are lost.
+// Lanes of `formed` onto the constraints by the form. Returns those that are there; the others go
+// on by matrices, or are taken out of `wanted` when they are lost.
 static inline set project_by_solver(struct ct_batch *s, struct ct_lane_solver *f, vec t, vec *y,
                                     set formed, set *wanted)
 {

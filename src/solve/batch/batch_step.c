@@ -1,5 +1,6 @@
-// A try in all lanes at once: see batch.h. The steps are those of integrate/driver.c, the derivative and the
-// projection those of run.c and projection.c, so that a lane ends where a run alone ends, to round-off.
+// A try in all lanes at once: see batch.h. The steps are those of integrate/driver.c, the
+// derivative and the projection those of run.c and projection.c, so that a lane ends where a run
+// alone ends, to round-off.
 #include "integrate/stepper.h"
 #include "solve/batch/batch_event_location.h"
 #include "solve/batch/batch_take.h"
@@ -8,8 +9,9 @@
 #include <limits.h>
 #include <math.h>
 #include <string.h>
-// Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer than so many others
-// between, the run is stiff; values of the program DOPRI5 for the stage before the last.
+// Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer
+// than so many others between, the run is stiff; values of the program DOPRI5 for the stage before
+// the last.
 // Definition: boundary of stability of DOPRI5 on the negative real axis, key hairer1996
 static const double stiff_step = 3.25;
 // Definition: of that test, key hairer1996
@@ -52,7 +54,8 @@ static void renew(struct ct_batch *s, vec t, const vec *y, set lanes)
             ct_lane_renew(s, l, t[l], y);
 }
 
-// Lanes of y in `wanted` onto the constraints at t. Returns those that could be; some may be given up.
+// Lanes of y in `wanted` onto the constraints at t. Returns those that could be; some may be given
+// up.
 static set project(struct ct_batch *s, vec t, vec *y, set wanted)
 {
     normalise(s, y, wanted);
@@ -72,8 +75,8 @@ static set project(struct ct_batch *s, vec t, vec *y, set wanted)
 
 // ---- the derivative, as in run.c -----------------------------------------------------------------
 
-// dy, finite, but for the power, which some forms know, at the input, (t, y): by forms where they are sound, else by matrices, one
-// by one.
+// dy, finite, but for the power, which some forms know, at the input, (t, y): by forms where they
+// are sound, else by matrices, one by one.
 static set solve(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const set done = solve_by_solvers(s, dy, wanted), rest = wanted & ~done;
@@ -86,7 +89,8 @@ static set solve(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
     return done | found;
 }
 
-// Multipliers into the input, for the power of motions and for outputs. Forms know those of kept rows.
+// Multipliers into the input, for the power of motions and for outputs. Forms know those of kept
+// rows.
 static void find_multipliers(struct ct_batch *s, vec t, const vec *y, const vec *dy, set wanted)
 {
     const int n = s->nu + s->rank;
@@ -107,7 +111,8 @@ static void find_multipliers(struct ct_batch *s, vec t, const vec *y, const vec 
             ct_lane_multipliers(s, l, t[l], y, dy);
 }
 
-// dy = f(t, y). Returns the lanes of `wanted` that have one; without constraints it need not be finite.
+// dy = f(t, y). Returns the lanes of `wanted` that have one; without constraints it need not be
+// finite.
 static set derive(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const int nu = s->nu, nq = s->nq;
@@ -134,7 +139,8 @@ static set derive(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 
 // ---- a try ------------------------------------------------------------------------------------------
 
-// The same for `few` states from i on: known where this is called, so that their sums stay in registers.
+// The same for `few` states from i on: known where this is called, so that their sums stay in
+// registers.
 static inline void combine_few(const struct ct_batch *s, vec *out, const vec *y,
                                const struct ct_lane_sum *b, int i, int few)
 {
@@ -150,8 +156,8 @@ static inline void combine_few(const struct ct_batch *s, vec *out, const vec *y,
         out[i + l] = y ? y[i + l] + h * sum[l] : h * sum[l];
 }
 
-// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places are read once for
-// them, and their sums do not wait for each other.
+// out (ny) = y + h sum_j a_j k_j, y NULL: without. A few states at a time: coefficients and places
+// are read once for them, and their sums do not wait for each other.
 static void combine(const struct ct_batch *s, vec *out, const vec *y,
                     const struct ct_lane_sum *b)
 {
@@ -238,7 +244,8 @@ static const vec *outputs(struct ct_batch *s, enum ct_output_kind kind, vec t, c
     return o->program.out;
 }
 
-// The error of this lane's outputs, as in output_error.c: off (n) at y + e. Are round-off errors, `probed`, known now?
+// The error of this lane's outputs, as in output_error.c: off (n) at y + e. Are round-off errors,
+// `probed`, known now?
 static double judge_lane(struct ct_batch *s, enum ct_output_kind kind, int l, const vec *off,
                          bool is_probed)
 {
@@ -258,7 +265,8 @@ static double judge_lane(struct ct_batch *s, enum ct_output_kind kind, int l, co
                                     o->one_off, &tolerance, s->joint[l]);
 }
 
-// What errors e of the states at the end of the step mean for outputs, in these lanes: as ct_output_error_of_step.
+// What errors e of the states at the end of the step mean for outputs, in these lanes: as
+// ct_output_error_of_step.
 static void judge_outputs(struct ct_batch *s, enum ct_output_kind kind, const vec *e, set lanes)
 {
     struct ct_lane_outputs *o = &s->output[kind];
@@ -304,7 +312,8 @@ static vec join(vec e5, vec e3)
     return choose(e5 > 0, e5 / root, e5);
 }
 
-// Lanes of `wanted` whose outputs of this kind are to be looked at now; the others' error is foreseen.
+// Lanes of `wanted` whose outputs of this kind are to be looked at now; the others' error is
+// foreseen.
 static set find_due(struct ct_batch *s, enum ct_output_kind kind, set wanted)
 {
     set due = 0;
@@ -346,8 +355,8 @@ static void estimate(struct ct_batch *s, set wanted)
     }
 }
 
-// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not evaluated where its error
-// does not depend on it and a projection follows.
+// Ends of the stages at t + C h; the last one is the end of the step, y1 with dy1. That is not
+// evaluated where its error does not depend on it and a projection follows.
 static set take_stages(struct ct_batch *s, set wanted)
 {
     const struct ct_tableau *b = s->method->tableau;
@@ -415,9 +424,9 @@ static void adapt(struct ct_batch *s, set tried, set wanted)
     }
 }
 
-// The stage before the last and the end of the step are at the same time: their difference shows the fastest motions,
-// as in DOPRI5 by Hairer, Norsett and Wanner (1993), IV.2 of the second volume, key hairer1996. A stiff run is one for
-// a run alone, which can change its method.
+// The stage before the last and the end of the step are at the same time: their difference shows
+// the fastest motions, as in DOPRI5 by Hairer, Norsett and Wanner (1993), IV.2 of the second
+// volume, key hairer1996. A stiff run is one for a run alone, which can change its method.
 static void detect_stiffness(struct ct_batch *s, set wanted)
 {
     const int n = s->ny - 1; // the work feeds nothing back
@@ -445,7 +454,8 @@ static void detect_stiffness(struct ct_batch *s, set wanted)
 
 // ---- what is taken over the step ----------------------------------------------------------------------
 
-// Further stages and corrections of the interpolant; the step ends on the constraints. Returns the lanes that have it.
+// Further stages and corrections of the interpolant; the step ends on the constraints. Returns the
+// lanes that have it.
 static set prepare_dense(struct ct_batch *s, set wanted)
 {
     const struct ct_dense_tableau *d = s->method->dense_tableau;
@@ -479,7 +489,8 @@ static void evaluate_takes(struct ct_batch *s, vec t, const vec *y, set lanes)
     ct_lane_run(&k->program, s->input);
 }
 
-// Over the steps of these lanes, which are accepted and end at `end`. A lane for which that cannot be done is given up.
+// Over the steps of these lanes, which are accepted and end at `end`. A lane for which that cannot
+// be done is given up.
 static void take_over_step(struct ct_batch *s, vec end, set wanted)
 {
     set begun = 0, lost = 0;
@@ -545,8 +556,8 @@ static void follow(struct ct_batch *s, vec t, const vec *y, set wanted)
     }
 }
 
-// Where the pivots have become small they are looked at after every step, and a singular configuration that comes within
-// reach is for a run alone.
+// Where the pivots have become small they are looked at after every step, and a singular
+// configuration that comes within reach is for a run alone.
 static void predict_singular(struct ct_batch *s, vec t, const vec *y, set wanted)
 {
     if (!s->rank)
@@ -618,7 +629,8 @@ static void commit(struct ct_batch *s, set wanted)
     }
 }
 
-// Lanes whose error is small enough; where the step is refused for something else the error says nothing.
+// Lanes whose error is small enough; where the step is refused for something else the error says
+// nothing.
 static set accept(struct ct_batch *s, set wanted)
 {
     const set is_finite = finite(s->y1, s->ny);

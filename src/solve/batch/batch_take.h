@@ -1,5 +1,5 @@
-// What is taken over steps in lanes: interpolants of all of them, and functions where the scan of any lane asks for them.
-// Included by batch_step.c.
+// What is taken over steps in lanes: interpolants of all of them, and functions where the scan of
+// any lane asks for them. Included by batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_TAKE_H
 #define CT_SOLVE_BATCH_BATCH_TAKE_H
 

@@ -1,13 +1,16 @@
-// A evaluator and its coordinate partitioning as the constrained second-order problem that implicit
-// methods solve.
+// The equations of motion as the differential-algebraic problem that implicit methods solve:
+//
+//     r(t, q, u, u', lam) = 0,   Phi(t, q) = 0,   v(t, q, u) = 0
+//
+// It is made from an evaluator and its coordinate partitioning.
 #ifndef CT_SOLVE_CONSTRAINT_DAE_H
 #define CT_SOLVE_CONSTRAINT_DAE_H
 
 #include "integrate/problem.h"
 #include "solve/constraint/partition.h"
 
-/// The rows are those the coordinate partitioning keeps; the others, dependent on them, have no
-/// multiplier. The equations must have a residual. Tables live in a.
+/// Only the rows that the partitioning keeps are constraints; redundant rows have no multiplier.
+/// The equations must have a residual. Everything lives in a.
 struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_partition *s);
 
 #endif

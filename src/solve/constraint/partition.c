@@ -1,4 +1,5 @@
-// Accelerations, minimum-norm multipliers and impulses on the constraints; see partition.h.
+// Accelerations, minimum-norm multipliers and speeds after an impulse, by dense matrices; see
+// partition.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/damped.h"
@@ -50,7 +51,7 @@ struct ct_partition *ct_partition_create(struct ct_arena *arena, struct ct_ctx *
     return s;
 }
 
-// Of the redundant rows, which could be kept in place of others.
+// The largest entry of redundant rows in dependent columns: such a row could replace a kept one.
 static double largest_redundant(const struct ct_partition *s)
 {
     double most = 0;
@@ -100,8 +101,7 @@ void ct_partition_reduce_mass(struct ct_partition *s, const double *M)
 {
     const size_t n = s->m->nu;
     const int r = s->rank, f = (int)n - r;
-    for (int j = 0; j < f;
-         j++) { // MB = M [B; 1], n x f; of independent loops B has few entries
+    for (int j = 0; j < f; j++) { // MB = M [B; 1], n x f; with independent loops B is sparse
         double *MB = s->MB + n * (size_t)j;
         memcpy(MB, M + n * (size_t)s->independent[j], n * sizeof *MB);
         for (int k = 0; k < r; k++)
@@ -148,7 +148,7 @@ static void expand(const struct ct_partition *s, double *x, const double *z, con
     }
 }
 
-// x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0] by the numbers of now.
+// x (nu) = [B; 1] (B' M B)^-1 B' r + [c; 0], with B, r and c as in the workspace.
 static enum ct_eval reduce_and_expand(struct ct_partition *s, const double *M, double *x)
 {
     const int f = (int)s->m->nu - s->rank;
@@ -187,7 +187,7 @@ double ct_partition_cancellation(const struct ct_partition *s)
         const int d = s->dependent[k];
         size += s->B[k] * s->B[k] * s->m->M[d + n * d];
     }
-    return s->S[0] * s->S[0] / size; // S is the root
+    return s->S[0] * s->S[0] / size; // S is the Cholesky factor
 }
 
 void ct_partition_multipliers(struct ct_partition *s)
@@ -244,7 +244,7 @@ struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partiti
             }
         ct_sparse_rows_add(&v->A, column, value, n, 1);
     }
-    // singular values below the tolerance of ranks have no part in solutions
+    // directions with singular values below the rank tolerance have no part in solutions
     const double least = s->m->is_inexact ? ct_data_tolerance : ct_rank_tolerance;
     const double size = ct_sparse_rows_largest_column(&v->A, nu, nrow, value);
     ct_damped_factor(v->factors, &v->A, nu, nrow, least * (size > 0 ? size : 1));
@@ -253,7 +253,8 @@ struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partiti
 
 void ct_null_space_vector(struct ct_null_space *v, int row, double *z)
 {
-    // less the least-squares solution x of J' x = J' z; the second time takes off what the damping has left
+    // z less the least-squares solution x of J' x = J' z; the second pass removes the error of the
+    // damping
     struct ct_partition *s = v->s;
     const size_t nu = s->m->nu, nrow = s->m->nrow;
     memset(z, 0, nrow * sizeof *z);
@@ -267,7 +268,10 @@ void ct_null_space_vector(struct ct_null_space *v, int row, double *z)
 
 void ct_partition_uniqueness(struct ct_partition *s, struct ct_null_space *v)
 {
-    const double unique_tolerance = 1e-6; // the entry is 0 to round-off or of order one
+    // The entry is the squared length of the unit vector's part in null(J'): 0 to round-off where
+    // the multiplier is unique, else usually of order one.
+    // Chosen: round-off against multipliers that have a small part in a redundant loop.
+    const double unique_tolerance = 1e-6;
     for (int k = 0; k < (int)s->m->nrow; k++) {
         ct_null_space_vector(v, k, s->r);
         s->is_unique[k] = fabs(s->r[k]) < unique_tolerance;

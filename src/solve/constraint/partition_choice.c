@@ -7,20 +7,25 @@
 #include <math.h>
 #include <string.h>
 
-// Rows of J, the best first, into s->row; the number of independent ones.
+// Rows of J into s->row in the order of their pivots; returns how many are independent.
 static int order_rows(struct ct_partition *s)
 {
     return ct_evaluator_order_rows(s->m, s->m->J, s->m->rank_tolerance, s->row, s->A, s->b,
                                    s->work);
 }
 
-// Columns count by what their speeds move, w (nu, out), where inertias are so different that a heavy dependent speed would
-// leave round-off of its forces, eps M_heavy, in the equations of light ones; else all alike. Elastic coordinates are always
-// light, and do not ask for it. Those to be kept independent count little.
+// Weights w (nu, out) of the columns in the choice of pivots. All are 1 unless inertias differ very
+// much: then a column has the weight 1/sqrt(M_kk), so that light speeds become dependent. A heavy
+// dependent speed would bring the round-off of its forces, eps M_heavy, into the equations of light
+// independent ones. Elastic coordinates are always light and are not compared. Speeds that are
+// preferred as independent have a small weight.
 static void weigh_columns(struct ct_partition *s, double *w)
 {
-    const double apart = 1e6,
-                 little = 0.03; // leaves light ones ten digits; B is as much larger
+    // apart: ratio of the largest to the smallest inertia from which weights are used. Round-off of
+    // the heavy equations is 1e6 eps = 2e-10 of the light ones, which then have ten digits.
+    // little: weight of preferred speeds; entries of B may become 1/little = 33 times larger.
+    // Chosen: the wishes for independent speeds against the conditioning of J_d.
+    const double apart = 1e6, little = 0.03;
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
@@ -55,8 +60,8 @@ static void choose_columns(struct ct_partition *s)
     take_columns(s);
 }
 
-// The same of a large system, factored: rows and columns in an order in which factors of J_d fill little. False where J_d
-// comes out badly conditioned.
+// The same for a large system: rows and columns in an order in which the factors of J_d have little
+// fill. J_d is factored at the end. False if it is badly conditioned.
 static bool choose_sparse_columns(struct ct_partition *s)
 {
     struct ct_arena *own = ct_arena_create_under(s->arena);
@@ -85,7 +90,7 @@ static size_t lightest(const struct ct_partition *s)
     return least;
 }
 
-// What gives all motions of a beam's sections an inertia.
+// For a message: what would give all motions of a beam's sections an inertia.
 static const char *rotary_of(const struct ct_beam *beam)
 {
     if (beam->integration == CT_BEAM_ONE_POINT
@@ -96,7 +101,7 @@ static const char *rotary_of(const struct ct_beam *beam)
                            : "a 'rotary_inertia'";
 }
 
-// Body i, if that is a beam not all of whose sections' motions have inertia; else NULL.
+// Body i if it is a beam in which some motion of a section has no inertia; else NULL.
 static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
 {
     const struct ct_beam *beam = m->body[i].beam;
@@ -104,7 +109,8 @@ static const struct ct_body *bare_beam(const struct ct_model *m, size_t i)
     return is_bare ? &m->body[i] : NULL;
 }
 
-// The beam of that kind that a coordinate moves, of a joint one of the two at its ends; else NULL.
+// The beam of that kind that a coordinate moves, for a joint one at its ends; NULL if there is
+// none.
 static const struct ct_body *bare_beam_of(const struct ct_model *m, const struct ct_u *u)
 {
     if (u->beam <= 0 && u->joint < 0 && u->body < 0) // a state of the model
@@ -140,7 +146,7 @@ static bool is_held(const struct ct_model *m, int body)
     return false;
 }
 
-// Of a model without a beam that could lack it.
+// The error for a model in which no beam lacks inertia.
 static bool report_massless(struct ct_partition *s, const struct ct_u *u, const char *name,
                             struct ct_mark mark)
 {
@@ -206,8 +212,8 @@ static bool massless(struct ct_partition *s, size_t speed)
     return report_massless(s, u, name, mark);
 }
 
-// The speed of the joint that turns a beam's first section where that has no inertia: an axis that bends leaves it next to
-// none, with which no step is right.
+// The speed of the joint that turns the first section of a beam, where sections have no inertia. A
+// bent axis gives that rotation a tiny inertia, with which no step would be accurate.
 static size_t bare_speed(const struct ct_partition *s)
 {
     const struct ct_equations *e = s->m->e;
@@ -217,12 +223,16 @@ static size_t bare_speed(const struct ct_partition *s)
     return lightest(s);
 }
 
-// Pivots that are left of the entries of M are below this of them where they are round-off.
+// A pivot of M or B' M B that is at most this part of the terms it is the sum of is round-off, and
+// the motion has no inertia.
+// Chosen: round-off of a sum of several terms against small inertias that are meant.
 static const double rounding_pivot = 16 * DBL_EPSILON;
-// Above this of them no round-off of others hides them.
+// A pivot above this part of the terms is certainly not round-off: the slower test is left out.
+// Chosen: time of that test against the round-off of the other pivots in this one.
 static const double hidden_pivot = 1e-8;
 
-// Speed k, or the coordinate of a beam that moves the same as it: sections without inertia are what it lacks.
+// The elastic coordinate that moves the same masses as speed k, if there is one; else k. A message
+// names it, as the beam whose sections have no inertia is the cause.
 static size_t elastic_beside(const struct ct_partition *s, size_t k)
 {
     const size_t n = s->m->nu;
@@ -232,14 +242,15 @@ static size_t elastic_beside(const struct ct_partition *s, size_t k)
     ct_evaluator_dynamics(s->m);
     for (size_t i = 0; i < n && !s->m->e->u[k].beam; i++) {
         const double both = M[i + n * k] * M[i + n * k], each = M[i + n * i] * M[k + n * k];
+        // Chosen: motions that agree to 1e-6, the root, count as one; only a message depends on it
         if (s->m->e->u[i].beam > 0 && each > 0 && both > (1 - 1e-12) * each)
             return i;
     }
     return k;
 }
 
-// Do coordinates of beams, together, move the same as speed k of a joint or body? What of M_kk they leave is then
-// round-off.
+// Is the motion of speed k, of a joint or body, a sum of elastic motions of beams? Then elimination
+// of the elastic coordinates leaves only round-off of M_kk.
 static bool is_elastic_motion(struct ct_partition *s, size_t k)
 {
     const size_t n = s->m->nu;
@@ -266,9 +277,10 @@ static bool is_elastic_motion(struct ct_partition *s, size_t k)
     return left <= rounding_pivot * M[k + n * k];
 }
 
-// ---- what elimination leaves of a motion that moves no mass ----------------------------------------------------
+// ---- what elimination leaves of a motion that moves no mass ----------------------------------------
 
-// motion (nu, in/out) += |x| times that of independent speed j and those that depend on it, without signs.
+// motion (nu, in/out) += |x| times the absolute values of column j of [B; 1]: independent speed j
+// with the dependent speeds that follow from it.
 static void add_motion(const struct ct_partition *s, int j, double x, double *motion)
 {
     motion[s->independent[j]] += fabs(x);
@@ -276,8 +288,8 @@ static void add_motion(const struct ct_partition *s, int j, double x, double *mo
         motion[s->dependent[k]] += fabs(s->B[k + s->rank * j] * x);
 }
 
-// The motion (nu, out) with one unit of independent speed i whose inertia is pivot i of the factor L of B' M B (f x f), speeds
-// behind i at rest: L' x = L_ii e_i. x (f, out)
+// The motion (nu, out) whose inertia is pivot i of B' M B = L L' (f x f). Independent speed i is 1,
+// later ones are at rest, and earlier ones follow from L' x = L_ii e_i. x (f, out)
 static void find_pivot_motion(const struct ct_partition *s, int f, int i, double *x,
                               double *motion)
 {
@@ -292,7 +304,7 @@ static void find_pivot_motion(const struct ct_partition *s, int f, int i, double
         add_motion(s, j, x[j], motion);
 }
 
-// |z|' |M| |z| over all speeds, or without coordinates of beams
+// |z|' |M| |z|, over all speeds or without the elastic coordinates of beams.
 static double gross_inertia(const struct ct_partition *s, const double *z, bool with_beams)
 {
     const size_t n = s->m->nu;
@@ -305,8 +317,8 @@ static double gross_inertia(const struct ct_partition *s, const double *z, bool 
     return sum;
 }
 
-// In the motion z (nu), none of which moves mass: the rotation of a section without inertia that turns most; k where there is none
-// or k is one.
+// The speed that a message names for a motion z (nu) without inertia: among the rotations of beam
+// sections without inertia the one that turns most. k if there is none, or if k is one itself.
 static int turned_speed(const struct ct_partition *s, const double *z, int k)
 {
     const size_t n = s->m->nu;
@@ -322,7 +334,8 @@ static int turned_speed(const struct ct_partition *s, const double *z, int k)
     return named;
 }
 
-// The speed of the motion z (nu) to be named: k, or the one of a beam that lacks inertia which moves most of it.
+// The speed that a message names for the motion z (nu): k, or the speed of a beam without rotary
+// inertia that has the largest kinetic energy in it.
 static int lacking_speed(const struct ct_partition *s, const double *z, int k)
 {
     const size_t n = s->m->nu;
@@ -339,8 +352,9 @@ static int lacking_speed(const struct ct_partition *s, const double *z, int k)
     return named != k ? named : turned_speed(s, z, k);
 }
 
-// The largest inertia about an axis of the free rotation that speed k belongs to; 0 if it belongs to none. Axes are known to
-// round-off, so that a rod without inertia about its own has what these leave of the others.
+// The largest inertia about an axis of the free rotation that speed k belongs to; 0 if it belongs
+// to none. The directions of axes have round-off: a thin rod has about its own axis, instead of 0,
+// a round-off of its inertia about the others.
 static double turned_inertia(const struct ct_partition *s, size_t k)
 {
     const size_t n = s->m->nu;
@@ -352,8 +366,9 @@ static double turned_inertia(const struct ct_partition *s, size_t k)
     return most;
 }
 
-// The first independent speed whose pivot of B' M B is round-off of the inertias that its motion cancels; -1: none. s->S: the
-// factor, up to a pivot that is not positive. Of beams: theirs must be half of these inertias at least.
+// The first independent speed whose pivot of B' M B is only round-off of the terms that cancel in
+// it; -1: none. s->S is the Cholesky factor, up to the first pivot that is not positive. of_beams:
+// only motions count in which elastic coordinates have at least half of these terms.
 static int rounded_pivot(struct ct_partition *s, int f, bool of_beams)
 {
     double *const x = s->work, *const motion = x + f;
@@ -398,9 +413,11 @@ static void reverse(int *list, int n)
     }
 }
 
-// The first speed whose pivot of M is round-off; -1: none. Articulated bodies may keep digits that M loses: there it
-// counts where coordinates of beams move the same. Speeds are numbered outwards: from the last to the first next to
-// nothing fills, which tells whether there is such a pivot. Only then the slower order of speeds tells which to name.
+// The first speed whose pivot of M is round-off; -1: none. The articulated-body method may keep
+// digits that M loses: with it a pivot counts only where an elastic motion is the same. Speeds are
+// numbered from the base outwards, so elimination from the last to the first has next to no fill.
+// It tells whether there is such a pivot. Only then elimination in the order of speeds, which is
+// slower, tells which speed a message names.
 static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
 {
     const size_t n = s->m->nu;
@@ -434,13 +451,16 @@ static const struct ct_body *pointed_beam(const struct ct_partition *s, size_t k
     return body && body->beam->integration == CT_BEAM_ONE_POINT ? body : NULL;
 }
 
-// What one point of an element leaves no mass may have a little with `modes`: such motions are much faster than all others. Once.
+// Warn once of a motion with very little inertia. Mass at one point of an element gives some
+// motions of the element none; in coordinates of `modes` they may have a little, and are then much
+// faster than all others.
 static void warn_of_points(struct ct_partition *s)
 {
     const size_t n = s->m->nu;
     const struct ct_body *found = NULL;
-    double part
-        = 1e-6; // of the coordinate's own inertia: a thousand times as fast as that would let it be
+    // The part of the coordinate's own inertia that is left while the others are free to follow.
+    // Chosen: at 1e-6 the motion is a thousand times, the root, as fast as with all of it.
+    double part = 1e-6;
     for (size_t k = 0; k < n; k++)
         found = found ? found : pointed_beam(s, k);
     if (!found || s->switches != 1 || !s->m->e->has_dynamics)
@@ -466,7 +486,8 @@ static void warn_of_points(struct ct_partition *s)
                    found->instance.name);
 }
 
-// The pivots of a solution in closed form must be positive. Behind one that is not, others are no numbers.
+// The pivots of a solution in closed form must be positive. After one that is not, the next ones
+// may be NaN.
 static bool has_inertia(struct ct_partition *s)
 {
     const size_t n = s->m->nu;
@@ -485,7 +506,8 @@ static bool has_inertia(struct ct_partition *s)
     return rounded < 0 || massless(s, elastic_beside(s, (size_t)rounded));
 }
 
-// Time in which a coordinate has moved by `way` along the motion of now, the first one; 0 at rest.
+// The time in which the first coordinate has moved by `way`, with speeds and accelerations as they
+// are at the evaluator's input; 0 at rest.
 static double time_ahead(const struct ct_partition *s, double way)
 {
     const size_t n = s->m->e->nmotion;
@@ -494,11 +516,12 @@ static double time_ahead(const struct ct_partition *s, double way)
     return u > 0 || a > 0 ? 2 * way / (u + sqrt(u * u + 2 * way * a)) : 0;
 }
 
-// Rows and columns chosen by what they are ahead on the motion, with u' as found last; the evaluator's input stays.
+// Choose rows and columns by their coefficients a little later on the motion, extrapolated with the
+// accelerations found last. The evaluator's input is unchanged at the end.
 static void choose_there(struct ct_partition *s)
 {
-    const double way
-        = 0.3; // [rad or m]: far enough to tell them apart, near enough to be known
+    // Chosen: far enough for the choices to differ, near enough for the extrapolation to hold.
+    const double way = 0.3; // [rad or m]
     struct ct_evaluator *m = s->m;
     double *q = m->input + m->at_q;
     const double *u = m->input + m->at_u, h = time_ahead(s, way);
@@ -524,10 +547,12 @@ static bool choose_here(struct ct_partition *s)
     return ct_partition_factor(s);
 }
 
-// In a symmetric position, where many motions begin, several choices are equally good, and only further on some of them
-// fail. Where the choice ahead is nearly as good here it is taken: another one costs more than many steps.
+// Many motions begin in a symmetric configuration, where several choices are equally good and some
+// fail soon after. The choice that is best a little later is taken if it is nearly as good here: it
+// spares a second choice, which costs more than many steps.
 static bool choose_ahead(struct ct_partition *s)
 {
+    // Chosen: conditioning here against a choice that lasts.
     const double nearly = 0.5;
     if (!choose_here(s) || ct_partition_is_large(s) || s->rank == (int)s->m->nu
         || s->m->e->solution)

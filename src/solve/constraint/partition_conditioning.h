@@ -1,7 +1,9 @@
-// Conditioning of a coordinate partitioning, when it is good enough: what runs alone
-// (partition_internal.h) and runs side by side (batch.c) judge alike.
+// Tests of the conditioning of a coordinate partitioning: is the choice of rows and columns still
+// good, is a projection accurate enough, are fixed pivots still sound? Single runs
+// (partition_internal.h) and batches (batch.c) share them.
 //
-//     kappa   largest |J_d^-1 J_i|       sigma   smallest pivot of J_d against its largest: falls when kept rows depend
+//     kappa   largest |J_d^-1 J_i|
+//     sigma   smallest pivot of J_d over the largest; it falls when kept rows become dependent
 #ifndef CT_SOLVE_CONSTRAINT_PARTITION_CONDITIONING_H
 #define CT_SOLVE_CONSTRAINT_PARTITION_CONDITIONING_H
 
@@ -10,38 +12,52 @@
 #include <float.h>
 #include <math.h>
 
-// Choose anew when the dependent part has become this much worse than when it was chosen (section
-// 6.3, item 5).
+// Rows and columns are chosen anew when kappa has grown by this factor since the last choice, or
+// sigma has fallen by it, and when kappa is larger than ct_kappa_largest (section 6.3, item 5).
+// Chosen: one digit, or three in all, against the cost of a choice, which makes a solver.
 static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;
-// Where rows are redundant others can do for those that are kept, so they are exchanged before they
-// become nearly dependent: beside that stages, which lie off the rows that are left out, see
-// another field.
+// The same for sigma if there are redundant rows: other rows can replace those that are kept, and
+// do so before these are nearly dependent. Stages of a step do not meet the rows that are left out
+// exactly; with nearly dependent kept rows their accelerations are wrong.
+// Chosen: the accuracy of stages against the cost of choices.
 static const double ct_redundant_degradation = 2.5;
-// Beside a singular configuration all choices are poor, this one may stay so behind it: there
-// another one is due with each such change of sigma.
+// Near a singular configuration every choice is poor, and one that was made there may still be poor
+// after it. There another choice is made whenever sigma has changed by this factor.
+// Chosen: a good choice soon against the cost of choices.
 static const double ct_poor_change = 1.25;
-// Projections stop here: a few round-off errors of coordinates of order one.
+// Projections stop at this residual [rad, m]. Derived: 450 units of round-off, which is what sums
+// of some hundred terms of order one may leave.
 static const double ct_position_tolerance = 1e-13;
-// v is linear in u: one correction is enough but for its own round-off, which counts from here on
-// [rad/s, m/s].
+// The residual of speeds is linear in the speeds: one correction is enough but for its own
+// round-off. Above this correction [rad/s, m/s] a second one is made.
+// Derived: a correction has an error of about kappa eps <= 1e3 eps of itself; with 1e-4 that is
+// 2e-17, less than a round-off of speeds of order one.
 static const double ct_small_change = 1e-4;
-// Pivots smaller than this against the largest enlarge what is left over noticeably.
+// From this sigma on the division by small pivots is taken into account.
+// Chosen: a factor of two is not.
 static const double ct_small_pivot = 0.5;
+// Limit: Newton iterations of a projection; beyond it the step is repeated with half its length.
 enum { CT_MOST_NEWTON = 25 };
-// A form is used while its strength has changed by less than such a factor since sigma, which tells
-// how near a singular configuration is, was found by dense matrices.
+// Only dense matrices give sigma, which tells how near a singular configuration is. A solver with a
+// fixed order of pivots is used while its strength (solver.h) has changed by less than this factor
+// since sigma was computed last.
+// Chosen: a recent sigma against the time of dense factors.
 static const double ct_most_change = 1.5;
-// Where strength and sigma have fallen alike, up to so much, strength stands for sigma for longer.
+// If strength and sigma have changed by the same factor, to ct_alike, sigma is extrapolated by the
+// strength, up to a change by ct_most_change_alike. Chosen: as above.
 static const double ct_alike = 1.02, ct_most_change_alike = 4;
-// Pivots count as those of before while their strength is within this factor of what it was.
+// The residual check of a solver is left out while its strength is within this factor of that at
+// the last check. Chosen: the time of checks against pivots that become bad.
 static const double ct_same_strength = 1.25;
-// And while projections move coordinates by no more, for what they close, than so many times as
-// much as at the last check: kappa can rise from 1 to 50 within the eight steps between two checks,
-// as J_d comes to where it is singular, while no pivot of the form does.
+// It is also left out only while the correction of coordinates per residual, in a projection, is at
+// most so many times that at the last check. Near a singular J_d kappa can rise from 1 to 50 within
+// the eight steps between two checks, while no pivot of the solver changes as much. Chosen: as
+// above.
 static const double ct_correction_growth = 3;
-// What may be left of the equations against their terms: beyond the first a refinement is made,
-// beyond the second the form is not used.
+// Residual of the equations relative to their largest terms. Above the first value the solution is
+// refined; above the second one the solver is not used.
+// Chosen: digits of accelerations against the time of a refinement.
 static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
 
 static inline bool ct_is_within(double ratio, double factor)
@@ -49,7 +65,7 @@ static inline bool ct_is_within(double ratio, double factor)
     return ratio < factor && ratio > 1 / factor;
 }
 
-/// Is another choice of rows or columns due? is_redundant: there are rows that are not kept.
+/// Should rows and columns be chosen anew? is_redundant: there are rows that are not kept.
 static inline bool ct_partition_is_degraded(double kappa, double kappa_chosen, double sigma,
                                             double sigma_chosen, double sigma_best,
                                             bool is_redundant)
@@ -61,40 +77,43 @@ static inline bool ct_partition_is_degraded(double kappa, double kappa_chosen, d
         || (is_poor && !ct_is_within(sigma / sigma_chosen, ct_poor_change));
 }
 
-/// What is near enough in a projection: a few round-off errors, divided twice by the smallest pivot
-/// near a singular configuration. Round-off keeps larger mechanisms from it: stop when nothing is
-/// gained any more.
+/// Is the residual `size` of a projection small enough? The tolerance is a few hundred units of
+/// round-off, times sigma^2 near a singular configuration, where errors are divided by sigma twice.
+/// Round-off of larger mechanisms may be more: the iteration also ends when it no longer converges.
 static inline bool ct_is_projected(double sigma, double size, double before)
 {
     const double wanted = sigma < ct_small_pivot ? ct_position_tolerance * sigma * sigma
                                                  : ct_position_tolerance;
+    // Derived: Newton's method squares the residual; below 1e-10 only round-off makes it fall by
+    // less than four.
     return size <= wanted || (size < 1e-10 && size > before / 4);
 }
 
-/// After corrections (6.3b) of positions and speeds, dq and du the sums of their sizes, u the
-/// largest speed: is what they leave, terms of second order, below a round-off of what rows are
-/// sums of? Derivatives of rows of joints along motions of bodies are bounded by the same lengths
-/// in all orders; what other rows bend along the motion is a part of du. Beside a singular
-/// configuration what is left is divided by sigma twice.
+/// After the corrections (6.3b) of positions and speeds: are the terms of second order that they
+/// leave smaller than the round-off of the rows? dq, du: the sums of the sizes of the corrections;
+/// u: the largest speed. All derivatives of joint constraints along motions of bodies are bounded
+/// by the same lengths; the curvature of other rows along the motion is contained in du. Near a
+/// singular configuration what is left is divided by sigma twice.
 static inline bool ct_is_remainder_below_roundoff(double sigma, double dq, double du, double u)
 {
     const double least = DBL_EPSILON * (sigma < ct_small_pivot ? sigma * sigma : 1);
     return dq * dq <= least && dq * du <= least * (u > 1 ? u : 1);
 }
 
-/// Newton's iteration number i (from 0) leads nowhere.
+/// Does Newton's iteration number i (from 0) diverge?
 static inline bool ct_is_diverging(int i, double size, double before)
 {
+    // Chosen: growth that large steps may have before they converge
     return i == CT_MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
 }
 
-/// Strength of a form, and sigma beside it where that was last found by matrices.
+/// The strength of a solver now, and strength and sigma where dense matrices gave sigma last.
 struct ct_strength {
     double now, at_sigma, sigma_found;
-    bool is_alike; // strength and sigma have changed alike
+    bool is_alike; // strength and sigma have changed by the same factor
 };
 
-/// The form is sound while its strength is between the two.
+/// The solver is sound while its strength is between low and high (out).
 static inline void ct_strength_range(const struct ct_strength *s, double *low, double *high)
 {
     const double most = s->is_alike ? ct_most_change_alike : ct_most_change;
@@ -103,7 +122,7 @@ static inline void ct_strength_range(const struct ct_strength *s, double *low, d
     *high = s->at_sigma * most;
 }
 
-/// sigma has been found by matrices where the form has this strength.
+/// Note that dense matrices have given sigma at the present strength.
 static inline void ct_strength_compare(struct ct_strength *s, double sigma)
 {
     const double change = s->now / s->at_sigma;
@@ -113,7 +132,7 @@ static inline void ct_strength_compare(struct ct_strength *s, double sigma)
     s->sigma_found = sigma;
 }
 
-/// sigma as the strength shows it.
+/// sigma extrapolated by the strength.
 static inline double ct_strength_sigma(const struct ct_strength *s)
 {
     return s->sigma_found * s->now / s->at_sigma;

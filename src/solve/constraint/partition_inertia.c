@@ -1,9 +1,9 @@
-// See partition_internal.h: what inertia is left to some speeds where others are free to follow.
+// Inertia that is left to some speeds while others are free to follow; see partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include <math.h>
 
-// The independent speeds (f, out: their places), those that follow first.
+// Order of elimination (f, out) of the independent speeds: those that follow come first.
 static void order(const struct ct_partition *s, const bool *follows, int f, int *place)
 {
     int n = 0;

@@ -1,4 +1,4 @@
-// Rank of J: how near it is to losing it; see partition_internal.h.
+// How near J is to losing rank; see partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/dense.h"
@@ -21,7 +21,7 @@ static bool find_strength(struct ct_partition *s)
     return ct_partition_is_sound(s);
 }
 
-// The largest lever [m] of a row; 0: it has none.
+// The largest lever [m] of a row of lengths, its coefficient of a rotation; 0: it has none.
 static double lever_of(const struct ct_partition *s, size_t row)
 {
     double lever = 0;
@@ -31,8 +31,8 @@ static double lever_of(const struct ct_partition *s, size_t row)
     return lever;
 }
 
-// The same of all rows, of those of one joint the largest: in line at the start one of them has
-// none.
+// Levers of all rows (nrow, out); all rows of a joint get the largest of them. A row may have no
+// lever in a configuration where points lie in line. Returns the largest of all.
 static double find_levers(const struct ct_partition *s, double *lever)
 {
     const struct ct_row *row = s->m->e->row;
@@ -51,8 +51,12 @@ static double find_levers(const struct ct_partition *s, double *lever)
 
 void ct_partition_find_units(struct ct_partition *s)
 {
-    const double alike = 4; // rows are measured by one unit where their levers differ by less
-    const double no_link = 1e-4; // of the largest lever: points that coincide at the start
+    // One unit serves all rows while their levers differ by less than this factor.
+    // Chosen: rows of one size against small and large loops in one mechanism.
+    const double alike = 4;
+    // Part of the largest lever below which a row has none, as its points coincide at the start.
+    // Chosen: coincidence to the digits of data against short links.
+    const double no_link = 1e-4;
     const double most = find_levers(s, s->unit);
     double largest = 0, least = INFINITY;
     for (size_t i = 0; i < s->m->nrow; i++) {
@@ -64,7 +68,7 @@ void ct_partition_find_units(struct ct_partition *s)
     s->has_units = largest > alike * least;
 }
 
-// A (nrow x nrow, out) = J J', its lower triangle, rows measured by their units.
+// A (nrow x nrow, out) = the lower triangle of J J', with rows of J divided by their units.
 static void square(const struct ct_partition *s, double *A)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
@@ -79,8 +83,9 @@ static void square(const struct ct_partition *s, double *A)
             A[i + m * j] /= s->unit[i] * s->unit[j];
 }
 
-// The squares of the first `rank` singular values of J, ascending; NULL if they are not found.
-// Eigenvalues of J J' cost a third of a decomposition; half the digits are enough.
+// The squares of the largest `rank` singular values of J, ascending; NULL if the iteration fails.
+// They are eigenvalues of J J', which cost a third of a singular value decomposition. They have
+// half the digits, which is enough.
 static const double *squared_singular_values(struct ct_partition *s)
 {
     const int m = (int)s->m->nrow;
@@ -111,7 +116,7 @@ bool ct_partition_pivot_is_between(struct ct_partition *s, double low, double hi
         && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
 }
 
-// Of J_d, each measured by the unit of its row.
+// The smallest pivot of J_d, each divided by the unit of its row.
 static double smallest_pivot(struct ct_partition *s)
 {
     const int r = s->rank;
@@ -130,7 +135,7 @@ double ct_partition_pivot(struct ct_partition *s)
 {
     if (ct_partition_has_redundant_rows(s))
         return smallest_singular_value(s);
-    // the place need not be one of the motion: what is known of the motion stays
+    // the configuration need not be on the motion: sigma, kappa and strength of the motion are kept
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_strength = find_strength(s), is_known = is_strength || ct_partition_factor(s);
     const double least
@@ -152,7 +157,8 @@ double ct_partition_retained_pivot(struct ct_partition *s)
     return least;
 }
 
-// log of the product of the first `rank` singular values: kept rows may lose more rank than all do.
+// Logarithm of the product of the largest `rank` singular values of J. It is used with redundant
+// rows, of which the kept ones may lose more rank than all rows together.
 static double log_volume(struct ct_partition *s)
 {
     const double *square = squared_singular_values(s);
@@ -168,7 +174,7 @@ bool ct_partition_dependence(struct ct_partition *s, double *x, double *log_det)
     const bool is_found = !ct_partition_is_large(s) && ct_partition_factor_only(s);
     *log_det = 0;
     for (int i = 0; i < r && is_found; i++) {
-        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // in no simple relation
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // arbitrary, in no simple ratios
         *log_det += log(fabs(s->Jd[i + r * i]));
     }
     if (is_found) {

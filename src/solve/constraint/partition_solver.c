@@ -1,14 +1,16 @@
-// See partition_internal.h: closed forms, which to use, and whether their pivots are still in a
-// good order.
+// Solvers with a fixed order of pivots (solver.h) for a coordinate partitioning: which one is used,
+// and whether its order of pivots is still good. See partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-// So many weak checks in a row ask for another order.
+// After so many failed checks in a row a new order of pivots is sought.
+// Chosen: single failures against evaluations by dense matrices meanwhile.
 enum { MOST_WEAK = 3 };
-// As long as the strength of the pivots is that of when they left such a part of what is allowed,
-// or less, they are checked after every eighth projection.
+// If the residual was at most this part of what is allowed, the next UNCHECKED projections are not
+// checked as long as the strength of the pivots stays the same.
+// Chosen: the time of checks against pivots that become bad.
 static const double well_below = 0.1;
 enum { UNCHECKED = 7 };
 
@@ -18,8 +20,8 @@ static struct ct_partition_sets partition(const struct ct_partition *s)
                                       s->m->nu - (size_t)s->rank};
 }
 
-// Operations of embedding by matrices, (6.2), for n speeds, r kept rows, f = n - r freedoms: LU of
-// J_d, its solutions, products M B and B' M B, Cholesky of the reduced mass matrix.
+// Operations of (6.2) by dense matrices, for n speeds, r kept rows and f = n - r freedoms: LU of
+// J_d, its solutions, the products M B and B' M B, Cholesky of the reduced mass matrix.
 double ct_partition_operations(const struct ct_partition *s)
 {
     const double n = (double)s->m->nu, r = s->rank, f = n - r;
@@ -29,7 +31,7 @@ double ct_partition_operations(const struct ct_partition *s)
     return lu + right + reduced + f * f * f / 3 + 2 * f * f + 2 * r * f;
 }
 
-// form[i] comes first, the others move behind it.
+// Move solver[i] to the front of the list.
 static void put_first(struct ct_partition *s, size_t i)
 {
     struct ct_solver *f = s->solver[i];
@@ -37,8 +39,9 @@ static void put_first(struct ct_partition *s, size_t i)
     s->solver[0] = f;
 }
 
-// In the place of form[0], if that is for the rows and columns of now; the order of pivots is
-// sought at the evaluator's input.
+// Make a solver for the present rows and columns, in place of solver[0] if that is for the same
+// ones, else of the last one if the list is full. Its order of pivots is sought at the evaluator's
+// input.
 static void make_solver(struct ct_partition *s)
 {
     const struct ct_partition_sets p = partition(s);
@@ -64,8 +67,9 @@ static void make_solver(struct ct_partition *s)
     }
 }
 
-// Projections to wait for with weak pivots, or without a form, until one is made: more and more, so
-// that a motion that changes its rows and columns all the time does not spend its time on forms.
+// Projections to wait for with weak pivots, or without a solver, until one is made. The number
+// doubles with every CT_MOST_SOLVERS solvers: a motion that often changes its rows and columns
+// would otherwise spend its time on making solvers.
 static long checks_before_retry(const struct ct_partition *s)
 {
     const long doublings = s->nmade / CT_MOST_SOLVERS;
@@ -130,8 +134,9 @@ void ct_partition_update_sigma(struct ct_partition *s)
         s->sigma = ct_strength_sigma(&s->strength);
 }
 
-// Inertias of a form tell what they are of those elsewhere, not what has cancelled in them: before
-// less is left of any than may be, matrices tell.
+// A solver compares each inertia with the largest that it has had, and does not know which terms
+// have cancelled in it. Dense matrices do, and take over this factor before the limit is reached.
+// Chosen: the time of dense matrices against cancellation that is missed.
 static const double wary = 10;
 
 static bool has_one_freedom(const struct ct_partition *s)
@@ -139,7 +144,7 @@ static bool has_one_freedom(const struct ct_partition *s)
     return s->least_cancellation > 0 && (size_t)s->rank + 1 == s->m->nu;
 }
 
-// u' by the form of now; false if its pivots are not sound here.
+// u' by the present solver; false if its pivots are not sound here.
 static bool use_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];
@@ -177,8 +182,8 @@ enum ct_eval ct_partition_solve(struct ct_partition *s)
     return e;
 }
 
-// After a projection, at the evaluator's input: are the pivots still in a good order? Beside a
-// singular configuration, where answers grow whatever is chosen, choices had better stay.
+// After a projection, at the evaluator's input: is the order of pivots still good? Near a singular
+// configuration corrections grow with any choice, so their growth asks for no check there.
 static void check_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];
@@ -221,7 +226,8 @@ bool ct_partition_solver_multipliers(struct ct_partition *s)
         || !ct_partition_is_sound(s))
         return false;
     ct_solver_check(f, s->m);
-    memcpy(s->lam, f->lam, s->m->nrow * sizeof *s->lam); // all rows are kept, in their order
+    memcpy(s->lam, f->lam,
+           s->m->nrow * sizeof *s->lam); // no row is redundant, and rows are in ascending order
     return f->refined_remainder <= ct_left_most;
 }
 

@@ -1,4 +1,6 @@
-// Constraint projection of positions and speeds; see partition_internal.h.
+// Constraint projection: Newton's method moves coordinates and speeds onto the constraints Phi = 0
+// and v = 0. It changes dependent coordinates only, or takes the minimum-norm step where J_d is
+// nearly singular. See partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "integrate/stepper.h"
@@ -7,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-// d (nu) = -J+ r: minimum-norm step, all rows.
+// d (nu) = -J^+ r: the minimum-norm step for all rows.
 static void least_norm_step(struct ct_partition *s, const double *r, double *d)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
@@ -19,7 +21,7 @@ static void least_norm_step(struct ct_partition *s, const double *r, double *d)
     memcpy(d, s->d, (size_t)n * sizeof *d);
 }
 
-// d (nu) = correction of the dependent part alone, J_d as factored last.
+// d (nu) = the correction of dependent coordinates alone, J_d as factored last.
 static void partitioned_step(struct ct_partition *s, const double *r, double *d)
 {
     const int k = s->rank;
@@ -31,7 +33,7 @@ static void partitioned_step(struct ct_partition *s, const double *r, double *d)
         d[s->dependent[i]] = s->c[i];
 }
 
-// False if J_d is too close to singular for partitioned steps.
+// Factor J_d; false if it is too close to singular for partitioned steps.
 static bool is_partitioned(struct ct_partition *s)
 {
     return ct_partition_factor(s) && s->kappa <= ct_kappa_largest;
@@ -45,7 +47,7 @@ static void add_change(const struct ct_partition *s, double *r, const double *d)
             r[i] += s->m->J[i + s->m->nrow * j] * d[j];
 }
 
-// Is another choice of rows or columns due?
+// Should rows and columns be chosen anew?
 static bool is_degraded(const struct ct_partition *s)
 {
     if (!s->rank)
@@ -54,9 +56,9 @@ static bool is_degraded(const struct ct_partition *s)
                                     s->sigma_best, s->rank < (int)s->m->nrow);
 }
 
-// With a single row sigma is 1 everywhere. On a crossing what is left is divided twice by a pivot
-// that is smaller than where it began, and lengths may be small: nothing is near enough but
-// round-off.
+// The sigma that the tolerance of a projection is scaled by. sigma is 1 everywhere with a single
+// row; the rank monitor's nearness is not. While a singular configuration is crossed the residual
+// is divided twice by a pivot that is still falling: 0, so that the iteration goes on to round-off.
 static double nearness(const struct ct_partition *s)
 {
     return s->is_crossing ? 0 : ct_smaller(s->sigma, s->nearness);
@@ -79,7 +81,7 @@ static enum ct_eval project_by_matrices(struct ct_partition *s, double t, double
         ct_evaluator_retract(m, y, s->r);
     }
     const bool is_regular = is_partitioned(s);
-    for (int i = 0; i < 2; i++) { // v is linear in u; the second step takes off round-off
+    for (int i = 0; i < 2; i++) { // v is linear in u; the second step removes round-off
         (is_regular ? partitioned_step : least_norm_step)(s, m->v, s->r);
         for (size_t k = 0; k < m->nu; k++)
             y[m->nq + k] += s->r[k];
@@ -95,7 +97,7 @@ bool ct_partition_close_loops(struct ct_partition *s, double t, double *y)
     if (ct_partition_is_large(s))
         return false;
     ct_evaluator_normalise(s->m, y);
-    s->nearness = 1; // that of steps
+    s->nearness = 1; // the monitor's value is that of the last step, not of this state
     const bool is_closed = project_by_matrices(s, t, y) == CT_EVAL_OK;
     s->nearness = near;
     s->kappa = kappa;
@@ -122,9 +124,9 @@ static double sum_of_sizes(const double *d, size_t n)
     return sum;
 }
 
-// Are both corrections at once as good as one after the other, with an evaluation between them? Not
-// of redundant rows, whose rest is to be seen, nor near a singular configuration, where round-off
-// errors of places are felt by speeds.
+// Is one evaluation enough, with corrections of coordinates and speeds made together? Not with
+// redundant rows, whose residual must be evaluated, nor near a singular configuration, where speeds
+// depend strongly on the round-off of coordinates.
 static bool is_one_enough(const struct ct_partition *s, const double *y)
 {
     const struct ct_evaluator *m = s->m;
@@ -133,7 +135,7 @@ static bool is_one_enough(const struct ct_partition *s, const double *y)
         return false;
     const double near = nearness(s), dq = sum_of_sizes(f->dq, m->nu);
     return ct_is_remainder_below_roundoff(near, dq, 0,
-                                          0) // most often it is the places that are too far
+                                          0) // the cheap test first: coordinates alone
         && ct_is_remainder_below_roundoff(
                near, dq, sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
                ct_vector_max_norm(y + m->nq, m->nu));
@@ -144,7 +146,7 @@ static void add_speeds(const struct ct_partition *s, double *y, const double *du
     ct_vector_add(y + s->m->nq, 1, du, s->m->nu);
 }
 
-// Places and, where it is known what they are there, speeds.
+// Correct coordinates and, if their change along dq is known, speeds.
 static void correct_both(const struct ct_partition *s, double *y)
 {
     const struct ct_solver *f = s->solver[0];
@@ -155,8 +157,8 @@ static void correct_both(const struct ct_partition *s, double *y)
     add_speeds(s, y, f->shift);
 }
 
-// Places are closed: speeds, once more where the round-off of a correction counts. False if pivots
-// are not sound there.
+// Correct speeds, with coordinates already on the constraints; twice if the round-off of the first
+// correction matters. False if pivots are not sound.
 static bool correct_speeds(struct ct_partition *s, double t, double *y)
 {
     const double *du = s->solver[0]->du;
@@ -168,7 +170,7 @@ static bool correct_speeds(struct ct_partition *s, double t, double *y)
     return is_sound;
 }
 
-// The same by the form of now; *is_done is false where its pivots are not sound.
+// Projection by the present solver; *is_done is false if its pivots are not sound.
 static enum ct_eval project_by_solver(struct ct_partition *s, double t, double *y,
                                       bool *is_done)
 {
@@ -197,7 +199,7 @@ static enum ct_eval project_by_solver(struct ct_partition *s, double t, double *
     return CT_EVAL_OK;
 }
 
-// By the rows and columns of now.
+// Projection with the present rows and columns.
 static enum ct_eval project(struct ct_partition *s, double t, double *y)
 {
     bool is_done = false;
@@ -227,9 +229,9 @@ enum ct_eval ct_partition_project(struct ct_partition *s, double t, double *y)
     s->is_renewed = true;
     if (!is_degraded(s))
         return CT_EVAL_OK;
-    // what columns that have worn since the last projection were moved by is what was to be closed
-    // times kappa, or more
-    ct_evaluator_constraint(s->m); // forms leave J as it was
+    // With a degraded choice the correction was larger than the residual by kappa or more: choose
+    // anew, and project again from the state before.
+    ct_evaluator_constraint(s->m); // solvers do not update J
     ct_partition_choose(s);
     ct_evaluator_copy(y, s->before, ny);
     return project(s, t, y);
@@ -239,7 +241,7 @@ static void choose_if_degraded(struct ct_partition *s)
 {
     if (!s->rank || !is_degraded(s))
         return;
-    ct_evaluator_constraint(s->m); // forms leave J as it was
+    ct_evaluator_constraint(s->m); // solvers do not update J
     ct_partition_choose(s);
 }
 

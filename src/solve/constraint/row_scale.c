@@ -1,12 +1,13 @@
-// Natural sizes of constraint rows: what their coefficients are made of before they cancel.  (6.5a)
+// Natural sizes of constraint rows, by which rank is judged: the size of the terms that the
+// coefficients are sums of.  (6.5a)
 //
-// A coefficient of a row of lengths is  p . (axis x sum d),  the sum over vectors d on the way
-// between two frames; of a row of angles it is a product of unit vectors. Where a constraint is
-// redundant the sum cancels, down to the round-off or to the tolerance of the numbers that are
-// given. What is left is judged against
+// A coefficient of a row of lengths is  p . (axis x sum d),  with the sum over the vectors d along
+// the path between two frames. A coefficient of a row of angles is a product of unit vectors. If a
+// constraint is redundant, terms cancel down to round-off or to the accuracy of the given data. The
+// remainder is compared with
 //
-//     L_i = sum |d|   of rows of lengths [m],   1 of rows of angles and of rows without levers
-//     S_k = max L_i   over the rows that speed k slides in [m],   1 of turns
+//     L_i = sum |d|   for rows of lengths [m],   1 for rows of angles and rows without levers
+//     S_k = max L_i   over the rows of lengths of a translation k [m],   1 for rotations
 //     N_i = max(L_i, S_k)
 //
 // Entries J_ik S_k / N_i are at most of order 1 and have no unit.
@@ -56,7 +57,8 @@ void ct_evaluator_measure_rows(struct ct_evaluator *m)
     }
 }
 
-// The same of a large system by sparse elimination; -1: what is left of a row is too near `least` to be judged by that.
+// The same for a large system by sparse elimination. -1 if a remaining row is too near `least` for
+// this method to decide its rank.
 static int order_sparse(const struct ct_evaluator *m, const double *J, double least, int most,
                         int *row)
 {

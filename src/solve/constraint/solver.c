@@ -5,18 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A call of a solver for dense matrices costs about as much as so many operations of straight-line
-// code.
+// The overhead of the dense solver, in operations of straight-line code.
+// Chosen: about what it takes; only the choice of a solver depends on it.
 static const double call = 500;
-// Making programs takes a microsecond and half a kilobyte a node.
+// Limit: nodes of the expressions of a symbolic solver; with more another solver is used. A node
+// takes about a microsecond and half a kilobyte: two seconds and a gigabyte.
 static const double most_nodes = 2e6;
-// Where somebody wants them whatever they cost.
+// Limit: the same where the caller wants a symbolic solver whatever it costs.
 static const double most_asked_nodes = 8e6;
-// Checks and projections take up to so many times the nodes of the solution.
+// Nodes of all programs, those of checks and projections included, over those of the solution.
+// Chosen: about the largest ratio; a symbolic solver with more nodes is not made.
 static const double programs = 4;
-// Solving all equations as one system must promise so much to be tried.
+// The symbolic solver of [M J'; J 0] is made if its predicted cost is below this part of the
+// others'.
+// Chosen: the time to make it against the time that it saves.
 static const double worth = 0.9;
 
+// See solver.h. Chosen: three digits that are lost against the time of dense matrices.
 const double ct_solver_least_strength = 1e-3;
 
 static int ascending(const void *a, const void *b)
@@ -32,7 +37,7 @@ static int *sorted(struct ct_arena *a, const int *v, size_t n)
     return copy;
 }
 
-// Of both, the cheaper one; the other is destroyed.
+// The cheaper one of two solvers; the other one is destroyed. Either may be NULL.
 static struct ct_solver *cheaper(struct ct_evaluator *m, struct ct_solver *a,
                                  struct ct_solver *b)
 {
@@ -45,22 +50,24 @@ static struct ct_solver *cheaper(struct ct_evaluator *m, struct ct_solver *a,
 
 double ct_solver_code_size(double operations)
 {
-    const double bytes = 11; // lattices and nets: 10 to 11.6
+    // Bytes of machine code per operation. Derived: measured on lattices and nets, 10 to 11.6.
+    const double bytes = 11;
     return bytes * operations;
 }
 
-// Code is read once in an evaluation. The second of the caches, which it shares with data, keeps
-// all of a program up to `near` and next to nothing of one beyond `far`; a byte from behind it
-// takes as long as a third of an operation. Measured on lattices and nets of 110 to 2000 unknowns,
-// processors with 2 MiB of that cache: docs/performance.md.
+// Straight-line code is read once in each evaluation. The second-level cache, which code and data
+// share, holds programs up to `near` bytes fully and programs beyond `far` bytes hardly at all. A
+// byte that is not in it takes as long as `per_byte` operations.
 double ct_solver_straight_cost(double operations, double bytes)
 {
+    // Derived: measured on lattices and nets of 110 to 2000 unknowns, on processors with 2 MiB of
+    // that cache (docs/performance.md).
     const double near = 1 << 20, far = 3 << 20, per_byte = 0.33;
     const double missed = fmin(1, fmax(0, (bytes - near) / (far - near)));
     return operations + per_byte * missed * bytes;
 }
 
-// The most operations of straight-line code that cost no more.
+// The largest number of operations of straight-line code that cost no more than `cost`.
 static double longest(double cost)
 {
     double low = 0, high = cost; // low costs less, high as much or more
@@ -77,7 +84,7 @@ static double cost_of(const struct ct_solver *f)
     return f ? f->cost : INFINITY;
 }
 
-// Nodes that programs may take, where what they compete with costs so much.
+// The number of nodes that a symbolic solver may have to be cheaper than one of this cost.
 static double allowed(double cost)
 {
     return fmin(programs * longest(fmin(cost, most_nodes)), most_nodes);
@@ -92,7 +99,7 @@ const double *ct_solver_values(struct ct_arena *a, const struct ct_evaluator *m)
     return value;
 }
 
-// The cheapest but dense matrices; costs are filled.
+// The cheapest solver other than dense matrices; fills the costs c (dense is given).
 static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
                                  const struct ct_partition_sets *partition,
                                  struct ct_solver_costs *c)

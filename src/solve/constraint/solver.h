@@ -1,12 +1,13 @@
-// Solvers: ways to solve the linear equations of a closed system for one choice of rows and columns
-// without seeking pivots again.
+// Solvers of the linear equations of a system with loops, for one choice of independent rows and
+// dependent columns, with a fixed order of pivots.
 //
-//     unrolled   programs made by elimination on the expressions               (formulate/closed_form/elimination.h)
-//     unrolled as one system   the same of [M J'; J 0]                         (formulate/closed_form/kkt.h)
-//     sparse     [M J'; J 0] and J_d as sparse matrices, factored with the pivots of before
+//     symbolic       compiled elimination of (6.2)          (formulate/closed_form/elimination.h)
+//     symbolic KKT   the same of the matrix [M J'; J 0]     (formulate/closed_form/kkt.h)
+//     sparse         [M J'; J 0] and J_d as sparse matrices, factored in the order found at first
 //
-// The order of pivots is fixed, so it is watched: the strength of a form is that of its weakest
-// pivot against the others or the entries around it, and what is left of the equations is measured.
+// A fixed order of pivots can become bad as the mechanism moves. Two measures show it: the
+// strength, which is the smallest pivot relative to the entries of its row or to its size when the
+// order was chosen, and the residual of the equations.
 #ifndef CT_SOLVE_CONSTRAINT_SOLVER_H
 #define CT_SOLVE_CONSTRAINT_SOLVER_H
 
@@ -16,32 +17,29 @@
 struct ct_solver {
     const struct ct_solver_kind *kind;
     struct ct_arena *arena; // its own
-    int *row, *dependent;   // kept rows (rank), dependent columns, ascending: what it is for
+    int *row, *dependent;   // (rank) the kept rows and dependent columns it is for, ascending
     size_t rank;
-    double operations; // of one solution, M, Q, J and gam included
-    double cost; // the same weighed by what an operation takes, in those of straight-line code
+    double operations; // of one solution, evaluation of M, Q, J and gam included
+    double cost;       // its time, in operations of straight-line code in the nearest cache
+    double weakest; // smallest relative pivot at the last solve or close; strength is at most 1
+    double least_part; // an inertia of B' M B below this part of its largest so far has fallen
+    bool has_fallen;   // some inertia had at the last solve
     double
-        weakest; // of its pivots, at the last solution or close: what strength is, also above 1
-    double
-        least_part; // of the largest that an inertia of B' M B has been: below it `has_fallen`, at the last solution
-    bool has_fallen;
-    double volume; // their product, det J_d but for a factor; NAN: not found
+        volume; // product of the pivots: det J_d but for a constant factor; NAN: not computed
     // results of check
     const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
-    double remainder,
-        // residual against the terms of the equations, before and after refinement
-        refined_remainder;
-    double kappa; // largest entry of B; NAN: not found
-    // results of close
-    const double *phi, *v, *dq,
-        *du; // (nrow), (nrow); corrections of the dependent places (nu), else 0
-    const double *
-        shift; // to be added to du where dq leads, (6.3b); NULL: not found, as where rows are redundant
+    // residual relative to the terms of the equations, before and after refinement
+    double remainder, refined_remainder;
+    double kappa; // largest entry of B; NAN: not computed
+    // results of close: residuals (nrow each), corrections (nu each; 0 for independent ones)
+    const double *phi, *v, *dq, *du;
+    // added to du for the change of J along dq, (6.3b); NULL: not known, as with redundant rows
+    const double *shift;
 };
 
 struct ct_solver_kind {
     const char *name;
-    /// NULL if a pivot is missing, it takes too many nodes or a library is missing.
+    /// NULL if a pivot is zero, there are more than most_nodes nodes, or a library is missing.
     struct ct_solver *(*create)(struct ct_arena *a, struct ct_evaluator *m,
                                 const struct ct_partition_sets *p, double most_nodes);
     double (*solve)(struct ct_solver *f, struct ct_evaluator *m, double *a);
@@ -50,31 +48,32 @@ struct ct_solver_kind {
     void (*destroy)(struct ct_solver *f, struct ct_evaluator *m); // may be NULL
 };
 
-/// Smaller systems are never cheaper as sparse matrices: unknowns.
+/// Unknowns of [M J'; J 0] from which sparse matrices are tried.
+/// Chosen: the time of the analysis; smaller systems are not cheaper as sparse matrices.
 enum { CT_LEAST_SPARSE = 100 };
 extern const struct ct_solver_kind ct_solver_symbolic, ct_solver_symbolic_kkt, ct_solver_sparse;
 
-/// What solving is predicted to cost in each way, M, Q, J and gam included [operations of
-/// straight-line code]; NAN: it was not looked at, INFINITY: it is not possible, or `symbolic` was
-/// given up as longer than the others.
+/// Predicted cost of each solver, evaluation of M, Q, J and gam included [operations of
+/// straight-line code]. NAN: not considered; INFINITY: not possible, or `symbolic` was given up as
+/// longer than the others.
 struct ct_solver_costs {
     double symbolic, symbolic_kkt, sparse, dense;
 };
 
-/// The cheapest form of a partition by counts of operations, its order of pivots sought at the
-/// evaluator's input, after ct_evaluator_dynamics. NULL if the solve by dense matrices is cheaper:
-/// operations [multiplications or additions]. kind: of the form to make, whatever it costs; NULL:
-/// the cheapest. costs (out) may be NULL. Owned by a until destroyed.
+/// The solver of a partition with the lowest predicted cost. Its order of pivots is sought at the
+/// evaluator's input, after ct_evaluator_dynamics. NULL if dense matrices, which take `operations`
+/// multiplications and additions, are cheaper. kind: make this one, whatever it costs; NULL: the
+/// cheapest. costs (out) may be NULL. Owned by a until destroyed.
 struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
                                    const struct ct_partition_sets *p, double operations,
                                    const struct ct_solver_kind *kind,
                                    struct ct_solver_costs *costs);
-/// One of this kind if it costs no more than so much, or little more: it is given up while it is
-/// made.
+/// One of this kind if it costs no more than about `cost`; NULL if making it shows that it costs
+/// more.
 struct ct_solver *ct_solver_create_within(struct ct_arena *a, struct ct_evaluator *m,
                                           const struct ct_partition_sets *p,
                                           const struct ct_solver_kind *kind, double cost);
-/// One of this kind however long its programs are, up to some millions of nodes.
+/// One of this kind whatever it costs, up to some millions of nodes.
 struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_evaluator *m,
                                               const struct ct_partition_sets *p,
                                               const struct ct_solver_kind *kind);
@@ -89,23 +88,23 @@ void ct_solver_check(struct ct_solver *f, struct ct_evaluator *m);
 /// Fill the results of close at the evaluator's input. Returns the strength.
 double ct_solver_close(struct ct_solver *f, struct ct_evaluator *m);
 
-/// Below this strength a form is of no use: one in so many digits is lost.
+/// Below this strength a solver is not used: that many digits of the result may be lost.
 extern const double ct_solver_least_strength;
 
-/// The programs of an unrolled form.
+/// The programs of a symbolic solver.
 ///
 ///     solved    u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths; the
 ///               power if it depends on neither u' nor multipliers
 ///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
 ///     closing   Phi, v (nrow each), corrections dq, du (nu each), shift (nshift), pivots of J_d
 struct ct_solver_code {
-    const struct ct_listing *listing; // NULL: a form of another kind
+    const struct ct_listing *listing; // NULL: the solver is not symbolic
     size_t nfree, npivot;
     const double *scale;
     const struct ct_program *solved, *checked, *closing;
     size_t nB, nshift;
-    double M_size, J_size; // largest entries where the form was made
-    bool has_power;        // behind the pivots of `solved`
+    double M_size, J_size; // largest entries when the solver was made
+    bool has_power;        // the power follows the pivots of `solved`
 };
 struct ct_solver_code ct_solver_code(const struct ct_solver *f);
 
@@ -113,14 +112,14 @@ struct ct_solver_code ct_solver_code(const struct ct_solver *f);
 
 /// Fill row, dependent, rank.
 void ct_solver_set_partition(struct ct_solver *f, const struct ct_partition_sets *p);
-/// Values by symbol at the evaluator's input, for partitions; NULL where no beam is carried.
+/// Values of all symbols at the evaluator's input; NULL if the equations have no augmented beams.
 const double *ct_solver_values(struct ct_arena *a, const struct ct_evaluator *m);
-/// Operations of a program, one each.
+/// Operations of a program, each counted as one.
 double ct_solver_operations(const struct ct_program *p);
 /// Machine code of so many operations without loops [bytes].
 double ct_solver_code_size(double operations);
-/// What so many operations of straight-line code take, in operations whose code is in the nearest
-/// caches.
+/// The time of so many operations of straight-line code of this size [bytes], in operations whose
+/// code is in the nearest cache.
 double ct_solver_straight_cost(double operations, double bytes);
 
 #endif

@@ -1,4 +1,4 @@
-// Sparse solver: solutions of closed systems by sparse matrices; see solver.h.
+// Sparse solver: equations of systems with loops by sparse LU factors; see solver.h.
 //
 //     [ M  J' ] [  u'  ]   [  Q   ]
 //     [ J  0  ] [ -lam ] = [ -gam ]         J_d d = -Phi,  J_d d = -v
@@ -23,16 +23,17 @@ static struct sparse_solver *sparse_solver_of(struct ct_solver *f)
     return (struct sparse_solver *)f; // its first member
 }
 
-// What takes as long as so many operations of straight-line code: a multiplication or addition of
-// the factors, one of their entries in factoring and solving, an entry of the matrices in gathering
-// them and checking what is left. Fitted to planar and spatial loops, one and many, in coordinates
-// of joints and of bodies, with and without beams: all within a tenth.
+// Times of the sparse solver, in operations of straight-line code: of a multiplication or addition
+// in the factors, of an entry of the factors in factoring and solving, and of an entry of the
+// matrix in assembly and in the residual.
+// Derived: fitted to measured times of planar and spatial loops, one and many, in joint and in body
+// coordinates, with and without beams; all are met within a tenth.
 static const double per_operation = 0.7, per_factor = 18, per_value = 36;
 
 // ---- values -------------------------------------------------------------------------------------
 
-// Entries of M twice where they are off the diagonal, entries of kept rows of J twice, in the order
-// of the equations.
+// Entries of [M J'; J 0] in the order of the equations' entries; M is stored as one triangle.
+// Returns their number. row, column (out) may be NULL.
 static size_t fill_whole(const struct sparse_solver *f, const struct ct_evaluator *m, int *row,
                          int *column, double *value)
 {
@@ -70,7 +71,8 @@ static bool factor_Jd(struct sparse_solver *f, const double *J)
     return ct_sparse_factor(f->Jd, f->Jd_value);
 }
 
-// Against where the pivots were chosen: the entries around them have all sizes.
+// Relative to the smallest pivot when the order of pivots was chosen: entries of the rows have very
+// different sizes, so pivots are not compared with them.
 static double strength(struct sparse_solver *f)
 {
     return f->form.weakest = ct_sparse_pivot(f->Jd) / f->pivot;
@@ -78,13 +80,16 @@ static double strength(struct sparse_solver *f)
 
 // ---- evaluation ---------------------------------------------------------------------------------
 
-// Factors by the pivots of before, and if they have become bad by others.
+// Solve with the old order of pivots; if the result is inaccurate, with a new one. Returns the
+// error.
 static double solve_whole(struct sparse_solver *f, bool *is_refined)
 {
     for (int is_again = 0; is_again < 2; is_again++) {
         const bool ok = is_again ? ct_sparse_factor_repivot(f->whole, f->value)
                                  : ct_sparse_factor(f->whole, f->value);
         const double error = ok ? ct_sparse_solve(f->whole, f->x, f->b, is_refined) : INFINITY;
+        // Backward error from which pivots are sought anew.
+        // Chosen: digits against the time of a search.
         const double worn = 1e-12;
         if (error < worn || is_again)
             return error;
@@ -107,7 +112,7 @@ static double solve_into(struct sparse_solver *f, struct ct_evaluator *m, bool i
 static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
 {
     struct sparse_solver *f = sparse_solver_of(form);
-    const double most = 1e-11;
+    const double most = 1e-11; // Chosen: backward error from which dense matrices are used
     if (!(solve_into(f, m, false) < most) || !factor_Jd(f, m->Q + m->nu))
         return 0;
     for (size_t i = 0; i < m->nu; i++)
@@ -151,13 +156,13 @@ static double close(struct ct_solver *form, struct ct_evaluator *m)
 
 // ---- creation -----------------------------------------------------------------------------------
 
-// What a factor takes, and solving with it.
+// Cost of factoring and solving, in operations of straight-line code.
 static double cost_of(const struct ct_sparse *s)
 {
     return per_operation * ct_sparse_operations(s) + per_factor * ct_sparse_fill(s);
 }
 
-// In the order that one system of expressions would be eliminated in; NULL: there is none.
+// Analysis in the elimination order of the symbolic solver for [M J'; J 0]; NULL if there is none.
 static struct ct_sparse *analyse_along(struct sparse_solver *f, struct ct_evaluator *m,
                                        const struct ct_partition_sets *p, const int *row,
                                        const int *column, size_t nentry)
@@ -171,7 +176,8 @@ static struct ct_sparse *analyse_along(struct sparse_solver *f, struct ct_evalua
                                : NULL;
 }
 
-// By the library's order or the one of expressions, whichever is cheaper; factored.
+// Analysis by the library's order or by that of the symbolic solver, whichever is cheaper;
+// factored.
 static struct ct_sparse *analyse_whole(struct sparse_solver *f, struct ct_evaluator *m,
                                        const struct ct_partition_sets *p)
 {

@@ -1,8 +1,9 @@
-// Symbolic solver: solutions of closed systems as programs; see solver.h.
+// Symbolic solver: the equations of systems with loops are eliminated as expressions, which are
+// compiled to three programs; see solver.h.
 //
-//     solved    u', q'                                  at every evaluation
-//     checked   u', lam after a refinement, residuals   once a step
-//     closing   Phi, v and the corrections for them     in projections
+//     solved    u', q'                                   run at every evaluation
+//     checked   refined u' and lam, residuals            run in checks, at most once a step
+//     closing   Phi, v and the corrections for them      run in projections
 #include "codegen/native.h"
 #include "numeric/dense.h"
 #include "solve/constraint/solver.h"
@@ -25,7 +26,7 @@ static struct symbolic_solver *symbolic_solver_of(struct ct_solver *f)
     return (struct symbolic_solver *)f; // its first member
 }
 
-// ---- creation ---------------------------------------------------------------------------------------
+// ---- creation ----------------------------------------
 
 struct list {
     struct ct_arena *a;
@@ -39,7 +40,7 @@ static void push(struct list *l, const ct_ex *e, size_t n)
         CT_PUSH(l->a, l->e, l->n, l->cap, e[i]);
 }
 
-// Can it be computed beside the accelerations?
+// Can the power be computed together with the accelerations, as it depends on neither u' nor lam?
 static bool has_power(const struct ct_equations *e)
 {
     const unsigned later = 1u << CT_SYM_A | 1u << CT_SYM_LAM;
@@ -100,7 +101,7 @@ static void compile_closing(struct symbolic_solver *f, struct ct_evaluator *m,
     f->form.shift = c->nshift ? f->form.du + m->nu : NULL;
 }
 
-// ---- evaluation -----------------------------------------------------------------------------------------
+// ---- evaluation ----------------------------------------
 
 static double strength(struct symbolic_solver *f, const double *pivot)
 {
@@ -138,7 +139,8 @@ static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
     return strength(f, inertia + f->c->nfree);
 }
 
-// r (nu + rank) against the largest terms of its equations, those of the model's states left out. NaN counts as infinite.
+// The residual r (nu + rank) relative to the largest terms of the equations, without the equations
+// of the model's own states. NaN counts as infinite.
 static double relative(const struct symbolic_solver *f, const double *r, size_t nu,
                        const double *Q)
 {
@@ -178,7 +180,7 @@ static void destroy(struct ct_solver *form, struct ct_evaluator *m)
         ct_evaluator_remove_program(m, all[i]);
 }
 
-// Bytes of machine code; where there is none, what it would be without loops.
+// Bytes of machine code; if none was made, those that code without loops would have.
 static double code_size(const struct symbolic_solver *f)
 {
     return f->solved.native ? (double)ct_native_code_size(f->solved.native)

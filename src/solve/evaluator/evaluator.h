@@ -1,9 +1,11 @@
-// The evaluator: the equations of motion as numbers, programs, their inputs, and workspace for one run.
+// The evaluator computes numbers from the symbolic equations of motion: compiled programs, their
+// common input vector, and workspace for one run.
 //
-//     input   t | parameters | q | u | u' | lam | modes | memories | work
+//     input   t | parameters | q | u | u' | lam | sides of switches | memories | work
 //
-// What always holds: an evaluator belongs to one run; the equations it was made from are constant. Evaluation
-// allocates nothing. M is kept full (both triangles), J by rows (nrow x nu), column-major.
+// What always holds: an evaluator belongs to one run; the equations it was made from are constant.
+// Evaluation allocates nothing. M is kept full (both triangles), J by rows (nrow x nu),
+// column-major.
 #ifndef CT_SOLVE_EVALUATOR_EVALUATOR_H
 #define CT_SOLVE_EVALUATOR_EVALUATOR_H
 
@@ -13,24 +15,26 @@
 #include "formulate/equations.h"
 #include "numeric/sparse_pivots.h"
 
-/// Which form of the programs is run. All give the same bits, but for the accelerations in closed form of larger systems:
-/// native code fuses their products and sums, which rounds less often.
+/// Which form of the programs is run. All give the same bits, but for the accelerations in closed
+/// form of larger systems: native code fuses their products and sums, which rounds less often.
 enum ct_backend {
     CT_BACKEND_BEST, // native code where it is available
     CT_BACKEND_TAPE,
     CT_BACKEND_NATIVE,
 };
 
-/// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms, of places known to 1e-13, is
-/// below 1e-12: a row with less than the first left is dependent.
+/// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms,
+/// of places known to 1e-13, is below 1e-12: a row with less than the first left is dependent.
 // Derived: between both, three digits from either.
 static const double ct_rank_tolerance = 1e-9;
-/// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of them. Where loops close to that
-/// only, a row with less left than this depends on others as the data are meant, if it stays so along the motion.
+/// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of
+/// them. Where loops close to that only, a row with less left than this depends on others as the
+/// data are meant, if it stays so along the motion.
 // Derived: six times 5e-6.
 static const double ct_data_tolerance = 3e-5;
 
-/// Limit: of so many constraint rows on, J is treated as sparse: dense factors cost more than a step does.
+/// Limit: of so many constraint rows on, J is treated as sparse: dense factors cost more than a
+/// step does.
 enum { CT_LARGE_SYSTEM = 200 };
 
 struct ct_evaluator {
@@ -76,10 +80,9 @@ struct ct_evaluator {
     double *M, *Q, *J, *gam, *rate; // of the last ct_evaluator_dynamics
     double *phi, *v;                // of the last ct_evaluator_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_evaluator_measure_rows; 1 before
-    double
-        rank_tolerance; // what is left of a row, against its size, is none: round-off, or the tolerance of the data
-    // Data close to their tolerance only: rows keep what they leave open at the start, phi - open = 0; those that are left out,
-    // as they depend on others to that tolerance, read 0.
+    double rank_tolerance;          // a row with less left, relative to its size, is dependent
+    // Data close to their tolerance only: rows keep what they leave open at the start, phi - open =
+    // 0; those that are left out, as they depend on others to that tolerance, read 0.
     bool is_inexact, *left_out; // (nrow)
     size_t most_rank;           // of J; nrow where data are exact
     double *open;               // (nrow)
@@ -95,9 +98,8 @@ struct ct_evaluator {
     const char *backend; // of what steps evaluate: "native" or "tape"
 };
 
-/// Compile all that the equations hold, what steps evaluate (motion, constraint, residual, tangent) to native code where
-/// it is available.
-/// Everything lives in a.
+/// Compile all that the equations hold, what steps evaluate (motion, constraint, residual, tangent)
+/// to native code where it is available. Everything lives in a.
 struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_model *model,
                                          const struct ct_equations *e);
 
@@ -108,14 +110,16 @@ void ct_evaluator_add_residual(struct ct_arena *a, struct ct_evaluator *m);
 /// available; the tape is run then. Not for the inner loop: a must be the evaluator's arena.
 bool ct_evaluator_use(struct ct_arena *a, struct ct_evaluator *m, enum ct_backend backend);
 
-/// Where the value of a symbol stands in the input; seeds come behind it. False for trial symbols and signals, which do not
-/// reach the equations.
+/// Where the value of a symbol stands in the input; seeds come behind it. False for trial symbols
+/// and signals, which do not reach the equations.
 bool ct_evaluator_slot(const struct ct_evaluator *m, const struct ct_sym *s, size_t *slot);
-/// Listing of n expressions of x, a copy of the equations' store that may have grown, on the evaluator's input.
+/// Listing of n expressions of x, a copy of the equations' store that may have grown, on the
+/// evaluator's input.
 const struct ct_listing *ct_evaluator_list(struct ct_arena *a, const struct ct_evaluator *m,
                                            const struct ct_exs *x, const ct_ex *out, size_t n);
-/// A further program on the evaluator's input: out (n) from x, a copy of the equations' store that may have grown. It runs
-/// as the others do, with `use` and `prepare`, until it is forgotten; a and x must live as long.
+/// A further program on the evaluator's input: out (n) from x, a copy of the equations' store that
+/// may have grown. It runs as the others do, with `use` and `prepare`, until it is forgotten; a and
+/// x must live as long.
 void ct_evaluator_add_program(struct ct_arena *a, struct ct_evaluator *m,
                               const struct ct_exs *x, const ct_ex *out, size_t n,
                               struct ct_program *p);
@@ -125,9 +129,11 @@ void ct_evaluator_add_solution(struct ct_arena *a, struct ct_evaluator *m,
                                struct ct_program *p);
 void ct_evaluator_remove_program(struct ct_evaluator *m, const struct ct_program *p);
 
-/// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are no inputs.
+/// The input by symbol of x (nsym), for ct_ex_value and ct_ex_jacobian_at; NaN for those that are
+/// no inputs.
 void ct_evaluator_values(const struct ct_evaluator *m, const struct ct_exs *x, double *value);
-/// out (n) = v, read one by one: numbers that have just been written so would make a wider read wait for them.
+/// out (n) = v, read one by one: numbers that have just been written so would make a wider read
+/// wait for them.
 static inline void ct_evaluator_copy(double *out, const volatile double *v, size_t n)
 {
     size_t i = 0;
@@ -146,28 +152,33 @@ static inline void ct_evaluator_copy(double *out, const volatile double *v, size
 void ct_evaluator_set(struct ct_evaluator *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.
 void ct_evaluator_dynamics(struct ct_evaluator *m);
-/// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as they were.
+/// u' (nu, out) and q' at the input where the equations have a solution; else false. M, Q stay as
+/// they were.
 bool ct_evaluator_solved(struct ct_evaluator *m, double *a);
 /// phi, v, J at the input.
 void ct_evaluator_constraint(struct ct_evaluator *m);
 /// Natural sizes of rows and speeds at the input, which ranks are judged against.  (6.5a)
 void ct_evaluator_measure_rows(struct ct_evaluator *m);
-/// The input is the start of data that close to their tolerance only, with so many freedoms of joints on any trees.
+/// The input is the start of data that close to their tolerance only, with so many freedoms of
+/// joints on any trees.
 void ct_evaluator_set_inexact(struct ct_evaluator *m, size_t freedoms);
 /// Of such data: the rows behind the first `rank` of row (nrow) take no part.
 void ct_evaluator_leave_out(struct ct_evaluator *m, const int *row, int rank);
-/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow, out): the independent ones
-/// first. A (nu x nrow), tau (nrow), work (ct_qr_pivot_work(nu, nrow)): workspace.
+/// Rank of J (nrow x nu): rows of which more than `least` is left against their sizes. row (nrow,
+/// out): the independent ones first. A (nu x nrow), tau (nrow), work (ct_qr_pivot_work(nu, nrow)):
+/// workspace.
 int ct_evaluator_order_rows(const struct ct_evaluator *m, const double *J, double least,
                             int *row, double *A, double *tau, double *work);
-/// Entries of J, each times scale_row of its row and scale_column of its column (NULL: 1). In scratch.
+/// Entries of J, each times scale_row of its row and scale_column of its column (NULL: 1). In
+/// scratch.
 struct ct_sparse_entries ct_evaluator_sparse_J(const struct ct_evaluator *m,
                                                struct ct_arena *scratch, const double *J,
                                                const double *scale_row,
                                                const double *scale_column);
 /// Derivatives of the residual at the input, into slopes.
 void ct_evaluator_tangent(struct ct_evaluator *m);
-/// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.  (8.19)
+/// K, C, M (nu x nu, out) for the slopes, inner values taken along; returns the values of dv.
+/// (8.19)
 const double *ct_evaluator_scatter(const struct ct_evaluator *m, double *K, double *C,
                                    double *M);
 /// Operations of it, of lanes those of one.
@@ -177,7 +188,8 @@ void ct_program_run(struct ct_program *p, const double *input);
 size_t ct_evaluator_code_size(struct ct_evaluator *m);
 /// Parameters have changed: run the prologues again.
 void ct_evaluator_prepare(struct ct_evaluator *m);
-/// Those of motion, constraint and power alone: all that ct_evaluator_dynamics and ct_evaluator_constraint need.
+/// Those of motion, constraint and power alone: all that ct_evaluator_dynamics and
+/// ct_evaluator_constraint need.
 void ct_evaluator_prepare_dynamics(struct ct_evaluator *m);
 /// As new, with the values that the model's parameters have now.
 void ct_evaluator_reset(struct ct_evaluator *m);
@@ -192,16 +204,19 @@ void ct_evaluator_normalise(const struct ct_evaluator *m, double *q);
 /// p (4) / |p|; zeros stay.
 void ct_quaternion_normalise(double *p);
 
-/// Memories take their values at the input as if from scratch: quaternions from their rotation (scalar part
-/// >= 0), angles near their present memory, offsets from now.
+/// Memories take their values at the input as if from scratch: quaternions from their rotation
+/// (scalar part >= 0), angles near their present memory, offsets from now.
 void ct_memory_start(struct ct_evaluator *m);
-/// p [w x y z], w >= 0 (out): unit quaternion of a rotation R (3 x 3, column-major), the largest of the four numbers found first.
+/// p [w x y z], w >= 0 (out): unit quaternion of a rotation R (3 x 3, column-major), the largest of
+/// the four numbers found first.
 void ct_quaternion_of(const double *R, double *p);
-/// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less than half a turn.
+/// Memories follow the motion; offsets stay. Right for angles and rotations that have turned less
+/// than half a turn.
 void ct_memory_update(struct ct_evaluator *m);
 /// Are there angles or rotations that are found from their last values?
 bool ct_memory_limits(const struct ct_equations *e);
-/// How fast those turn at t, y [rad/s], the largest, from a difference over dt. 0 where there are none.
+/// How fast those turn at t, y [rad/s], the largest, from a difference over dt. 0 where there are
+/// none.
 double ct_memory_turning(struct ct_evaluator *m, double t, const double *y, double dt);
 
 #endif

@@ -1,10 +1,10 @@
 // See assembly.h.
 //
-// First the loops are closed and the given values met: Newton steps, damped as Levenberg and
-// Marquardt do, so that rows which depend on each other in the solution do not throw it off. Then
-// Gauss-Newton steps along these constraints take all other coordinates to their guesses, each
-// followed by closing again. This ends in a local minimum of the distance to the guesses. Further
-// starts look for a nearer one.
+// 1. Close the loops and meet the given values by Levenberg-Marquardt steps. The damping handles
+//    rows that become dependent at the solution.
+// 2. Minimise the distance of all other coordinates to their guesses by Gauss-Newton steps along
+//    the constraints, and close the loops after each step. This ends in a local minimum.
+// 3. Search for a nearer position from other starts.
 #include "solve/initial/assembly_internal.h"
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"
@@ -15,20 +15,30 @@
 #include <stdint.h>
 #include <string.h>
 
-static const double hard = 1e4;         // weight of what must be met against what is wanted
-static const double longest_step = 0.5; // [m or rad], against jumping to another assembly
-static const double small_step = 1e-12; // has arrived [m or rad]
-static const double speeds_met = 1e-6;  // may be large; a contradiction is of their order
+// Weight of constraints and given values against guesses in a least-squares step.
+// Chosen: constraints that are met against round-off, which the square of the weight enlarges.
+static const double hard = 1e4;
+// Largest change of a coordinate in a step [m or rad].
+// Chosen: iterations against a jump to another way of assembly.
+static const double longest_step = 0.5;
+// The iteration has converged at a step of this size [m or rad].
+// Chosen: three digits below the tolerance of assembly, and far above round-off.
+static const double small_step = 1e-12;
+// Residual of speeds that is accepted [m/s or rad/s].
+// Chosen: round-off of large speeds against contradictions, which are as large as the speeds.
+static const double speeds_met = 1e-6;
 enum {
-    MOST_ITERATIONS = 200,
-    MOST_HALVINGS = 12,
-    MOST_STARTS = 24,
-    MOST_SEARCHES = 16,
-    MOST_FAR_SEARCHES = 64
+    MOST_ITERATIONS = 200, // Limit: of a search; a start that is not found is an error
+    MOST_HALVINGS = 12,    // Chosen: a step of 1/4096 that gains nothing is at a minimum
+    MOST_STARTS = 24,      // Limit: of searches for a closed position, then there is an error
+    MOST_SEARCHES = 16,    // Chosen: time against positions nearer to the guesses
+    MOST_FAR_SEARCHES = 64 // Chosen: as above
 };
-enum { MOST_APPROACHES = 30 };
-static const double most_search_work = 1e9; // multiplications: about a second
-static const double pi = 3.14159265358979323846;
+enum { MOST_APPROACHES = 30 }; // Chosen: iterations before constraints alone are iterated
+// Multiplications of all searches for a nearer position, about a second.
+// Chosen: time against a nearer position in large mechanisms.
+static const double most_search_work = 1e9;
+static const double pi = 3.14159265358979323846; // Definition: of mathematics
 
 // ---- residuals ----------------------------------------------------------------------------------
 
@@ -213,12 +223,13 @@ static void closing_step(struct ct_assembler *s, double damping)
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// Step into s->b that leaves the constraints alone and takes what is wanted nearest to its
-// residuals' zero. The weight of the constraints is finite; their multipliers, learnt from step to
-// step, make up for that.
+// Step into s->b along the constraints that minimises the weighted distance to the guesses. The
+// constraints have a large finite weight; multipliers that are updated from step to step correct
+// for it (augmented Lagrangian method).
 static void wishing_step(struct ct_assembler *s)
 {
-    // a thousandth of the smallest weight there is: a step is short by 1e-6 of itself at most
+    // Derived: with a thousandth of the smallest weight a step is too short by 1e-6 of itself at
+    // most.
     const double damping = 1e-3 * ct_assembly_open_weight / fmax(1, s->length);
     const struct ct_sparse_rows *A = &s->A;
     ct_sparse_rows_clear(&s->weighted);
@@ -235,12 +246,13 @@ static void wishing_step(struct ct_assembler *s)
         s->shift[i] += s->r[i] + s->work[i];
 }
 
-// How far the step in s->b goes along what the constraints let move [m or rad]. In a nearly
-// singular configuration a step off them seems to gain distance, at no more than round-off of what
-// is closed.
+// The size of the part of the step s->b that is tangent to the constraints [m or rad]. Near a
+// singular configuration a step off the constraints may violate them by round-off only, and seem to
+// come nearer to the guesses: that part does not count.
 static double size_along_constraints(struct ct_assembler *s)
 {
-    // loops that close to 1e-13 meet a singular configuration to about the root of that
+    // Derived: three times the root of 1e-13. Loops closed to 1e-13 are as far as the root of that
+    // from a singular configuration.
     const double dependent = 1e-6;
     const size_t nu = s->m->nu;
     const double size = ct_sparse_rows_largest_column(&s->A, s->nhard, nu, s->work);
@@ -253,14 +265,16 @@ static double size_along_constraints(struct ct_assembler *s)
     return ct_vector_largest(s->work, nu);
 }
 
-// Close the loops from s->y; returns what is left.
+// Close the loops from s->y; returns the largest residual.
 static double close_loops(struct ct_assembler *s)
 {
-    const double closed = 1e-15;
+    const double closed = 1e-15; // Derived: four units of round-off
     double before = INFINITY;
     for (int i = 0;; i++) {
         position_rows(s);
         const double worst = violation(s);
+        // Derived: convergence is quadratic; below 1e-11 only round-off keeps a residual from
+        // halving
         if (!isfinite(worst) || worst <= closed || i == MOST_ITERATIONS
             || (worst < 1e-11 && worst > before / 2))
             return worst;
@@ -280,12 +294,13 @@ static void keep_place(struct ct_assembler *s, bool back)
            nm * sizeof *memory);
 }
 
-// The step in s->b or a part of it, if that comes nearer to the guesses.
+// Take the step s->b or a part of it, if that comes nearer to the guesses.
 static bool take_step(struct ct_assembler *s, double *nearest)
 {
     const size_t nu = s->m->nu;
     double *d = s->step, part = 1;
-    const double roundoff = 1e-14; // of a sum of squares
+    // Derived: 45 units of round-off, of a sum of some tens of squares.
+    const double roundoff = 1e-14;
     memcpy(d, s->b, nu * sizeof *d);
     keep_place(s, false);
     for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
@@ -302,11 +317,14 @@ static bool take_step(struct ct_assembler *s, double *nearest)
     return false;
 }
 
-// Towards the guesses and closed loops at once, from positions that may be open: Gauss-Newton steps
-// of the constrained least-squares problem, so that what has no guess moves first.
+// From positions where loops may be open, towards the guesses and closed loops together:
+// Gauss-Newton steps of the constrained least-squares problem. Coordinates without a guess move
+// most.
 static void approach(struct ct_assembler *s)
 {
-    const double arrived = 1e-3; // [m or rad]; the rest is left to what follows
+    // Step at which the iteration ends [m or rad].
+    // Chosen: iterations here against those of find_positions, which follow.
+    const double arrived = 1e-3;
     for (int i = 0; i < MOST_APPROACHES; i++) {
         position_rows(s);
         memset(s->shift, 0, s->nhard * sizeof *s->shift);
@@ -320,14 +338,16 @@ static void approach(struct ct_assembler *s)
     }
 }
 
-// Close the loops from s->y and go to the nearest position along them; returns what is left open.
+// Close the loops from s->y, then move along them to the position nearest to the guesses. Returns
+// the largest residual.
 static double find_positions(struct ct_assembler *s)
 {
     double worst = close_loops(s);
     if (!(worst < ct_assembly_tolerance))
         return worst;
     memset(s->shift, 0, s->nhard * sizeof *s->shift);
-    // below this, steps that no longer halve are round-off
+    // Steps below this size that no longer halve are round-off.
+    // Chosen: slow convergence against iterations on round-off.
     const double roundoff = 1e-11;
     double nearest = distance(s), before = INFINITY;
     for (int i = 0; i < MOST_ITERATIONS; i++) {
@@ -479,12 +499,13 @@ static void draw_search(struct ct_assembler *s, int search, double reach)
     }
 }
 
-// How many searches for a nearer position are worth their time. None where all joints are guessed
-// or given and met within 0.1 rad or natural lengths: of 1800 random loops those with a nearer
-// position were at least 0.5 away. Many where joints without guesses may have led far from the
-// guesses of others.
+// The number of searches for a position nearer to the guesses. None if all joints are guessed or
+// given and the position is within 0.1 rad or natural lengths. Most if joints without guesses may
+// have led far from the guesses of others.
 static int most_searches(const struct ct_assembler *s, double nearest)
 {
+    // Derived: a fifth of 0.5; of 1800 random loops those with a nearer position were 0.5 away or
+    // more.
     const double near = 0.1;
     const bool is_near = nearest <= near * near;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -511,11 +532,12 @@ static void keep_best(struct ct_assembler *s, bool back)
     memcpy(back ? memory : s->best_memory, back ? s->best_memory : memory, nm * sizeof *memory);
 }
 
-// From a closed position at s->y, the nearest found so far, to the nearest of all that further
-// starts come to. Of equally near ones the first stays.
+// s->y is a closed position, the nearest to the guesses so far. Replace it by a nearer one if
+// searches from other starts find one; of equally near ones the first stays.
 static void search_nearer(struct ct_assembler *s)
 {
-    // of a distance, beside round-off: the end of different iterations
+    // Relative difference of distances that count as equal.
+    // Chosen: the errors at which iterations end against positions that are a little nearer.
     const double same = 1e-6;
     double nearest = distance(s);
     keep_best(s, false);
@@ -654,7 +676,8 @@ static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_
         (*first)[i + 1] += (*first)[i];
 }
 
-// Coefficients of the measured speeds, which are linear in u. Only here: those of n bodies in a chain are n^2.
+// Coefficients of the measured speeds, which are linear in u. Only here: those of n bodies in a
+// chain are n^2.
 static void derive_speeds(struct ct_arena *a, struct ct_assembler *s)
 {
     const struct ct_equations *e = s->e;

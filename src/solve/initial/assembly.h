@@ -1,8 +1,8 @@
-// Consistent initial conditions: the mechanism assembled nearest to the given values.  (formulation
-// 9.1)
+// Consistent initial conditions: positions and speeds that satisfy all constraints and demanded
+// values and are nearest to the guesses.  (formulation 9.1)
 //
-// Assembly runs on trees through joints, whatever trees the equations use, and measures all joints:
-// the start does not depend on the choice of trees.
+// Assembly uses equations with trees through joints, in which all joints are measured, whatever
+// trees the equations of motion use. So the start does not depend on the choice of trees.
 #ifndef CT_SOLVE_INITIAL_ASSEMBLY_H
 #define CT_SOLVE_INITIAL_ASSEMBLY_H
 
@@ -12,10 +12,10 @@
 struct ct_target {
     bool is_given;   // a demand: must be met
     bool is_guessed; // a guess
-    bool wanted;     // counts in the distance: guesses, and less by far what has no guess
-    double value;    // demanded or guessed, else 0
-    double
-        weight; // of a deviation: 1 rad and one natural length count 1 where guessed [1/rad or 1/m]
+    bool wanted;  // counts in the distance: guesses, and with little weight values without one
+    double value; // demanded or guessed, else 0
+    // weight of a deviation [1/rad or 1/m]: for a guess 1 rad or one natural length counts 1
+    double weight;
     bool in_quaternion;
 };
 
@@ -23,17 +23,17 @@ struct ct_target {
 /// (eqs->coordinate).
 struct ct_initial_state {
     double *q, *u;
-    const bool *is_given; // of each: its place is given, not guessed or left open
+    const bool *is_given; // (n) the value is demanded, not guessed or open
     const struct ct_target *q_target, *u_target; // (n) what was asked of q and u
     double length;                               // natural length of the mechanism [m]
-    const struct ct_equations *e;                // for assembling
+    const struct ct_equations *e;                // of the assembly
     size_t n;
-    double residual; // largest |phi| left
-    bool is_inexact; // they close to the tolerance of the data only, in the least-squares sense
-    size_t freedoms; // then: left by the loops, without those of beams
-    bool is_open;    // the loops do not close: places as they are wanted
-    double *elastic; // elastic coordinates of all beams, beam by beam; NULL: undeformed
-    double *elastic_rate; // and their rates; NULL: as the beams are given
+    double residual;      // largest |phi|
+    bool is_inexact;      // loops close only to the tolerance of the data, by least squares
+    size_t freedoms;      // then: degrees of freedom of the loops, without those of beams
+    bool is_open;         // loops do not close: values are as wanted
+    double *elastic;      // elastic coordinates of all beams, beam by beam; NULL: undeformed
+    double *elastic_rate; // their rates; NULL: as `initial` of the beams says
     size_t nelastic;
 };
 
@@ -42,8 +42,8 @@ struct ct_initial_state {
 bool ct_assembly_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                        const struct ct_equations *e, struct ct_initial_state *out);
 
-/// The same, but a start whose loops do not close is handed out, open and at rest but for the
-/// speeds given: beams can be bent until they do.
+/// The same, but loops need not close. Then the start is open, and at rest but for given speeds;
+/// beams are bent later to close them.
 bool ct_assembly_solve_open(struct ct_ctx *ctx, struct ct_arena *a,
                             const struct ct_model *model, const struct ct_equations *e,
                             struct ct_initial_state *out);
@@ -61,7 +61,8 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_initial_state *out);
 void ct_initial_state_of_beams(const struct ct_equations *e, const double *value, double *q,
                                double *u);
 
-/// Are the demanded values and speeds those of the start? Beams that settle may have moved joints.
+/// Does the start have the demanded values and speeds? Initial equilibrium of beams may have moved
+/// joints.
 /// Errors: CT_E_START.
 bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *start);
 

@@ -1,15 +1,17 @@
-// Assembly of data that are redundant but for their last digits; see assembly_internal.h.
+// Assembly with constraints that are redundant except for the last digits of the data; see
+// assembly_internal.h.
 //
-// Two coaxial hinges whose places are given to some digits have rows that should repeat others and
-// instead leave singular values of the tolerance of the data, delta, and gaps of that size: closed
-// exactly, the door would turn by gap/delta, anything, or lock. Such a row says what its neighbours
-// say; its small part is left out. With Q an orthonormal basis of the columns of
+// Example: a door on two coaxial hinges whose positions are given to some digits. Rows that should
+// be redundant leave singular values of the tolerance delta of the data, and gaps of that size. To
+// close the gaps exactly the door would have to turn by gap/delta, which may be anything. So the
+// component of these rows that is independent of the others is left out. With Q an orthonormal
+// basis of the columns of
 //
 //     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
 //         [ w G S    ]  given values, w large: they are kept
 //
-// of which columns with less than the tolerance left are left out, Newton's iteration on A', r'
-// ends where the gaps are least in the sum of squares.
+// without the columns that have less than the tolerance left, Newton's iteration on A', r' ends
+// where the sum of squares of the gaps is least.
 #include "solve/initial/assembly_internal.h"
 
 #include "numeric/dense.h"
@@ -17,7 +19,8 @@
 #include <math.h>
 #include <string.h>
 
-// Weight of given values: what loops leave open moves them by its square less.
+// Weight of given values against rows of loops that do not close exactly.
+// Chosen: given values change by 1e-6, the square, of the gaps of the loops.
 static const double given_weight = 1e3;
 
 struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s)
@@ -155,8 +158,8 @@ static double largest_gap(struct ct_assembler *s)
     return open;
 }
 
-// Steps divide by the damping, 1e-8, at worst: what gaps and singular values below this move is
-// 1e-6 of a step.
+// Gaps and singular values below this have no effect.
+// Derived: with the damping d = 1e-8 a singular value s counts by s^2/(s^2 + d^2) = 1e-6.
 static const double unmoved = 1e-11;
 
 bool ct_loop_filter_is_due(struct ct_assembler *s)
@@ -182,8 +185,8 @@ static void loop_rows(struct ct_assembler *s)
     ct_loop_filter_apply(s, NULL);
 }
 
-// s->b (nu) = the shortest vector with A b = -r: filtered rows have no singular values but round-off and those above the
-// tolerance of the data.
+// s->b (nu) = the shortest vector with A b = -r: filtered rows have no singular values but
+// round-off and those above the tolerance of the data.
 static void shortest_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
@@ -192,12 +195,13 @@ static void shortest_step(struct ct_assembler *s)
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// From s->y by `way` [m or rad] along a motion of no meaning that the loops leave free, and onto
-// them again. False if that does not succeed.
+// Move s->y by `way` [m or rad] along an arbitrary motion that the loops allow, and close the loops
+// again. False if that fails.
 static bool move(struct ct_assembler *s, double way)
 {
-    enum { MOST = 20 };
-    const double closed = 1e-9; // far below the tolerance of the data
+    enum { MOST = 20 }; // Limit: of iterations; the data then count as not closing
+    // Derived: four digits below the tolerance of the data.
+    const double closed = 1e-9;
     const size_t nu = s->m->nu;
     double *d = s->step;
     loop_rows(s);
@@ -254,11 +258,11 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
     return most;
 }
 
-// Are gaps that are left such that no motion closes them? Beside a singular configuration given
-// values may hold it up.
+// Is there no motion that makes the remaining gaps smaller? Near a singular configuration the
+// iteration may have ended before, at given values.
 static bool is_least(struct ct_assembler *s, double gap)
 {
-    const double little = 1e-2; // of the gap: what iterations leave
+    const double little = 1e-2; // Chosen: part of the gap that iterations leave
     loop_rows(s);
     double left = 0;
     for (size_t i = 0; i < s->m->nrow; i++)
@@ -269,8 +273,8 @@ static bool is_least(struct ct_assembler *s, double gap)
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
-    const double closed
-        = 1e-14; // round-off of some sums of vectors: the data close exactly, and mean it
+    // A gap that is only round-off: the data close exactly. Derived: 45 units of round-off.
+    const double closed = 1e-14;
     const double gap = largest_gap(s);
     return gap > closed && gap <= ct_data_tolerance && is_least(s, gap)
         && is_rank_everywhere(s);

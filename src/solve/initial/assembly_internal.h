@@ -1,9 +1,9 @@
-// Assembly from inside: what its files share.
+// Declarations that the files of the assembly share.
 //
 //     assembly.c           iterations, from the targets to a start
 //     assembly_targets.c   what `initial` asks of coordinates
 //     assembly_report.c    what went wrong
-//     start_demands.c      is what was demanded kept?
+//     start_demands.c      does the start still have the demanded values?
 #ifndef CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
 #define CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
 
@@ -12,13 +12,16 @@
 #include "formulate/build.h"
 #include "numeric/damped.h"
 
-/// Left over of what must be met [m or rad].
+/// Residual of constraints and given values that is accepted [m or rad].
+/// Chosen: round-off of large mechanisms against contradictions.
 static const double ct_assembly_tolerance = 1e-9;
-/// Weight of a deviation from 0 where there is no guess, against 1 of a guess: 1e-6 of its square.
+/// Weight of a deviation from 0 of coordinates without a guess; guesses have 1.
+/// Chosen: a definite position, which moves guesses by 1e-6, the square, at most.
 static const double ct_assembly_open_weight = 1e-3;
 
-/// The root of a round-off error: singular values of that size, over the square of the damping, leave a step as large as what
-/// they multiply, which is round-off too.
+/// Smallest damping of Levenberg-Marquardt steps.
+/// Derived: about the root of the unit round-off eps. Residuals of eps then give steps of at most
+/// eps/(2 damping) = 1e-8 along directions of any singular value.
 static const double ct_assembly_least_damping = 1e-8;
 
 struct ct_assembler {
@@ -82,14 +85,13 @@ void ct_start_read_back(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_
                         const struct ct_equations *e, const struct ct_initial_state *start,
                         const double *y, double *q, double *u);
 
-/// What a joint's `initial` says of its values or rates.
+/// The values, or the rates, that a joint's `initial` gives.
 const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_speed);
-/// Where a joint's value for a coordinate stands there: with `rotate` the list may leave the
-/// quaternion out. False: nowhere.
+/// The number that `initial` gives for coordinate `place` of the joint. With `rotate` the list may
+/// omit the quaternion. False: none is given.
 bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int place,
                        double *out);
-/// Is coordinate i an angle that does nothing but turn, so that a whole turn more is the same
-/// position?
+/// Is coordinate i an angle for which a whole turn more is the same position?
 bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i);
 /// Fills s->frame and makes s->point.
 void ct_assembler_list_frames(struct ct_assembler *s, struct ct_arena *a,
@@ -101,8 +103,8 @@ void ct_assembler_find_targets(struct ct_assembler *s, const struct ct_model *mo
 /// for the fourth false.
 bool ct_assembler_deviation(const struct ct_assembler *s, size_t i, double *r);
 
-/// The given value that is missed most, or the row that stays open farthest. closes: loops do, with
-/// the given values as guesses. False. Errors: CT_E_START, CT_E_ASSEMBLY.
+/// Report the given value that is missed most, or the row that is open most. closes: the loops
+/// close if given values are guesses. Returns false. Errors: CT_E_START, CT_E_ASSEMBLY.
 bool ct_assembler_report_positions(struct ct_assembler *s, bool closes);
 bool ct_assembler_report_speeds(struct ct_assembler *s);
 /// Does each driven joint start on its motion? Errors: CT_E_START.

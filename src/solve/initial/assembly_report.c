@@ -1,4 +1,4 @@
-// Why a mechanism has no start: see assembly_internal.h.
+// Error messages of an assembly that failed; see assembly_internal.h.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>
@@ -25,9 +25,10 @@ static struct ct_mark initial_mark(const struct ct_assembler *s, size_t i, bool 
 // The given value that is missed most, with the others that are missed as notes; true if none is.
 static bool report_missed(struct ct_assembler *s, bool is_speed)
 {
-    enum { MOST_NOTES = 4 };
-    const double slight
-        = 1e-3; // against the worst: what iterations that found no end leave of the rest
+    enum { MOST_NOTES = 4 }; // Limit: of notes; the last one counts the others
+    // Part of the worst miss below which others are not listed.
+    // Chosen: causes against what an iteration without convergence leaves of other values.
+    const double slight = 1e-3;
     size_t worst = 0, nmissed = 0;
     for (size_t i = 1; i < s->e->ncoordinate; i++)
         if (missed(s, i, is_speed) > missed(s, worst, is_speed))

@@ -1,4 +1,4 @@
-// What `initial` asks of coordinates: see assembly_internal.h.
+// Targets of coordinates and speeds from `initial`; see assembly_internal.h.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>

@@ -115,10 +115,13 @@ static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
         s->lam[s->row[i]] = b[i];
 }
 
-// Forces, stiffness and its directions along the rows. False if there are none to be found.
+// Forces, and eigenvalues and directions of the stiffness along the rows. False if they are not
+// found.
 static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
 {
-    const double across = 1e3; // what stands for the rows, against the stiffest direction
+    // Stiffness across the constraint rows over that of the stiffest direction.
+    // Chosen: directions across the rows come last among the eigenvectors, with few digits lost.
+    const double across = 1e3;
     const size_t n = s->n;
     double *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n));
     ct_static_residual_choose_rows(s, a);
@@ -171,10 +174,12 @@ static void limit(double *d, size_t n, double most)
         d[k] *= most / size;
 }
 
-// Shortest steps that close the rows that count.
+// Close the independent rows by minimum-norm steps.
 static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
 {
-    enum { MOST_CLOSINGS = 20 };
+    enum { MOST_CLOSINGS = 20 }; // Limit: of iterations; an open row is found by is_good
+    // Residual that ends the iteration, largest step [m or rad].
+    // Chosen: a digit below what is_good accepts; iterations against a jump elsewhere.
     const double closed = 1e-10, longest = 0.2;
     const size_t n = s->n;
     for (int i = 0; i < MOST_CLOSINGS; i++) {
@@ -212,13 +217,15 @@ static void keep(struct ct_static_residual *s, struct saved_state *k, bool back)
     memcpy(back ? s->lam : k->lam, back ? k->lam : s->lam, s->e->nrow * sizeof *s->lam);
 }
 
-// A motion along the rows that the forces push: Newton's where the stiffness is positive, away from
-// a saddle where it is not (9.2). It is halved while at its end the forces push back by more than
-// half. Returns its size.
+// One step down the potential energy along the rows (9.2): Newton's step in directions with
+// positive stiffness, and with the stiffness's absolute value in others, away from a saddle. It is
+// halved while the forces at its end push back with more than half. Returns its size.
 static double descend(struct ct_static_residual *s, struct ct_arena *a, const struct local *l)
 {
-    const double longest = 0.2, flat = 1e-12; // [m or rad]; against the stiffest direction
-    enum { MOST = 10 };
+    // Largest step [m or rad]; least stiffness that a force is divided by, over the largest one.
+    // Chosen: iterations against a jump elsewhere; digits of the stiffness.
+    const double longest = 0.2, flat = 1e-12;
+    enum { MOST = 10 }; // Chosen: halvings, to a thousandth; the next step begins from there
     const size_t n = s->n, ntangent = n - l->nB;
     struct saved_state from = saved_state(s, a);
     double *d = CT_NEWN(a, double, n + 1), push = 0, part = 1, size = 0;
@@ -253,10 +260,12 @@ static double descend(struct ct_static_residual *s, struct ct_arena *a, const st
     return size * part;
 }
 
-// Is the place one where all rows hold and that is stable?
+// Are all rows closed, and is the equilibrium stable?
 static bool is_good(struct ct_static_residual *s, struct ct_arena *a)
 {
-    const double closed = 1e-9, unstable = -1e-9; // against the stiffest direction
+    // Residual [m or rad]; stiffness over that of the stiffest direction.
+    // Chosen: round-off against open loops and against equilibria that are just unstable.
+    const double closed = 1e-9, unstable = -1e-9;
     struct local l = {0};
     size_t row = 0;
     if (ct_closure_continuation_remaining(s, &row) > closed || !look_around(s, a, &l))
@@ -271,11 +280,14 @@ static bool find_equilibrium_here(struct ct_static_residual *s, struct ct_arena 
     return ct_static_residual_iterate(s, a) && is_good(s, a);
 }
 
-// Down the energy from s->y, pushed a little out of a symmetric place; at last by Newton's method.
+// Go down the potential energy from s->y, after a small push that leaves a symmetric configuration;
+// end with Newton's method.
 static bool relax(struct ct_static_residual *s, struct ct_arena *a)
 {
-    enum { MOST = 500 };
-    const double push = 0.01, near = 1e-3; // [m or rad]
+    enum { MOST = 500 }; // Limit: of steps; Newton's method fails then, with a message
+    // The first push, and the step from which Newton's method goes on [m or rad].
+    // Chosen: far enough to leave a saddle; near enough for Newton's method to converge.
+    const double push = 0.01, near = 1e-3;
     double size = INFINITY;
     for (int i = 0; i < MOST && size > near; i++) {
         struct ct_arena *own = ct_arena_create_under(a);
@@ -300,7 +312,9 @@ static bool relax(struct ct_static_residual *s, struct ct_arena *a)
 
 bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a)
 {
-    const double least = 1.0 / 16; // of what is open at the start
+    // The smallest part of the gap that is closed at once; then the energy is followed instead.
+    // Chosen: small steps of continuation against the slower descent.
+    const double least = 1.0 / 16;
     struct saved_state at = saved_state(s, a);
     double open = 1, step = 1;
     keep(s, &at, false);

@@ -1,18 +1,20 @@
-// Closure by continuation: loops that beams must be bent to close.  (formulation 9.1)
+// Closure by continuation: loops that close only with bent beams. Constraint offsets are reduced
+// from the gaps of the open start to zero, with an equilibrium at each step.  (formulation 9.1)
 #ifndef CT_SOLVE_INITIAL_CLOSURE_CONTINUATION_H
 #define CT_SOLVE_INITIAL_CLOSURE_CONTINUATION_H
 
 #include "solve/initial/static_residual.h"
 
-/// What is open now becomes the gaps of s.
+/// Set the constraint offsets of s to the present gaps.
 void ct_closure_continuation_begin(struct ct_static_residual *s);
-/// A part of them is open; of turns the same axis and a part of the angle.
+/// Set all offsets to a part of the first gaps; for rotations, a part of the angle about the same
+/// axis.
 void ct_closure_continuation_set(struct ct_static_residual *s, double part);
-/// Largest |phi| of all rows, those that depend on others included; its row.
+/// Largest |phi| of all rows, redundant ones included; row (out): where.
 double ct_closure_continuation_remaining(struct ct_static_residual *s, size_t *row);
-/// From the open start to closed loops, in equilibrium with what is still open all the way: part by
-/// part, by Newton's method, and where that finds nothing stable even for a small part, down the
-/// energy. False if it gets stuck.
+/// Reduce the offsets step by step to zero. Each equilibrium is found by Newton's method, or by
+/// descent of the potential energy if that finds no stable one even for a small step. False if both
+/// fail.
 bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a);
 
 #endif

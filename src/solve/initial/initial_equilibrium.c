@@ -26,7 +26,7 @@ bool *ct_initial_equilibrium_fixed_joints(struct ct_arena *a, const struct ct_mo
     return first;
 }
 
-// ---- what moves -----------------------------------------------------------------------------------------
+// ---- what moves ----------------------------------------
 
 // Is the joint coordinate that moves at speed k given?
 static bool is_given(const struct ct_equations *e, const struct ct_initial_state *start,
@@ -38,8 +38,8 @@ static bool is_given(const struct ct_equations *e, const struct ct_initial_state
     return false;
 }
 
-// Speeds of joints and bodies that stay: those given, then others, as far as the loops leave them free; beams that
-// keep their shape stay, too. still (nu, out); the start is in the evaluator.
+// Speeds of joints and bodies that stay: those given, then others, as far as the loops leave them
+// free; beams that keep their shape stay, too. still (nu, out); the start is in the evaluator.
 static void find_still(struct ct_evaluator *m, struct ct_arena *a,
                        const struct ct_initial_state *start, const bool *settles, bool *still)
 {
@@ -68,15 +68,16 @@ static void find_still(struct ct_evaluator *m, struct ct_arena *a,
             }
 }
 
-// ---- the start ------------------------------------------------------------------------------------------
+// ---- the start ----------------------------------------
 
-// Speeds y (nu, in/out) of joints and bodies that do not stay: as the loops ask, nearest to those of now; beams at rest in their
-// frames. False if some loop asks for more.
+// Change the speeds in y of joints and bodies outside `still` so that the loops stay closed, as
+// little as possible; beams do not deform. False if that does not satisfy all loops.
 static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *still,
                         double *y)
 {
-    const double rest
-        = 1e-9; // of what loops ask for, far above round-off: less is not left to beams
+    // The part of the loops' demand that may stay unmet by joints and bodies alone.
+    // Chosen: far above round-off, far below a demand that beams must meet.
+    const double rest = 1e-9;
     const size_t nrow = m->nrow, nu = m->nu;
     double *A = CT_NEWN(a, double, nrow *nu + 1), *b = CT_NEWN(a, double, nrow + nu + 1);
     int *iwork = CT_NEWN(a, int, nu + 1), *free = CT_NEWN(a, int, nu + 1);
@@ -102,7 +103,7 @@ static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *
     return ct_vector_largest(m->v, nrow) <= rest * asked;
 }
 
-// The same where beams must bend: everything moves with the equilibrium s.
+// The same if beams must deform: all speeds follow the motion of the equilibrium s.
 static bool move_all(struct ct_arena *a, struct ct_static_residual *s, struct ct_evaluator *m,
                      const bool *still, double *y)
 {

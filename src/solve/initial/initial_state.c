@@ -1,4 +1,4 @@
-// A start put into the state of an evaluator; see assembly.h.
+// Copy a start into the state of an evaluator; see assembly.h.
 #include "solve/initial/assembly.h"
 #include "formulate/beam/flexible_body.h"
 #include "solve/evaluator/switch_state.h"

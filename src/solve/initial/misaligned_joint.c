@@ -1,10 +1,8 @@
-// The one axis that keeps a plane mechanism from closing: a joint whose `axis` was forgotten or
-// mistaken.
+// Diagnosis of a planar mechanism that does not close since one joint's `axis` is missing or wrong.
 //
-// If all joints but one move in planes of one normal, which each of them hands on from body to body
-// (a hinge about it, a guide across it, a weld), the odd one is most often meant to do so, too.
-// Only hinges, guides and welds are looked at: with other joints a mechanism is meant to be
-// spatial.
+// The normal of the plane is passed from body to body: hinges about it, guides across it and welds
+// keep it. If all joints but one keep it, that one is most likely wrong. Only hinges, guides and
+// welds are considered: with other joints the mechanism is meant to be spatial.
 #include "solve/initial/assembly.h"
 
 #include <math.h>
@@ -17,7 +15,9 @@ struct plane {
     bool *known;                       // (nbody)
 };
 
-static const double straight = 1e-6; // [rad], of axes that are given to some digits
+// Axes count as parallel up to this angle [rad].
+// Chosen: digits of the axes that a user gives against small errors of an axis.
+static const double straight = 1e-6;
 
 // v = R v, or R' v, with the rotation by `angle` about the unit vector u.
 static void turn(const double u[3], double angle, double v[3])
@@ -93,12 +93,12 @@ static bool is_odd(const struct plane *p, size_t joint)
     return !keeps(p, joint, n);
 }
 
-// The only joint that leaves the plane of the hinge `joint`; -1: there is none, or several, or too
-// few hinges tell.
+// The only joint that does not keep the plane of motion of the hinge `joint`. -1: there is none,
+// there are several, or too few hinges share that plane.
 static int find_odd(struct plane *p, size_t joint)
 {
     const struct ct_model *m = p->m;
-    const int least = 2; // other hinges
+    const int least = 2; // Chosen: other hinges in the plane, which show that it is meant
     int odd = -1, nodd = 0, nhinge = 0;
     memset(p->known, 0, m->nbody * sizeof *p->known);
     const int body = m->frame[m->joint[joint].from].body;

@@ -1,16 +1,16 @@
-// Is a demanded `initial` kept, in the assembled start and on the constraints of the equations of
-// motion? See assembly.h.
+// Test whether the start still has the values demanded by `initial`. See assembly.h.
 //
-// The assembly meets demands or fails. Afterwards beams that settle may move joints, and the
-// equations of motion, on other trees, may judge the rank of the constraints differently: a freedom
-// that is lost there takes its speed along.
+// The assembly meets demands or fails. Later the initial equilibrium of beams may move joints. The
+// equations of motion, with other trees, may also find another rank of the constraints; a degree of
+// freedom that is lost then loses its demanded speed.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>
 
-// Of a demanded value, against itself and 1 rad or the natural length. Beside a singular
-// configuration, by 1e-5 rad, round-off of constraints moves speeds by 3e-6; a freedom that is lost
-// takes all of the value.
+// Error of a demanded value that is accepted, relative to the value, or to 1 rad or the natural
+// length if that is more. A value whose degree of freedom is lost is missed by all of itself.
+// Derived: thirty times 3e-6, which round-off of constraints does to speeds 1e-5 rad from a
+// singular configuration.
 static const double kept = 1e-4;
 
 double ct_start_shown(double value)

@@ -7,17 +7,25 @@
 #include <math.h>
 #include <string.h>
 
-static const double met = 1e-13;     // last correction against the largest coordinate
-static const double roundoff = 1e-9; // corrections that no longer fall are round-off below this
-static const double nothing
-    = 1e-6; // [m or rad] coordinates smaller than this count as of this size
+// Newton's method ends at a correction of this part of the largest coordinate.
+// Derived: 450 units of round-off.
+static const double met = 1e-13;
+// It also ends below this part if corrections no longer become smaller.
+// Chosen: round-off of stiff systems against slow convergence.
+static const double roundoff = 1e-9;
+// The largest coordinate counts as of this size at least [m or rad].
+// Chosen: equilibria at zero against small mechanisms.
+static const double nothing = 1e-6;
+// Limit: of the iteration and of a step in it; without convergence there is an error.
 enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
 
 // ---- rows ---------------------------------------------------------------------------------------
 
 bool ct_basis_extend(struct ct_basis *s, double *v)
 {
-    const double dependent = 1e-6; // of its length: far above round-off, far below what moves
+    // Part of a vector's length that must be left after orthogonalisation.
+    // Chosen: far above round-off, far below an independent direction.
+    const double dependent = 1e-6;
     double before = 0, after = 0;
     for (size_t i = 0; i < s->n; i++)
         before += v[i] * v[i];

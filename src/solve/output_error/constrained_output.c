@@ -9,13 +9,17 @@
 #include <math.h>
 #include <string.h>
 
-// States are moved by so much: so far that outputs which are flat where a loop stands change as
-// well, a dead centre's or the straight line of Watt's linkage. Where loops do not close so far
-// away by less, 2^-28 in the end, which is felt above round-off.  [m, rad, m/s, rad/s]
+// Displacement h of the states in the test (8.41) [m, rad, m/s, rad/s]. It must be so large that an
+// output also changes if its derivative is zero in this configuration, as at a dead centre or on
+// the straight line of Watt's linkage. If loops do not close there it is made shorter.
+// Chosen: outputs with zero derivatives against loops that do not close.
 static const double first_way = 0x1p-4, shorter = 0.25;
+// Derived: the last of them is 2^-4 2^-24 = 2^-28, half the digits: a change is above round-off.
 enum { TRIES = 13 };
-// The part of its tolerance that errors of states may be of an output which is left to them.
+// An output counts as constrained only if errors of states change it by less than this part of its
+// tolerance. Chosen: an error that does not matter.
 static const double harmless = 0.25;
+// Chosen: calls without a test, their time against an output that is no longer constrained.
 enum { MOST_BETWEEN = 7 };
 
 struct ct_constrained_output {

@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-// What is promised of outputs, in tolerances. Accelerations and reactions may err by as much in a
-// step where states err by one: these go on in the next steps, those do not.
+// Tolerance of accelerations and reactions in a step, in tolerances of states. Errors of states
+// accumulate over the steps, those of accelerations and reactions do not.
+// Chosen: ten tolerances, which is promised of outputs at the end of a run.
 static const double promised = 10;
 
 bool ct_controlled_outputs_is_check(const struct ct_equations *e, ct_ex v)

@@ -1,7 +1,7 @@
-// Controlled outputs g, by what they are made of: time and states, or accelerations and multipliers
-// as well, which are those of the states.
+// Evaluation of controlled outputs g. There are two kinds: functions of time and states, and
+// functions that also contain accelerations or multipliers, which must be solved for first.
 //
-//     g(t, q, u)   or   g(t, q, u, u', lam) with u', lam of (6.1) at (t, q, u)                         (8.36)
+//     g(t, q, u)   or   g(t, q, u, u', lam) with u', lam of (6.1) at (t, q, u)     (8.36)
 #ifndef CT_SOLVE_OUTPUT_ERROR_CONTROLLED_OUTPUT_H
 #define CT_SOLVE_OUTPUT_ERROR_CONTROLLED_OUTPUT_H
 
@@ -10,7 +10,7 @@
 
 enum ct_output_kind { CT_OUTPUTS_OF_STATES, CT_OUTPUTS_OF_SOLUTIONS, CT_OUTPUT_KINDS };
 
-/// Those of a kind.
+/// The outputs of one kind.
 struct ct_controlled_outputs {
     struct ct_partition *s;
     struct ct_program program; // g of the evaluator's input
@@ -20,11 +20,11 @@ struct ct_controlled_outputs {
     long *evaluations; // those of the equations are counted here
 };
 
-/// Is an output a check of the run: the total energy, how far loops are open? As small differences
-/// of large terms they would ask for digits that nothing else needs.
+/// Is an output a check of the run, the total energy or a residual of the constraints? Checks are
+/// not controlled: as small differences of large terms they would need very short steps.
 bool ct_controlled_outputs_is_check(const struct ct_equations *e, ct_ex v);
-/// The kind of an output, CT_OUTPUT_KINDS if it is not controlled: a single state, which is
-/// controlled as it is, what depends on none, work, and checks.
+/// The kind of an output; CT_OUTPUT_KINDS if it is not controlled. These are single states, whose
+/// error is controlled anyway, outputs that depend on no state, work, and checks.
 enum ct_output_kind ct_controlled_outputs_kind(const struct ct_equations *e, ct_ex v);
 /// Of the values g (n) of the equations, all of this kind. Everything lives in a, the evaluator's
 /// arena; evaluations must live as long.
@@ -35,7 +35,7 @@ void ct_controlled_outputs_create(struct ct_arena *a, struct ct_partition *s,
 /// accelerations cannot be found.
 const double *ct_controlled_outputs_at(struct ct_controlled_outputs *o, double t,
                                        const double *y);
-/// What they may err by in a step, which states may err by so much in.
+/// The tolerance of these outputs in a step, from that of the states.
 struct ct_tolerance ct_controlled_outputs_tolerance(enum ct_output_kind kind,
                                                     const struct ct_tolerance *states);
 

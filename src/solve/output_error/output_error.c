@@ -7,26 +7,32 @@
 #include <math.h>
 #include <string.h>
 
-// Where outputs have at most this part of the error of states, that of so many further steps is not
-// looked at.
+// The ratio is the error of outputs over the error of states, both in their tolerances. At a ratio
+// of at most `harmless` the error of outputs is not estimated in the next STEPS_BETWEEN steps.
+// Chosen: time of estimates against errors in between.
 static const double harmless = 0.25;
 enum { STEPS_BETWEEN = 7 };
-// Where the ratio of the two is the same to this part at two looks in a row, it is taken for that
-// of more and more steps. Each look at accelerations takes two of them, and they may err by more.
+// If the ratio changes by at most this part between two estimates, it is used for twice as many
+// steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
+// evaluations, and the ratio may change more. Chosen: time of estimates against errors in between.
 static const double steady[CT_OUTPUT_KINDS] = {0.02, 0.5};
-enum { MOST_BETWEEN = 15 };
-// Nor are so many where they err by less than a quarter of what they may.
+enum { MOST_BETWEEN = 15 }; // Chosen: as above
+// Steps without an estimate after one in which outputs err by at most `harmless` of their
+// tolerance.
+// Chosen: as above.
 static const int few_between[CT_OUTPUT_KINDS] = {0, 3};
-// Round-off is measured again after so many looks where it counts for nothing, and at once where an
-// error would refuse a step.
+// Estimates without a new measurement of round-off, after one in which it did not matter. An error
+// that would reject a step has it measured at once. Chosen: as above.
 enum { LOOKS_BETWEEN = 15 };
-// State errors below this say nothing about the ratio of the two: steps are still growing.
+// Errors of states below this, in tolerances, do not give a ratio: the step size is still growing.
+// Chosen: steps that are too short against accurate ones.
 static const double least_error = 0.02;
-// Round-off is felt by a change of the states by such a part of themselves, far above it so that it
-// can be measured.
+// Relative change of the states by which the round-off of outputs is measured.
+// Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
 static const double change = 0x1p-40;
-// An output counts from so many round-off errors on, with six digits and more, and need not be
-// better than so many.
+// An output counts if it is larger than this many of its round-off errors, that is, has six digits;
+// its error need not be less than `most_precise` of them.
+// Chosen: outputs that are only round-off against small ones; steps against the last digits.
 const double ct_output_error_least_size = 1e6;
 static const double most_precise = 16;
 
@@ -388,11 +394,12 @@ void ct_output_error_accept(struct ct_output_error *p)
         ct_output_error_accept_sizes(&p->group[i].record);
 }
 
-// ---- outputs that amplify -----------------------------------------------------------------------
+// ---- outputs that are sensitive to errors of states ---------------------------------------------
 
-// A step that errs by less than this in states is a third as long as they ask for, and
-// accelerations shorten it no further: shorter ones do not damp the vibrations that those before
-// have left, and would follow them.
+// Outputs of accelerations do not reject a step whose error of states, in tolerances, is less than
+// this. Such a step is a third, the fourth root, of what states ask for. Still shorter steps do not
+// damp vibrations that earlier steps have excited, and would have to resolve them.
+// Chosen: a third.
 static const double least_states = 1e-2;
 
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,

@@ -1,11 +1,12 @@
-// Local error estimate of outputs, from that of states: an output that is a small difference of
-// large states needs better ones.
+// Error control of outputs. The local error of an output in a step follows from the estimated error
+// of the states; it can be larger in its tolerance, for example if the output is a small difference
+// of large states. Then it limits the step.
 //
 //     error of output g   |g(y1 + e) - g(y1)|,   e the error of the states      (8.6)
 //
-// Controlled are outputs that are functions of time and states, accelerations and reactions among
-// them, other than states themselves. Those that are round-off beside what they are made of, such
-// as residuals of constraints, are not.
+// Controlled outputs are functions of time and states, including accelerations and reactions, but
+// not single states. Outputs that consist of round-off only, such as residuals of constraints, do
+// not count.
 #ifndef CT_SOLVE_OUTPUT_ERROR_OUTPUT_ERROR_H
 #define CT_SOLVE_OUTPUT_ERROR_OUTPUT_ERROR_H
 
@@ -13,7 +14,7 @@
 
 struct ct_output_error;
 
-/// Outputs of fewer round-off errors than these do not count.
+/// An output counts only if it is larger than this many of its round-off errors.
 extern const double ct_output_error_least_size;
 
 /// NULL if there is no output to control. Everything lives in a, the evaluator's arena. shown (of
@@ -25,30 +26,30 @@ struct ct_output_error *ct_output_error_create(struct ct_arena *a, struct ct_par
 bool ct_output_error_is_check(const struct ct_equations *e, size_t i);
 /// Is output i made of more than time, states and the work put in?
 bool ct_output_error_needs_accelerations(const struct ct_equations *e, size_t i);
-/// Per speed (nu, arena a): is it an output, and is the coordinate that moves with it? False, all
-/// count, where an output is demanding: accelerations and reactions feel every vibration.
+/// For each speed (nu, arena a): is it an output (speeds), is its coordinate one (places)? False,
+/// and all count, if an output contains accelerations or reactions, which depend on every
+/// vibration.
 bool ct_output_error_find_requested(struct ct_arena *a, const struct ct_equations *e,
                                     const bool **speeds, const bool **places);
 /// A new run begins, by this method: nothing is known of the sizes of outputs.
 void ct_output_error_start(struct ct_output_error *p, const struct ct_method *method);
-/// Root mean square over the outputs of their errors at y (ny) for errors e (ny), where 1 is the
-/// tolerance; `states` is the same of the states. As long as outputs are not nearly as bad as
-/// those, or the ratio of both is steady, only every eighth or sixteenth step is looked at; else
-/// that ratio tells, or 0. Where the method is implicit those that amplify are left to
-/// ct_output_error_of_sensitive.
+/// Root mean square of the errors of the outputs at y (ny) for errors e (ny) of the states, where 1
+/// is the tolerance; `states` is the same norm of the states. If outputs err much less than states,
+/// or the ratio of both errors is steady, it is computed only in every eighth or sixteenth step; in
+/// between the ratio times `states` is returned, or 0. With an implicit method, sensitive outputs
+/// are left to ct_output_error_of_sensitive.
 double ct_output_error_of_step(struct ct_output_error *p, double t, const double *y,
                                const double *e, const struct ct_tolerance *tolerance,
                                double states, bool is_implicit);
-/// The most that an output, of those that are controlled, changes by for a change e (ny) of y (ny),
-/// over its largest value so far. With least > 0 over that if it is more, or over what is expected,
-/// and of those that do not amplify errors of states.
+/// The largest relative change of a controlled output for a change e (ny) of y (ny), in parts of
+/// the output's largest value so far. With least > 0 the unit is at least `least` and at least the
+/// expected size, and sensitive outputs are left out.
 double ct_output_error_of_change(struct ct_output_error *p, double t, const double *y,
                                  const double *e, double least);
-/// Outputs are expected to become as large as so many `times` what they change by for a change way
-/// (ny) of y, until told otherwise.
+/// Set the expected size of outputs: `times` their change for a change way (ny) of y.
 void ct_output_error_expect_size(struct ct_output_error *p, double t, const double *y,
                                  const double *way, double times);
-/// The last step that was looked at is accepted.
+/// The last step whose error was computed is accepted.
 void ct_output_error_accept(struct ct_output_error *p);
 
 /// As ct_output_sensitivity_error and ct_output_sensitivity_any, of all outputs that are
@@ -59,19 +60,19 @@ double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const d
 bool ct_output_error_has_sensitive(struct ct_output_error *p, double t, const double *y,
                                    const struct ct_tolerance *tolerance);
 
-/// The result, of those that are controlled, with the fewest digits: one round-off of states is
-/// *part (out) of its largest value so far; -1, and *part as it was, where steps can be held to
-/// `wanted` of all that are larger than `small`.
+/// The controlled result with the fewest digits: one round-off of states changes it by *part (out)
+/// of its largest value so far. -1, and *part unchanged, if all results larger than `small` can be
+/// accurate to `wanted`.
 int ct_output_error_roundoff_limit(struct ct_output_error *p, double t, const double *y,
                                    double wanted, double small, double *part);
 
-// ---- for runs side by side, which evaluate outputs themselves -----------------------------------
+// ---- for batches, which evaluate outputs themselves ---------------------------------------------
 
 /// The outputs of a kind; NULL if there are none, or p is NULL.
 const struct ct_controlled_outputs *ct_output_error_outputs(const struct ct_output_error *p,
                                                             enum ct_output_kind kind);
 
-/// Those of them that constraints determine; NULL if they determine none.
+/// Those of them that may be determined by the constraints; NULL if none can.
 struct ct_constrained_output *ct_output_error_constrained(const struct ct_output_error *p,
                                                           enum ct_output_kind kind);
 
@@ -82,35 +83,35 @@ struct ct_output_error_record {
     double *largest,
         *last;     // (n) |g| over the steps that were accepted, at the last one looked at
     bool has_last; // since the last acceptance
-    int skip;      // steps that are not looked at
-    int between;   // of them, planned at the last look
-    int unprobed;  // looks at which round-off is not measured
+    int skip;      // steps left without an estimate
+    int between;   // such steps planned at the last estimate
+    int unprobed;  // estimates left without a measurement of round-off
     const struct ct_output_sensitivity
-        *sensitive; // those that amplify do not count; NULL: all do
+        *sensitive; // sensitive outputs do not count; NULL: all do
     struct ct_constrained_output_record
-        constrained; // those that constraints determine do not, either
-    double ratio;    // of the error of outputs to that of states at the last look; 0: not known
+        constrained; // outputs determined by the constraints do not count, either
+    double ratio;    // error of outputs over that of states at the last estimate; 0: not known
 };
 /// Of n outputs of this kind; all zero.
 struct ct_output_error_record ct_output_error_record(struct ct_arena *a,
                                                      enum ct_output_kind kind, size_t n);
 void ct_output_error_clear(struct ct_output_error_record *r);
-/// Is this step looked at?
+/// Is the error of this step to be computed?
 bool ct_output_error_is_due(struct ct_output_error_record *r);
-/// If not: their error, as far as it is more than that of the states.
+/// If not: the error of outputs extrapolated from that of the states, 0 if it does not matter.
 double ct_output_error_extrapolated(const struct ct_output_error_record *r, double states);
-/// The error from outputs (n each) at y, at y as ct_output_error_perturbation changes it, and at y
-/// + e. probed == at: round-off is not looked at.
+/// The error from the values of outputs (n each) at y, at y with ct_output_error_perturbation, and
+/// at y + e. probed == at: round-off is not measured.
 double ct_output_error_evaluate(struct ct_output_error_record *r, const double *at,
                                 const double *probed, const double *off,
                                 const struct ct_tolerance *tolerance, double states);
-/// Is there an output that counts, of those at y and at y + e (n each), unless constraints
+/// Does an output, with values at y and at y + e (n each), limit the step, unless the constraints
 /// determine it? states: as above.
 bool ct_output_error_limits_step(const struct ct_output_error_record *r, const double *at,
                                  const double *off, const struct ct_tolerance *tolerance,
                                  double states);
 void ct_output_error_accept_sizes(struct ct_output_error_record *r);
-/// State i changed so little that outputs change by round-off only, enlarged by a factor.
+/// Relative change of state i by which the round-off of outputs is measured.
 static inline double ct_output_error_perturbation(int i)
 {
     return i % 2 ? -0x1p-40 : 0x1p-40;

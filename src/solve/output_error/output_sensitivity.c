@@ -7,16 +7,19 @@
 #include <math.h>
 #include <string.h>
 
-// What is promised of outputs, in tolerances.
+// Error of outputs that is promised at the end of a run, in tolerances. An output is sensitive if
+// errors of states within their tolerance may change it by more. Chosen: as documented.
 static const double promised = 10;
-// States are changed by such parts of themselves: far above round-off, and so little that outputs
-// are linear in it.
+// Relative change of states in difference quotients of outputs.
+// Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
 static const double change = 0x1p-40;
-// An output need not be better than so many round-off errors of states.
+// An output need not be more accurate than so many round-off errors of states.
+// Chosen: steps against the last digit.
 static const double most_precise = 2;
+// Calls without a test after one that found no sensitive output. Chosen: time against a late start.
 enum { CALLS_BETWEEN = 7 };
-// What outputs change by with their states changes slowly. Where that takes accelerations it holds
-// for so many further places.
+// Derivatives of outputs change slowly. Those of accelerations are used at so many further states.
+// Chosen: as above.
 static const int places_between[CT_OUTPUT_KINDS] = {0, 7};
 
 struct ct_output_sensitivity {

@@ -1,7 +1,6 @@
-// A run that is kept from one call to the next: from a state to a later time, as often as its owner
-// likes.
+// A run that is advanced call by call: each call integrates from the present state to a later time.
 //
-//     start -> to t1 -> to t2 -> [the owner changes the state, parameters or the time] -> start -> ...
+//     start -> to t1 -> to t2 -> [the owner changes state, parameters or time] -> start -> ...
 //
 // What always holds: programs, choices of rows and columns, sides of switches and the size of steps
 // stay from call to call; each call integrates from where the state is with first derivatives found
@@ -18,8 +17,8 @@ struct ct_advance;
 /// lives in a, but for the memory of calls, which lives in arenas under it.
 struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
                                      const struct ct_run_options *o);
-/// The state at t is not where steps have come to: nothing of those before counts. y (ny): the
-/// state, q, u, work. is_assembled: it is that of ct_run_begin or ct_run_restart, where t = 0.
+/// Start from another state at t, independent of earlier steps. y (ny): the state, q, u, work.
+/// is_assembled: it is the state of ct_run_begin or ct_run_restart, at t = 0.
 /// Errors: CT_E_STUCK, CT_E_SINGULAR, CT_E_STEP_OPEN, into the run's context.
 bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_assembled);
 /// Values of parameters have changed at t: switches may be on other sides, and change at other

@@ -1,13 +1,13 @@
-// Beams monitored during a run: slopes, indicators of linear ones, and the error that these will
-// have. See run_internal.h.
+// Monitoring of beams during a run: largest slopes, validity indicators of linear beams, and their
+// estimated error. See run_internal.h.
 //
-// Indicators and slopes are looked at with each sample; what estimates the error follows the base
-// from step to step.
+// Indicators and slopes are evaluated at samples. The estimated error depends on the motion of the
+// beam's base, so it is updated at every step.
 #include "beam_error/beam_error_coupled.h"
 #include "beam_error/validity.h"
 #include "solve/run/run_internal.h"
 
-static const double two_pi = 6.283185307179586;
+static const double two_pi = 6.283185307179586; // Definition: of mathematics
 
 void ct_slope_monitor(struct ct_slope_report *report, const struct ct_evaluator *m, double t)
 {
@@ -20,9 +20,9 @@ void ct_slope_monitor(struct ct_slope_report *report, const struct ct_evaluator 
     }
 }
 
-// Averaged over a period of the beam: what rings faster than it can follow does not count. The mean
-// comes late by that period; the beam has left from where on the indicator itself is beyond the
-// limit.
+// The indicator is averaged over a period of the beam, so that faster vibrations do not count. The
+// mean comes late by that period: the time reported is that from which on the indicator itself has
+// been beyond the limit.
 static void monitor_indicator(const struct ct_run *r, size_t i, double t)
 {
     struct ct_validity_report *v = &r->report->validity[i];

@@ -1,4 +1,4 @@
-// Events of a run: switches, jumps of driven rates, and the impulses that these mean. See
+// Events of a run: switches change side, rates of drivers jump, and impulses change speeds. See
 // run_internal.h.
 #include "solve/run/run_internal.h"
 
@@ -77,6 +77,8 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
     return jump;
 }
 
+// A jump of a driven coordinate, or an open row after an event, that is still none [m or rad].
+// Chosen: round-off of tables and functions against jumps that are meant.
 const double ct_run_jump_tolerance = 1e-9;
 
 bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
@@ -88,7 +90,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
         jump, t);
 }
 
-// Rows were met before; one that is not any more belongs to a driver on a chord.
+// Are all rows still closed after an event? They were before it: an open one belongs to a driver
+// that jumps, in a joint that is a chord of the tree.
 bool ct_run_chords_are_closed(struct ct_run *r, double t)
 {
     const struct ct_row *row = r->e->row;
@@ -105,7 +108,7 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
     return true;
 }
 
-// Speeds have jumped, past roots of switches maybe.
+// After an impulse: speeds have jumped, and may have passed roots of switches.
 static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
@@ -189,7 +192,7 @@ enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double 
     return i < 0 ? CT_EVAL_OK : report_held(r, t, i);
 }
 
-// Where the next singular configuration is for speeds that have jumped.
+// Predict the next singular configuration again after a jump of speeds.
 static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
@@ -211,8 +214,8 @@ static void set_sides(struct ct_run *r, double t, const double *y, const double 
     ct_switches_start(r->m, t, y, dy, r->crossed);
 }
 
-// In the gap of a crossing, where a root has crossed: what drivers do is known beforehand, and no
-// speed jumps.
+// After an event while a singular configuration is crossed. The motion of drivers is known
+// beforehand, and no speed jumps.
 static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, const double *dy,
                                   const signed char *crossed)
 {

@@ -30,17 +30,20 @@ static bool check_driven(struct ct_run *r)
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
 }
 
-// From y at t to t1 in one go: along the motion to second order, then onto the rows. False if that
-// leads too far.
+// One step of kinematic analysis, from y at t to t1: extrapolation to second order, then projection
+// onto the constraints. False if the step is too long or the correction too large.
 static bool advance_step(struct ct_run *r, double t, double t1, const double *y, double *out)
 {
-    const double longest = 0.3; // [rad or m]: more could lead to another assembly
-    const double part = 0.25;   // of the step: what the rows may correct
+    // Largest change of a coordinate [rad or m].
+    // Chosen: steps against a jump to another way of assembly.
+    const double longest = 0.3;
+    // Part of the step that the projection may correct. Chosen: as above.
+    const double part = 0.25;
     const size_t nq = r->m->nq, nu = r->m->nu;
     const double h = t1 - t;
     double most = 0, worst = 0, *d = r->scratch;
     memcpy(out, y, r->ny * sizeof *y);
-    if (!nu) // rows between driven coordinates alone: they hold or they do not
+    if (!nu) // constraints between driven coordinates only: they can be checked, not satisfied
         return ct_partition_project(r->s, ct_run_time_before_event(r, t1), out) == CT_EVAL_OK;
     if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, t), y) != CT_EVAL_OK)
         return false;
@@ -57,12 +60,13 @@ static bool advance_step(struct ct_run *r, double t, double t1, const double *y,
         return false;
     for (size_t i = 0; i < nq; i++)
         worst = fmax(worst, fabs(out[i] - r->stage[i]));
+    // Chosen: corrections of round-off, where nothing moves
     return worst <= part * most + 1e-9;
 }
 
 static bool advance_to(struct ct_run *r, double t, double t1, double *y)
 {
-    const double least = 1e-9; // of the way: it does not go on
+    const double least = 1e-9; // Limit: part of the interval; shorter steps are an error
     double h = t1 - t, *next = r->next;
     ct_run_note_turning(r, t, y);
     while (t < t1) {

@@ -1,5 +1,6 @@
-// Method switching on stiffness, the choice of the method while a run goes on: steps end where the motion turns stiff, an implicit method is tried, and
-// the one that gets farther for its work goes on.  (section 8.1)
+// Method switching on stiffness during a run. When the motion becomes stiff, explicit steps end and
+// an implicit method is tried from there. The method that advances more for its work goes on.
+// (section 8.1)
 #include "solve/run/run_internal.h"
 
 #include "integrate/implicit/newton_sparse.h"
@@ -10,11 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-// A vibration that is a smaller part of all outputs is not told from the motion, whose forces change how it is borne as it goes on. Steps
-// whose errors come to 50 T of it at the end of 2e5 radians leave half of T in outputs.
+// A vibration with a smaller part in all outputs does not limit the steps.
+// Derived: steps that lose 50 T of a vibration over 2e5 rad, as measured, then leave half of T in
+// outputs.
 static const double noticed = 0.01;
 
-// Outputs that feel the phase of vibrations which an explicit method follows: steps whose errors come to T at the end.  (8.14)
+// The step with which an explicit method has an error of T in outputs at the end, from the phase of
+// the fast vibrations that it resolves.  (8.14)
 static double wanted_step(const struct ct_run *r)
 {
     const double fast = r->method->is_implicit ? 0 : r->stiffness->fast;
@@ -32,7 +35,8 @@ static double accurate_step(void *user)
                 fmin(stable, wanted_step(r)));
 }
 
-// What outputs change by for a change e (ny) of y, in parts of them. Those that are hardly more than round-off do not count.
+// The largest relative change of outputs for a change e (ny) of y. Outputs that are hardly more
+// than round-off do not count.
 static double change_of_outputs(struct ct_run *r, double t, const double *y, const double *e)
 {
     const double place = DBL_EPSILON * ct_vector_largest(y, r->m->nq),
@@ -50,8 +54,9 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
     return most;
 }
 
-// The part of an output that vibrations make which the explicit method follows, far from the motion; at most all of it, which outputs
-// that amplify are taken to feel. Errors in what dies have died with it at the end.
+// The part of an output that is due to vibrations much faster than the motion, which the explicit
+// method resolves; at most 1, which is assumed for sensitive outputs. Vibrations that are damped
+// out by the end do not count.
 static double find_vibration_effect(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_time_before_event(r, t), *e, *later;
@@ -67,7 +72,7 @@ static double find_vibration_effect(struct ct_run *r, double t, const double *y)
     return fmin(felt, 1);
 }
 
-// After an event, and next to a singular configuration, steps had better go on.
+// No change of the method right after an event or near a singular configuration.
 bool ct_run_suspects_stiffness(struct ct_run *r, double t, const double *y)
 {
     const bool may_stop = t > r->last_event && !(r->singular->time_to_singular < INFINITY);
@@ -110,14 +115,16 @@ static double operations_of_accelerations(const struct ct_run *r)
     return operations(&r->m->motion) + ct_partition_operations(r->s);
 }
 
-// Arithmetic operations, and some that stand for calls, copies and vectors: as measured on systems of few operations.
+// Cost of the methods in arithmetic operations, with an overhead for calls, copies and vectors.
 static struct ct_cost find_cost(const struct ct_run *r)
 {
     const struct ct_evaluator *m = r->m;
+    // Derived: measured on systems with few operations
     const double explicit_overhead = 150, implicit_overhead = 400;
     const struct ct_newton_work w
         = ct_newton_work(r->problem->dae->plan[1], (int)m->nu + 2 * r->s->rank);
-    const double complex_also = 5;
+    const double complex_also
+        = 5; // Derived: one real system, and a complex one of four times the work
     return (struct ct_cost){
         .evaluation = operations_of_accelerations(r) + explicit_overhead,
         // three residuals make a correction
@@ -129,7 +136,8 @@ static struct ct_cost find_cost(const struct ct_run *r)
     };
 }
 
-// Time that the implicit method gains for its work, from here, begun with steps of `first_step`; nothing has changed afterwards.
+// Trial of the implicit method from the present state, with a first step of `first_step`: returns
+// the time that it advances per work. The state of the run is the same afterwards.
 static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                            const struct ct_integrate_options *io, double first_step)
 {
@@ -142,7 +150,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                              .has_to_damp = r->stiffness->is_far && !r->stiffness->is_dead};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
-    const struct ct_rank_monitor singular = *r->singular; // none is near
+    const struct ct_rank_monitor singular = *r->singular; // no configuration is near
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
     memcpy(input, m->input, m->ninput * sizeof *input);
@@ -153,7 +161,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->trial = &trial;
     ct_integrate(r->ctx, r->o->stiff_method, p, &trial_io, y, &r->stats);
     r->trial = NULL;
-    // a trial may fail, and may have met events: all that is as if it had not been
+    // a trial may fail or meet events: restore what it has changed
     r->ctx->ndiagnostic = ndiagnostic;
     r->ctx->nerror = nerror;
     r->pending = pending;
@@ -169,7 +177,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     return ct_trial_pace(&trial);
 }
 
-// What the implicit method needs, and the pace of the explicit one to compare it with.
+// Prepare the implicit method, and measure the time per work of the explicit one to compare with.
 static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
 {
     if (!p->dae) {
@@ -183,7 +191,7 @@ static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
     r->explicit_pace = ct_stiffness_pace(r->stiffness, &r->implicit.cost);
 }
 
-// It goes on from here. gain: NAN where there was no trial.
+// The implicit method takes over. gain: NAN if there was no trial.
 static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, double gain)
 {
     struct ct_run_report *report = r->report;
@@ -202,8 +210,9 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
     report->method = r->method;
 }
 
-// Where nothing fast is left, steps of the size that wins: from those of the explicit method they would grow for most of the trial, or
-// not at all where their errors are round-off errors.
+// The first step of a trial. If fast vibrations have died out it is the step with which the
+// implicit method would win. From the step of the explicit method it would grow for most of the
+// trial, or not at all if errors are round-off.
 static double first_of_trial(const struct ct_run *r, const struct ct_integrate_options *io,
                              double least_gain)
 {
@@ -211,14 +220,16 @@ static double first_of_trial(const struct ct_run *r, const struct ct_integrate_o
     return r->stiffness->is_dead ? fmax(io->first_step, winning) : io->first_step;
 }
 
-// Over to the implicit method if it gets farther for its work. True: it does. That says nothing of the motion behind a jump of speeds,
-// which excites vibrations: there the explicit method goes on.
+// Change to the implicit method if it advances more for its work; true if it does. After a jump of
+// speeds, which excites vibrations, the trial says nothing and the explicit method goes on.
 static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
                                struct ct_integrate_options *io)
 {
-    // What is counted is not quite what is spent, and its errors are larger; more so where vibrations are no longer followed: a
-    // slider-crank of flexible rods gained no time from 2.8 times as far, and erred by the tolerance in place of a thousandth. Steps as
-    // long as stability allows do not follow them either.
+    // The gain must be clearly above 1: operations are not exactly time, and errors of the implicit
+    // method are larger, more so if it does not resolve vibrations. A slider-crank with flexible
+    // rods gained no time with a gain of 2.8, and its error was the tolerance instead of a
+    // thousandth of it. Explicit steps at the limit of stability do not resolve the vibrations
+    // either.
     const bool gives_up = r->stiffness->is_far && !r->stiffness->is_dead
                        && !ct_stiffness_is_unstable(r->stiffness);
     const double least_gain = gives_up ? 5 : 2;
@@ -233,7 +244,7 @@ static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
     return true;
 }
 
-// Steps have ended at io->t0: which method is to go on?
+// Steps have ended at io->t0: choose the method to go on with.
 static void consider_explicit(struct ct_run *r, struct ct_problem *p,
                               struct ct_integrate_options *io)
 {
@@ -244,7 +255,7 @@ static void consider_explicit(struct ct_run *r, struct ct_problem *p,
     if (was_implicit || !switch_to_implicit(r, p, io)) {
         if (was_implicit)
             r->report->returned_at = io->t0;
-        // what the implicit method, or its trial, left open of the constraints is closed now
+        // close the constraints, which the implicit method or its trial may have left open
         ct_rank_monitor_forget_motion(r->singular);
         r->method = r->o->method;
         io->rtol = r->o->rtol;
@@ -271,9 +282,10 @@ static void add_stats(struct ct_integrate_stats *sum, const struct ct_integrate_
     sum->last_rtol = s->last_rtol;
 }
 
-// Outputs that amplify errors of states feel what an explicit method leaves of vibrations, whose errors go on undamped, long
-// before its steps are suspicious: a method that damps them begins, where there are none yet, and goes on as long as it is not
-// slower than the other would have to be.
+// With sensitive outputs the run begins with the implicit method if no vibrations are excited yet.
+// An explicit method does not damp the errors of fast vibrations, and sensitive outputs amplify
+// them long before stiffness is detected. The implicit method goes on as long as it is not slower
+// than the explicit one, with the steps that such outputs ask for.
 static bool begins_implicit(struct ct_run *r, const struct ct_run_options *o,
                             struct ct_stiffness *stiffness)
 {
@@ -307,11 +319,11 @@ bool ct_run_begins_implicit(struct ct_run *r, const struct ct_run_options *o)
         r->start_stiffness
             = ct_stiffness_create(r->arena, p, &r->stats, o->output_rtol, nq, last);
     }
-    r->start_stiffness->fast = 0; // nothing is left of other runs
+    r->start_stiffness->fast = 0; // forget earlier runs
     return begins_implicit(r, o, r->start_stiffness);
 }
 
-// From start to end, with another method from where that pays.
+// Integrate from start to end, and change the method when that pays.
 bool ct_run_integrate(struct ct_run *r, struct ct_problem *p, struct ct_integrate_options io)
 {
     const double *sample = io.sample;
@@ -341,7 +353,7 @@ bool ct_run_integrate(struct ct_run *r, struct ct_problem *p, struct ct_integrat
             r->resolves_vibrations = false;
             p->longest_step = accurate_step;
             io.first_step = io.t0 - r->t_before;
-            r->stiffness->window_evaluations = 0; // counts begin anew with the next steps
+            r->stiffness->window_evaluations = 0; // count anew from the next step
         } else {
             consider_explicit(r, p, &io);
             add_stats(&r->report->stats, &r->stats);

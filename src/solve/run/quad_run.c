@@ -1,5 +1,6 @@
-// See quad_run.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... parts of a step, as
-// many as the tolerance wants: Hairer, Norsett and Wanner (1993), II.9, key hairer1993.
+// See quad_run.h. Extrapolation of the modified midpoint rule with 2, 4, 6, ... substeps; columns
+// are added until the error is below the tolerance. Source: Hairer, Norsett and Wanner (1993),
+// II.9, key hairer1993.
 #include "solve/run/quad_run.h"
 #include "solve/evaluator/quad_program.h"
 
@@ -10,7 +11,8 @@
 
 typedef ct_quad quad;
 
-enum { COLUMNS = 14 }; // of the extrapolation: order 28 at most
+// Limit: columns of the extrapolation, of order 28 at most; a step that needs more is shortened.
+enum { COLUMNS = 14 };
 
 static quad larger(quad a, quad b)
 {
@@ -143,7 +145,8 @@ static void advance_to(struct run *r, quad t)
 // True: y has gone on by h. *factor: what the next step should be.
 static bool step(struct run *r, quad t, quad h, double tolerance, double *factor)
 {
-    const int aim = 10; // columns that a step should need
+    const int aim
+        = 10; // Chosen: columns that a step should need; work of a step against its length
     rhs(r, t, r->y, r->dy);
     for (int k = 0; k < COLUMNS; k++) {
         midpoint(r, t, h, 2 * (k + 1));
@@ -165,7 +168,7 @@ bool ct_quad_can_run(const struct ct_evaluator *m)
     const struct ct_equations *e = m->e;
     for (size_t i = 0; i < e->nmemory; i++)
         if (ct_memory_is_updated(
-                &e->memory[i])) // steps turn too far to follow angles and signs
+                &e->memory[i])) // steps are too long to follow angles past half a turn
             return false;
     return m->solved.nout && !e->nrow && !e->nswitch && !e->x->ntable;
 }
@@ -182,8 +185,8 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double 
                  double duration, size_t nsample, double tolerance, bool (*go_on)(void *user),
                  void *user, double *out)
 {
-    const double least = 1e-12; // of the duration: steps are not shorter
-    const double stretch = 1.1;
+    const double least = 1e-12; // Limit: part of the duration; the run fails with shorter steps
+    const double stretch = 1.1; // Chosen: a longer last step against a very short one after it
     struct run r = create(a, m, y);
     quad t = 0, h = (quad)duration / 1000;
     if (m->result.nout)
@@ -193,7 +196,9 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double 
         const quad sample
             = k + 1 == nsample ? duration : duration * (double)k / (double)(nsample - 1);
         while (t < sample) {
-            const bool is_last = h * stretch >= sample - t; // no crumbs
+            const bool is_last
+                = h * stretch
+               >= sample - t; // a step that nearly gets there goes on to the sample
             const quad now = is_last ? sample - t : h;
             double factor;
             if (!go_on(user) || (!is_last && now < least * duration))

@@ -1,5 +1,5 @@
-// A run in quadruple precision, for references: what round-off and step control leave in double
-// precision is not in it.
+// A run in quadruple precision, as a reference for the round-off and truncation errors of runs in
+// double precision.
 //
 // The listings of an evaluator are evaluated in __float128, the states by extrapolation of the
 // midpoint rule; parameters, numbers of the model and the start are those of the evaluator, rounded

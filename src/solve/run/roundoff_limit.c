@@ -1,43 +1,46 @@
-// Round-off limit: outputs with fewer digits than are asked for, whatever the steps: looked for at
-// the end of a run.
+// Round-off limit: at the end of a run, find outputs that cannot have the digits that are asked
+// for, however small the steps are.
 //
-// Some are functions of states that amplify their round-off (output_sensitivity.h). Others feel it
-// through the motion: stiff forces answer a round-off of places, eps q, by accelerations eps |f'(q)
-// q|, and a speed keeps of that what its damping and its vibration leave,
+// Some outputs are functions that amplify the round-off of states (output_sensitivity.h). Others
+// are inaccurate as the states are: with stiff forces the round-off of coordinates, eps q, gives
+// accelerations eps |f'(q) q|. Vibration and damping limit the resulting error of a speed to
 //
-//     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|                                  (8.15)
+//     eps |f'(q) q| / max(omega, |f'(u)|),   omega^2 = |f'(q) q|/|q|     (8.15)
 //
-// A body on a stiff damped spring that creeps along has as few digits in its speed as the spring in
-// its force. Those of the steps of an explicit method add up where nothing damps them,
+// The speed of a body that creeps on a stiff damped spring has as few digits as the force of the
+// spring. Round-off errors of the n steps of an explicit method add up if nothing damps them, to
 //
-//     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off                           (8.18)
+//     (omega/max omega) root(min(n, n/(f'(u) (t1 - t0))))  times a round-off     (8.18)
 //
-// An inertia that is left of others which cancel, as that of a light section in free flight, has
-// lost as many digits as they are larger, the same ones all along. What it moves gets out of step:
-// its speed errs by half of that part of its accelerations times the time.
+// Inertias may cancel, as those of a light beam section in free flight. The remaining inertia has a
+// relative error of eps times the ratio of the terms to it, which is nearly constant during the
+// run. The motion that it governs gets out of phase: the error of its speed is half of that
+// relative error times acceleration times time.
 #include "solve/run/run_internal.h"
 
 #include <float.h>
 #include <string.h>
 
-// Changes are so many round-off errors, far above them, and so little that the equations are linear
-// in them.
+// Changes of states in difference quotients, in units of round-off. Derived: the quotients have
+// twelve bits, and terms of second order, 2^-80, are far below round-off.
 static const double roundoffs = 0x1p12;
-// An output need not be better than so many round-off errors.
+// An output need not be more accurate than so many round-off errors.
+// Chosen: reports of the last digit are of no use.
 static const double most_precise = 2;
 
 static double part_of(size_t i)
 {
-    const double golden
-        = 0.618033988749895; // different for each state, so that nothing cancels
+    // different for each state, so that changes do not cancel. Definition: (sqrt 5 - 1)/2
+    const double golden = 0.618033988749895;
     return 1 + fmod(golden * (double)i, 1);
 }
 
 struct roundoff {
     double *speed; // (nu) in so many round-off errors, after damping
     double *share; // (nu) omega/(the largest omega)
-    double *
-        sum; // (nu) root of the steps whose round-off errors are still there: of either sign, n add up to the root of n
+    // (nu) factor of the accumulation: n errors of random sign add up to sqrt(n); n is the number
+    // of steps whose errors are not damped yet
+    double *sum;
     double place; // largest, in so many round-off errors
 };
 
@@ -194,16 +197,16 @@ static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, d
 
 struct cancellation {
     double *part; // (nu) round-off of each of these inertias, as a part of it
-    double *
-        noise; // (nu) of u' where that of `worst` was largest: what a round-off of its inertia does to all speeds
+    // (nu) errors of all u' in the sample in which that of `worst` was largest
+    double *noise;
     size_t worst; // the speed whose acceleration errs most
 };
 
-// With places changed to both sides what is linear in them cancels: the rest is as large as root 6
-// round-off errors.
+// In the second difference of inertias over changed coordinates all that is linear cancels. What is
+// left is round-off: the sum with weights 1, 1 and -2 has root 6 times one error.
 static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
 {
-    enum { LOOKS = 8 };
+    enum { LOOKS = 8 }; // Chosen: samples of a mean; its accuracy against their time
     const size_t nu = r->m->nu, n = 2 * nu + r->m->nq, pivots = nu + r->m->nq;
     double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *LOOKS),
            *behind = CT_NEWN(r->arena, double, n);
@@ -227,7 +230,8 @@ static void find_cancellation(struct ct_run *r, double t, struct cancellation *g
             g->noise = ahead + look * n;
 }
 
-// For how long speed k remembers, of t. f (nu) at r->y is in r->scratch.
+// The time for which an error of speed k lasts until damping removes it, at most t. f (nu) at r->y
+// is in r->scratch.
 static double remembered(struct ct_run *r, double t, size_t k)
 {
     const size_t nq = r->m->nq;
@@ -239,12 +243,11 @@ static double remembered(struct ct_run *r, double t, size_t k)
     return t / fmax(1, (r->scratch[k] - r->dy[nq + k]) / change * t);
 }
 
-// Does what such an inertia moves get so far out of step that an output errs by more than is
-// wanted?
+// Does the phase error of a cancelling inertia make the error of an output larger than is wanted?
 static void find_phase_error(struct ct_run *r, double t, const double *at, double wanted,
                              struct ct_roundoff_limit *b)
 {
-    const double few = 100 * DBL_EPSILON; // digits that any sum loses
+    const double few = 100 * DBL_EPSILON; // Chosen: two digits, which any long sum may lose
     const size_t nu = r->m->nu;
     struct cancellation g = {.part = CT_NEWN(r->arena, double, nu + 1)};
     double *u = CT_NEWN(r->arena, double, nu + 1),

@@ -8,7 +8,7 @@
 #include <float.h>
 #include <string.h>
 
-// ---- evaluation -------------------------------------------------------------------------------------------
+// ---- evaluation ----------------------------------------
 
 void ct_run_find_multipliers(struct ct_run *r)
 {
@@ -89,7 +89,9 @@ static const double aimed_turn = 2, most_turn = 3; // [rad]
 
 static double turning(struct ct_run *r, double t, const double *y)
 {
-    const double glance = 1e-6; // of the run, or [s]
+    // Time over which angles are compared, part of the run, or [s].
+    // Chosen: half the digits, for a difference of which no angle turns far.
+    const double glance = 1e-6;
     const double dt = glance * (r->o ? fmin(1, r->o->duration) : 1);
     return ct_memory_turning(r->m, ct_run_time_before_event(r, t), y, dt > 0 ? dt : glance);
 }
@@ -148,7 +150,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     return CT_EVAL_OK;
 }
 
-// ---- creation -------------------------------------------------------------------------------------------------
+// ---- creation ----------------------------------------
 
 static bool uses(const struct ct_equations *e, ct_ex v, enum ct_sym_kind kind)
 {
@@ -182,10 +184,12 @@ static void note_given(struct ct_run *r, const struct ct_initial_state *start)
             r->is_given[r->e->coordinate[i].u] = start->is_given[i];
 }
 
-// Rows of mechanisms whose largest length is less are closed to less. [m] (6.3c)
+// Loops of mechanisms whose largest length [m] is less are closed more accurately, in proportion.
+// Chosen: accuracy of small mechanisms against iterations on round-off.  (6.3c)
 static const double small_length = 0.01;
 
-// What rows are measured by: 1, or the largest length of a body against that length.
+// Unit of the residuals of rows: 1, or the largest length of a body over small_length if it is
+// less.
 static double find_scale(const struct ct_model *model)
 {
     double largest = 0;
@@ -212,12 +216,13 @@ static bool keeps_demands(struct ct_run *r, const struct ct_initial_state *start
     return ok;
 }
 
-// The accelerations at the start cannot be found: a rate of a state that is no number tells most.
+// The accelerations at the start cannot be found: name a state whose derivative is not finite, if
+// any.
 static void no_start(struct ct_run *r)
 {
     if (r->e->has_dynamics)
         ct_evaluator_dynamics(r->m);
-    // without M and Q the closed form has given it
+    // without M and Q it is an output of the symbolic solution
     const double *rate = r->e->has_dynamics ? r->m->Q : r->m->input + r->m->at_a;
     for (size_t i = 0; i < r->e->nstate; i++) {
         if (!isfinite(rate[r->e->nmotion + i])) {
@@ -231,7 +236,7 @@ static void no_start(struct ct_run *r)
              "the accelerations at t = 0 cannot be found");
 }
 
-// To the start, assembled; rows and columns chosen there.
+// Set the assembled start, and choose rows and columns there.
 bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
 {
     ct_initial_state_apply(start, r->m, r->y);
@@ -242,13 +247,13 @@ bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
     r->s->sigma_best = 0;
     r->s->scale = find_scale(r->model);
     ct_evaluator_measure_rows(r->m);
-    if (r->m->is_inexact) // closed forms know no gaps
+    if (r->m->is_inexact) // symbolic solvers do not know the gaps of inexact data
         ct_partition_use_solver(
             r->s, r->m->nu + r->m->nrow < CT_LEAST_SPARSE ? NULL : &ct_solver_sparse);
     ct_partition_find_units(r->s);
     if (!ct_partition_choose(r->s))
         return false;
-    // measured on other trees, the loops close to round-off; the rest is taken off here
+    // the assembly used other trees: remove the round-off that this leaves in the loops
     if (ct_partition_project(r->s, 0, r->y) != CT_EVAL_OK) {
         ct_error(r->ctx, (struct ct_mark){.file = r->model->file}, CT_E_ASSEMBLY,
                  "the assembled start is singular: the loops cannot be held there");
@@ -352,9 +357,9 @@ enum ct_eval ct_run_results(struct ct_run *r, double t, const double *y, double 
     return CT_EVAL_OK;
 }
 
-// ---- the run ------------------------------------------------------------------------------------------------------
+// ---- the run ----------------------------------------
 
-// Energy, constraints: the ledger of a sample.
+// Checks at a sample: energy balance and residuals of the constraints.
 static void update_energy_balance(struct ct_run *r, const double *y)
 {
     ct_program_run(&r->m->energy, r->m->input);
@@ -373,7 +378,7 @@ static void update_energy_balance(struct ct_run *r, const double *y)
         = fmax(r->report->velocity_constraint, ct_vector_largest(r->m->v, r->m->nrow));
 }
 
-// Steps that began before the start have to come to it.
+// If steps began before the start, they must pass through it.
 static bool has_come_to_start(struct ct_run *r, const double *y)
 {
     return r->started || !(r->t0 < 0) || ct_singular_meets_start(r->assembled, y, r->ny)
@@ -434,7 +439,7 @@ bool ct_run_at_sample(void *user, double t, const double *y)
                                                            : singular_at(r, t);
 }
 
-// Where accelerations and multipliers cannot be computed.
+// The error if accelerations and multipliers cannot be computed.
 static bool at_singular_sample(void *user, double t, const double *y,
                                const struct ct_gap_interpolation *b)
 {
@@ -456,7 +461,7 @@ bool ct_run_at_step(void *user, double t, const double *y)
     return !r->is_suspect;
 }
 
-// ---- what is taken over the run -------------------------------------------------------------------------
+// ---- what is taken over the run ----------------------------------------
 
 struct ct_take_scan *ct_run_take_create(struct ct_arena *a, const struct ct_run_options *o)
 {
@@ -501,10 +506,13 @@ static bool over_step(void *user, const struct ct_step_view *step)
     return true;
 }
 
-// Results along one vector z of null(J'): those that change depend on the choice of multipliers.
+// Results with multipliers lam and lam + z, with z in null(J'): those that change depend on the
+// choice of multipliers.
 static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
-    const double change_tolerance = 1e-9; // of a result against its size; z is of order one
+    // Relative change of a result that is still none; z is of order one.
+    // Chosen: round-off against a small part of a multiplier in a result.
+    const double change_tolerance = 1e-9;
     double *lam = r->m->input + r->m->at_lam, largest_lam = 1;
     for (size_t i = 0; i < r->m->nrow; i++)
         largest_lam = fmax(largest_lam, fabs(lam[i]));
@@ -551,9 +559,9 @@ double ct_run_sample_time(const struct ct_run_options *o, size_t i)
                                : o->duration * (double)i / (double)(o->nsample - 1);
 }
 
-// Displacements of a beam along its axis, those across, rotations and the rates of each are
-// measured by the largest of their kind. Those along are much smaller than those across, but forces
-// come from them.
+// Groups of states with a common scale in the error norm: of each beam the axial displacements, the
+// transverse ones, the rotations, and the rates of each. Axial displacements have a scale of their
+// own: they are much smaller than transverse ones, but axial forces depend on them.
 const struct ct_groups *ct_run_groups(struct ct_run *r)
 {
     struct ct_groups *g = CT_NEW(r->arena, struct ct_groups);
@@ -576,15 +584,15 @@ const struct ct_groups *ct_run_groups(struct ct_run *r)
     return g->n ? g : NULL;
 }
 
-// Anything that wants to see each step?
+// Does anything have to be evaluated after each step?
 static bool looks_at_steps(const struct ct_run *r)
 {
     return r->o->progress || r->o->stiff_method || r->m->base_motion.nout;
 }
 
-// Speeds and places that are followed for themselves; where nothing is told all are. States of the
-// model are no speeds of vibrations and may be of any size, so that energies of errors would tell
-// nothing.
+// Tell the integrator which speeds and coordinates are outputs; by default all are. Not with
+// switches, nor with states of the model: these are not speeds of vibrations and may have any size,
+// so an energy norm of errors has no meaning.
 static void find_requested(struct ct_run *r, struct ct_problem *p)
 {
     ct_evaluator_set(r->m, 0, r->y);
@@ -599,10 +607,12 @@ static void find_requested(struct ct_run *r, struct ct_problem *p)
     }
 }
 
-// Steps in double precision are held to no less than this.
+// The tightest tolerance for which cancellation of inertias is judged.
+// Chosen: below it round-off of double precision is near.
 static const double sharpest = 1e-10;
 
-// Steps of the implicit method are held to this part of what is wanted.
+// A round-off error of states counts if it changes an output by this part of the wanted tolerance.
+// Chosen: truncation errors have the rest.
 static const double held_to = 0.1;
 
 static double input_limited_step(void *user, double t, double h)
@@ -616,7 +626,7 @@ bool ct_run_starts_near_singular(struct ct_run *r)
     return ct_singular_starts_near(r->singular, r->y, r->dy);
 }
 
-// A start in or near a singular configuration: steps begin a little before it.
+// If the run starts in or near a singular configuration, begin steps a little before it.
 bool ct_run_start_steps(struct ct_run *r)
 {
     const struct ct_problem p = {.user = r,
@@ -654,8 +664,8 @@ bool ct_run_start_steps(struct ct_run *r)
     return ok;
 }
 
-// Accelerations of a single freedom whose inertia is what next to nothing is left of others err by
-// eps over that part.  (8.39)
+// Warn of cancellation: if the inertia of a single degree of freedom is a small part of the terms
+// that it is the sum of, accelerations have a relative error of eps over that part.  (8.39)
 static void warn_of_cancellation(struct ct_run *r)
 {
     if (r->s->left < r->s->least_cancellation)

@@ -15,10 +15,10 @@ static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
     return r->model->joint[joint].mark;
 }
 
-// Where steps ended as they became too short: near a singular configuration?
+// Add a note if steps became too short near a singular configuration.
 static void name_singular(struct ct_run *r, const char *advice)
 {
-    enum { MOST_NAMES = 5 };
+    enum { MOST_NAMES = 5 }; // Limit: of a message; dots stand for the others
     bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
     const double t = r->stats.last_time;
     if (!ct_rank_monitor_is_near_singular(r->singular, ct_run_time_before_event(r, t), r->y,
@@ -40,11 +40,11 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// A little later, or before, is this part of the run: far enough for a contradiction to be more
-// than round-off.
+// The part of the run by which a state a little later or before is computed.
+// Chosen: far enough for a contradiction of drivers to be more than round-off.
 static const double little = 1e-3;
 
-// Where steps ended as the constraints could not be met: the row that stays open farthest a little
+// If steps ended as the constraints could not be closed: name the row that is open most a little
 // later.
 static void name_open_row(struct ct_run *r)
 {
@@ -133,12 +133,13 @@ const char *ct_run_singular_joints(const struct ct_run *r)
     return r->singular_joints;
 }
 
-// Where the run began there are fewer independent rows than on each of the motions that go on from
-// there, and none is taken.
+// Add a note if the run began in a bifurcation: J has a lower rank there than on each of the
+// possible motions, and none of them was taken.
 static void name_singular_start(struct ct_run *r)
 {
-    const double near
-        = 0.1; // [rad or m], as far as ct_singular_start_test looks: what ends it later is something else
+    // Distance from the start [rad or m]; a run that ends farther on has another cause.
+    // Chosen: as ct_singular_start_test.
+    const double near = 0.1;
     const double way = r->stats.last_time * ct_vector_max_norm(r->y + r->m->nq, r->m->nu);
     if (r->singular_joints && way < near)
         ct_note(r->ctx, (struct ct_mark){0},
@@ -151,7 +152,7 @@ static void name_singular_start(struct ct_run *r)
 
 void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
 {
-    enum { MOST = 3 };
+    enum { MOST = 3 }; // Limit: notes of a message
     int n = 0;
     ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
     ct_program_run(&r->m->driver, r->m->input);
@@ -177,11 +178,11 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
     }
 }
 
-// Steps of order 2 come to round-off long before those of the others do, near singular
-// configurations first.
+// Steps of a method of order 2 are so short that round-off ends them long before those of others,
+// near singular configurations first.
 static void advise_order(struct ct_run *r)
 {
-    const int low = 2;
+    const int low = 2; // Chosen: order from which on steps are long enough
     if (r->method->order <= low)
         ct_note(
             r->ctx, (struct ct_mark){0},
@@ -191,8 +192,8 @@ static void advise_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
-// Has an event been in the position, or next to it, or is one about to be there? Behind it no step
-// comes out of the position.
+// Is there an event at the singular configuration or very near it? After an event there, no step
+// leaves the configuration.
 static bool has_switched(const struct ct_run *r)
 {
     const double t = r->stats.last_time, near = little * r->o->duration;
@@ -202,10 +203,10 @@ static bool has_switched(const struct ct_run *r)
 static const char *const let_pass
     = ", where a driver may not rest: let it pass, or rest beside it";
 
-// Do drivers come to rest, by what speeds have been?
+// Have drivers come to rest, compared with the largest speed of the run?
 static bool is_driven_to_rest(const struct ct_run *r)
 {
-    const double rest = 0.01; // of the swiftest
+    const double rest = 0.01; // Chosen: part of the largest speed that counts as rest
     bool is_driven = false;
     for (size_t i = 0; i < r->model->njoint; i++) {
         const struct ct_instance *joint = &r->model->joint[i];
@@ -215,8 +216,8 @@ static bool is_driven_to_rest(const struct ct_run *r)
         && ct_vector_largest(r->y + r->m->nq, r->m->nu) < rest * r->singular->swiftest;
 }
 
-// What leads on near a singular configuration: where round-off is what ends steps, a tolerance that
-// leaves it unfelt.
+// Advice for a run that ended near a singular configuration. If round-off ended it, that is a
+// tolerance which is larger than the round-off there.
 static const char *advise_there(struct ct_run *r)
 {
     if (has_switched(r))
@@ -224,6 +225,7 @@ static const char *advise_there(struct ct_run *r)
                "or behind";
     if (is_driven_to_rest(r))
         return let_pass;
+    // Chosen: a tolerance above `most` is no advice
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
     if (enough > r->o->output_rtol && enough < most)
         return ct_arena_printf(

@@ -1,12 +1,13 @@
-// Step forecast, what is said of runs that take long: how many steps are to come, and what moves
-// fastest. See run_internal.h.
+// Step forecast of long runs: how many steps are to come, and which coordinate has the fastest
+// motion. See run_internal.h.
 #include "solve/run/run_internal.h"
 
-// Some minutes of most systems, and more than shipped ones take.
+// Steps of a long run. Chosen: they take some minutes for most systems, and no shipped system needs
+// as many.
 const double ct_run_many_steps = 1e6;
 
-// The coordinate whose speed moves most in the fastest motion at t, y, and its rate; NULL: it
-// cannot be told.
+// The coordinate with the largest part in the fastest motion at t, y, and the rate of that motion;
+// NULL: it is not found.
 static const char *find_fastest(struct ct_run *r, double t, const double *y, double *rate)
 {
     const int nq = (int)r->m->nq, last = nq + (int)r->m->nu;
@@ -27,7 +28,7 @@ static const char *find_fastest(struct ct_run *r, double t, const double *y, dou
     return u->q >= 0 ? r->e->q[u->q].name : u->name;
 }
 
-// An output that every vibration is followed for, (8.10); NULL: there is none.
+// An output for which all vibrations must be resolved, (8.10); NULL: there is none.
 static const char *find_demanding(const struct ct_run *r)
 {
     for (size_t i = 0; i < r->e->nresult; i++)

@@ -1,14 +1,14 @@
-// Singular configurations: all that a run, its report and the driver of the integration ask about
-// them.
+// Singular configurations, in which the constraint Jacobian J loses rank: detection along a motion,
+// data for crossing them, starts in or near them, and results within a crossing.
 //
-//     rank monitor    predicts them ahead of a motion, and records those that it has passed
-//     hooks           what the driver of the integration asks while it crosses one
+//     rank monitor    predicts singular configurations ahead, and records those that were passed
+//     hooks           callbacks of the integrator while it crosses one
 //     start           tests of a start in or near one, and the first step from there
-//     dense output    results at samples on a crossing
+//     dense output    results at samples within a crossing
 //
-// Where J loses rank u' has a limit along the motion that cannot be computed. The driver of the
-// integration crosses such a position in one step (integrate/crossing.h); where it is and how near,
-// is found here.  (section 6.8)
+// In a singular configuration the accelerations have a limit along the motion, but the equations do
+// not determine it. The integrator crosses the configuration in one step (integrate/crossing.h).
+// This folder finds where it is.  (section 6.8)
 #ifndef CT_SOLVE_SINGULAR_SINGULAR_H
 #define CT_SOLVE_SINGULAR_SINGULAR_H
 
@@ -24,27 +24,27 @@ enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
 /// Steps within which a singular configuration is near. Chosen: four.
 #define CT_SINGULAR_STEPS 4
 
-/// What was passed.
+/// A singular configuration that was passed.
 struct ct_singular_configuration {
     double t;
     int rank_loss; // of J; 0: not known, the system is too large
-    bool *row;     // (nrow) those that depend on each other there
+    bool *row;     // (nrow) rows that are dependent there
 };
 
 struct ct_rank_monitor {
     struct ct_evaluator *m;
     struct ct_partition *s;
-    const double *pending;   // time of the event ahead, the run's
-    double time_to_singular; // time to the position ahead; INFINITY: there is none
-    double wanted;           // relative, of outputs; 0: not known
+    const double *pending;   // time of the next event, owned by the run
+    double time_to_singular; // time to the next singular configuration; INFINITY: there is none
+    double wanted;           // relative tolerance of outputs; 0: not known
     double
-        farthest; // the largest pivot so far, or what a start beside a position takes it to be
-    int rank;     // of J, the largest so far
-    double reach; // time before it in which f is better not computed
-    double most, part, t;  // the largest pivot so far, the last one against it, and its time
-    double dt;             // the step before
-    double pivot, fall;    // the last one, 0: not known; and what it lost in a second
-    bool retains_rows;     // a step does, and there are more than it needs
+        farthest; // the largest pivot so far, or an estimate after a start near a singular one
+    int rank;     // the largest rank of J so far
+    double reach; // time before the singular configuration in which f should not be computed
+    double most, part, t; // the largest pivot so far, the last one relative to it, and its time
+    double dt;            // the last step size
+    double pivot, fall;   // the last pivot, 0: not known; its decrease per second
+    bool retains_rows;    // a step does, and there are more than it needs
     bool solver_unchanged; // the form has told of the last state that nothing has changed
     long switches, nmade;  // of the coordinate partitioning, there
     long doubted; // its choice when a step was last looked at whether it is to be shorter
@@ -52,45 +52,43 @@ struct ct_rank_monitor {
     struct ct_tangent_basis *there, *here,
         *along;      // the view from there, from where a step ends, and on the way
     double *u, *a;   // (nu) speeds and accelerations there, where that is known
-    double swiftest; // largest speed at looks
-    long nover;      // positions that fixed steps have come across
-    double over;     // when first
+    double swiftest; // largest speed at accepted states
+    long nover;      // singular configurations that fixed steps have passed
+    double over;     // time of the first
     double closest,
         t_closest;  // the smallest part of a step that was not made to cross, and when
     bool has_poles; // they are asked for
     int npole;
-    double pole
-        [CT_MOST_POLES]; // times of positions on the last crossing, to all digits, that the run may begin behind or end before
+    double pole[CT_MOST_POLES]; // exact times of singular configurations on the last crossing
     long npassed;
     struct ct_singular_configuration *passed; // the first of them (CT_MOST_SINGULAR)
     double *last;                             // the last accepted state  (nq + nu)
     double *y, *d, *x;                        // (ny), (nu), (nrow)
 };
 
-/// pending: the run's time of the event ahead, INFINITY if there is none.
+/// pending: time of the next event, owned by the run; INFINITY if there is none.
 struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct_evaluator *m,
                                                struct ct_partition *s, const double *pending);
 /// For ct_problem.singular: the monitor is their user.
 struct ct_singularities ct_singular_hooks(struct ct_rank_monitor *w);
-/// Nothing is known and nothing was passed: before a run.
+/// Reset the monitor before a run.
 void ct_rank_monitor_start(struct ct_rank_monitor *w);
 
 /// The step that has come to an accepted state.
 struct ct_rank_monitor_step {
-    bool is_fixed, is_across; // of fixed size; made to cross a position
+    bool is_fixed, is_across; // of fixed size; made to cross a singular configuration
 };
 
-/// What is ahead of an accepted state, up to the event that is pending. False if the step to it has
-/// come near a singular configuration, or past it, before that was foreseen, and may be taken
-/// again: not with fixed steps, which are told only whether they are beside one, and counted where
-/// they have come past it.
+/// Predict the next singular configuration from an accepted state, up to the next event. False if
+/// the step has come near one or passed it without prediction, and should be repeated. Fixed steps
+/// are not repeated: it is only noted whether they are near one, and how many they have passed.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
                              const double *dy, const struct ct_rank_monitor_step *step);
-/// The next state is compared with nothing before it: the speeds have changed by more than their
-/// accelerations, as by a projection.
+/// Do not compare the next state with earlier ones, as speeds have changed by other means than
+/// accelerations, for example a projection.
 void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w);
-/// Speeds have jumped at y, the last accepted place: next to a position, that comes sooner or
-/// later, or not at all.
+/// After a jump of speeds at y, the last accepted state: predict again. A singular configuration
+/// that was ahead may come earlier, later or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy);
 /// Is y, where steps have ended, near a singular configuration, foreseen or not, or would a step of
@@ -108,7 +106,7 @@ bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition 
 /// is made of. freedoms (out): there.
 double ct_singular_start_misfit(struct ct_arena *scratch, const struct ct_partition *s,
                                 double t, const double *y, int *freedoms);
-/// The hook of that name.
+/// The callback set_crossing of struct ct_singularities.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing);
 /// A start from which steps begin: assembled, with rows and columns chosen there.
 struct ct_singular_start {
@@ -120,8 +118,8 @@ struct ct_singular_start {
     struct ct_partition *s;
     const struct ct_problem *p;
     struct ct_integrate_stats *stats;
-    const double *
-        assembled; // (ny) as demanded: rows in a singular configuration would take off more than they see
+    const double
+        *assembled;       // (ny) as demanded, before the projection onto nearly dependent rows
     const bool *is_given; // (nu) speeds whose coordinates the start is given by
     const char *joints;   // whose constraints are dependent at the start only; NULL: none
     double rtol, atol, output_rtol;
