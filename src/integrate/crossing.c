@@ -21,8 +21,8 @@
 
 // Definition: stages, those before the gap, points of Gauss-Legendre quadrature.
 enum { STAGES = CT_CROSSING_STAGES, SIDE = STAGES / 2, QUADRATURE = 8 };
-// Derived: without these sweeps a crossing takes more sweeps over all stages; three linkages took up
-// to 36 per cent more evaluations in a run.
+// Derived: without these sweeps a crossing takes more sweeps over all stages; three linkages took
+// up to 36 per cent more evaluations in a run.
 enum { LEFT_SWEEPS = 2 };
 
 // Part of the step, about its middle, in which f is not evaluated.
@@ -278,13 +278,14 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
-// The largest miss of the combination of rows that becomes dependent, for which the configuration
-// counts as singular. Derived: a mechanism that only passes by misses it by m, and its smallest
-// pivot is some sqrt(m), so that round-off of accelerations is eps/m. Where that is more than the
-// accuracy, steps could not follow the motion.
+// At a singular configuration one combination of the constraints becomes dependent on the others.
+// This is the largest residual of that combination for which the configuration counts as singular.
+// A mechanism that passes it with a residual m has a smallest pivot near sqrt(m), and accelerations
+// with a round-off error of eps/m. Where that exceeds the accuracy, steps cannot follow the motion.
 static double allowed_mismatch(const struct ct_problem *p)
 {
-    const double met = 1e-12; // round-off of the constraints; singular.sh fails without
+    // Default: with less, round-off of the constraints counts as a mismatch. Test: singular.
+    const double met = 1e-12;
     return fmin(ct_crossing_mismatch_limit, fmax(met, DBL_EPSILON / p->accuracy));
 }
 

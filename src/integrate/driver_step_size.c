@@ -21,7 +21,9 @@ static const double early = 1.3, on_time = 1.02;
 // Predicted times that differ by such a factor belong to two configurations.
 // Default: predictions err, and configurations follow each other. Test: crossing.
 static const double other = 2;
-// A run that ends less than this part of the reach before the configuration ends by a crossing.
+// A run whose end lies before the configuration, by less than this part of the length of the
+// approach, ends with a crossing, of which only the part up to the end is used.
+// Chosen: short steps near the configuration against a crossing.
 static const double beside = 0.5;
 
 double ct_driver_step_limit(const struct ct_driver *r)
@@ -58,12 +60,13 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
     return stop;
 }
 
-// The fewest even steps up to the stop that are not longer than the one asked for: those that were
-// left at the last step, less one, where that ended as planned.
+// The length of the next step where steps are fixed: the interval up to the stop is divided into
+// the fewest equal steps that are not longer than the length asked for.
 static double fit_fixed(struct ct_driver *r, double stop)
 {
-    // a stop that is a whole number of steps away but for round-off, that of t in each step before
-    // added up, must not cost one more
+    // A stop that is a whole number of steps away but for round-off must not cost one step more.
+    // Derived: n steps leave a round-off of sqrt(n) eps t in t = n h, that is n^1.5 eps steps; 1e-6
+    // is enough for some 3e6 steps.
     const double roundoff = 1e-6, rest = stop - r->t;
     struct ct_fixed_steps *e = &r->even;
     if (e->stop == stop && e->next == r->t && e->left > 1) {

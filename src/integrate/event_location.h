@@ -27,8 +27,8 @@ struct ct_event_location {
     int accumulated;             // state events in a row without time going on
 };
 
-/// Corrections to the time of an event. Derived: Newton's method doubles digits, and the interpolant
-/// has two or more of the 12 to which times are resolved.
+/// Corrections to the time of an event. Derived: Newton's method doubles digits, and the
+/// interpolant has two or more of the 12 to which times are resolved.
 enum { CT_EVENT_CORRECTIONS = 3 };
 /// State events in a row, each close to the one before, that are an infinite number.
 /// Default: with more, times stop to go on before they are counted. Test: events.

@@ -77,7 +77,8 @@ struct ct_dae {
 
     // what makes steps cheaper, where it is known
     bool
-        is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
+        // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
+        is_plain;
     bool has_no_power; // rates of quadratures are zero
     int nstate;        // the last speeds are states of their own, which move no coordinate
 };
@@ -136,7 +137,8 @@ struct ct_problem {
     /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not
     /// only what it leads to in outputs. NULL, both: all are.
     const bool *requested_speeds, *requested_positions;
-    /// So that the total energy is kept to the accuracy, however little of it vibrates; or the last quadrature, a work.
+    /// So that the total energy is kept to the accuracy, however little of it vibrates; or the last
+    /// quadrature, a work.
     bool keeps_energy, keeps_work;
     double accuracy,
         duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known

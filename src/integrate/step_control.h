@@ -24,8 +24,8 @@ struct ct_step_control {
 
 /// Before the first step.
 struct ct_step_control ct_step_control_start(void);
-/// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after
-/// it is a crumb.
+/// The step wanted, adapted to the time left to a stop, so that no very short step remains before
+/// it.
 static inline double ct_step_control_fit(double rest, double wanted)
 {
     // a step may be so much longer to end on a stop. Derived: with the safety factors of
@@ -35,13 +35,13 @@ static inline double ct_step_control_fit(double rest, double wanted)
         return rest;
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
-/// Is h, which does not end on a stop, too small to move t by more than round-off? run: the whole
-/// time.
+/// Is h, which does not end on a stop, too small against the round-off of t? run: the duration [s].
 static inline bool ct_step_control_is_below_roundoff(double h, double t, double run)
 {
-    // 16 * eps leaves room for the stage times; near t = 0 the scale is a millionth of the run,
-    // below which no motion of interest begins
-    const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6, scale = least_scale * run;
+    // Derived: the stage times of DOPRI5, at least h/16 apart, then differ by a round-off of t.
+    const double least_step = 16 * DBL_EPSILON;
+    // Chosen: near t = 0, shortest steps against the message that steps have become too short.
+    const double least_scale = 1e-6, scale = least_scale * run;
     return h <= least_step * (fabs(t) > scale ? fabs(t) : scale);
 }
 /// A step of size h was accepted, its error 1 at the tolerance.

@@ -120,11 +120,11 @@ double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
 double ct_trial_pace(const struct ct_trial *r);
 /// After each step of a run that went over to the implicit method, begun as a trial that does not
-/// end: true if all of it since the last event has gained less than `pace`. A hard stretch, as where
-/// an iteration fails for a while, does not outweigh what was gained before, and no more is spent
-/// than the other method would have. An event may excite vibrations: what was gained before tells
-/// nothing then, and as long as they die out, so that the last hundred steps gain more than those
-/// since the event on average, nothing is lost.
+/// end: true if all of it since the last event has gained less than `pace`. A hard stretch, as
+/// where an iteration fails for a while, does not outweigh what was gained before, and no more is
+/// spent than the other method would have. An event may excite vibrations: what was gained before
+/// tells nothing then, and as long as they die out, so that the last hundred steps gain more than
+/// those since the event on average, nothing is lost.
 bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace);
 
 #endif

@@ -15,16 +15,16 @@ enum { LEVELS = DBL_MANT_DIG };
 // A kink takes one interval for each halving; a function that is noise would take any number.
 // Default: evaluations against the accuracy at several kinks in a step. Test: take.
 enum { MOST_INTERVALS = 400 };
-// Grid on which zeros and extremes of an interpolant are sought first: several points between any
-// two zeros of its derivative that are farther apart than those of T8 at the ends.
+// Points cos(pi i/32) at which zeros and extrema of an interpolant are first looked for.
+// Derived: four points between neighbouring extrema of the Chebyshev polynomial T8.
 enum { GRID = 32 };
 
 // The error of interpolants, as part of what is wanted of outputs.
 // Default: evaluations against accuracy. Test: take.
 static const double share = 0.1;
 
-// Of the largest value, in an interpolant: sums of nine terms, of functions that have some
-// themselves.
+// Round-off of an interpolant, as part of the largest value.
+// Derived: coefficients and values are sums of nine terms each, 18 eps; functions may err as much.
 static const double roundoff = 64 * DBL_EPSILON;
 
 // The order in which nodes are asked for: those of degree 4 first.
@@ -118,7 +118,7 @@ bool ct_take_scan_wants(const struct ct_take_scan *s, double *t)
     return true;
 }
 
-// ---- interpolants -------------------------------------------------------------------------------------
+// ---- interpolants -------------------------------------------------------------------------------
 
 // c (NODES, out): coefficients of the Chebyshev polynomials that have the values f (NODES) in the
 // nodes.
@@ -202,7 +202,7 @@ static double zero_between(const double *c, double a, double b)
     }
 }
 
-// ---- what is taken ------------------------------------------------------------------------------------
+// ---- what is taken ------------------------------------------------------------------------------
 
 static void take_extreme(const struct ct_take_scan *s, struct state *q, const double *c,
                          double sign)

@@ -1,9 +1,9 @@
-// See alpha.h. One step is a simplified Newton iteration on the motion d of the places; speeds and accelerations follow
-// it linearly. Sources: Bruls, Cardona and Arnold (2012), key bruls2012; the error estimate and the rule for
-// step changes: formulation 8.2.
+// See alpha.h. One step is a simplified Newton iteration on the motion d of the places; speeds and
+// accelerations follow it linearly. Sources: Bruls, Cardona and Arnold (2012), key bruls2012; the
+// error estimate and the rule for step changes: formulation 8.2.
 //
-// J' of the correction J' eta is that of the iteration matrix: eta vanishes with the error of a step, so its
-// direction matters to no order.
+// J' of the correction J' eta is that of the iteration matrix: eta vanishes with the error of a
+// step, so its direction matters to no order.
 #include "integrate/implicit/alpha.h"
 #include "integrate/implicit/newton_iteration.h"
 
@@ -22,7 +22,8 @@ struct memory {
     double *rate;                 // at that step's start, of quadratures alone  (ny)
 };
 
-// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
+// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h
+// behind one of size `before`.
 struct factors {
     double h, before, by_speed, by_u_dot;
     double a_by_speed, u_dot_by_speed; // of a correction of speeds
@@ -167,9 +168,10 @@ static void find_factors(struct state *s, double h)
                             .d_a = h * h * c->beta};
 }
 
-// ---- the start of a step --------------------------------------------------------------------------
+// ---- the start of a step ------------------------------------------------------------------------
 
-// u'' by a difference along the motion; a hundredth of a step is far from round-off and from the step's error.
+// u'' by a difference along the motion; a hundredth of a step is far from round-off and from the
+// step's error.
 static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, double t, double h,
                               const double *y, const double *dy, double *y1, double *dy1,
                               struct ct_integrate_stats *stats)
@@ -226,10 +228,11 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     return CT_EVAL_OK;
 }
 
-// ---- the iteration ----------------------------------------------------------------------------------
+// ---- the iteration ------------------------------------------------------------------------------
 
-// Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
-// the index-3 form have too much round-off in them for that.
+// Where the step would end with accelerations, and multipliers, that go on as the polynomial
+// through their last values, one to three. Those of the index-3 form have too much round-off in
+// them for that.
 static inline void predict_for(struct state *s, double h, const double *y, const int nu)
 {
     const struct ct_dae *dae = s->dae;
@@ -252,7 +255,8 @@ static inline void predict_for(struct state *s, double h, const double *y, const
     ct_newton_iteration_move(dae, y, s->d, s->q);
 }
 
-// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of any length take longer to begin than to do its work.
+// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of
+// any length take longer to begin than to do its work.
 static void predict(struct state *s, double h, const double *y)
 {
     if (s->dae->nu == 1)
@@ -301,8 +305,8 @@ static inline double solve_and_add(struct state *s, const int nu, const int m)
     return add_correction(s, nu, m);
 }
 
-// *size (out): that of the correction. Few freedoms, and planar loops of three coordinates, have code of their own: its
-// loops are known to be so long.
+// *size (out): that of the correction. Few freedoms, and planar loops of three coordinates, have
+// code of their own: its loops are known to be so long.
 static enum ct_eval find_correction(struct state *s, double t1, const double *y, double *size)
 {
     const struct ct_dae *dae = s->dae;
@@ -365,10 +369,11 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
     return CT_EVAL_RETRY;
 }
 
-// ---- a step -----------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
-// Beside singular configurations speeds that meet the constraints have round-off over the square of the distance, u' that over h
-// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
+// Beside singular configurations speeds that meet the constraints have round-off over the square of
+// the distance, u' that over h and (8.8) again as much as speeds themselves, however short the step
+// is, more after a shorter one: it is no error of the step.
 static inline void subtract_roundoff(struct state *s, double h, const int nu)
 {
     const double back = s->f.back, pace = s->f.pace_of_a;
@@ -384,8 +389,9 @@ static inline void subtract_roundoff(struct state *s, double h, const int nu)
     }
 }
 
-// s->du of the model's states, for which the methods are of order 2 as for speeds, (8.8): their rates have no round-off of
-// constraints in them. Behind no step, where nothing is known of the third derivative, that of a step of order 1.
+// s->du of the model's states, for which the methods are of order 2 as for speeds, (8.8): their
+// rates have no round-off of constraints in them. Behind no step, where nothing is known of the
+// third derivative, that of a step of order 1.
 static void find_state_errors(struct state *s, double h)
 {
     const double speeds = h * h * h * 2 * s->f.across * s->by_speeds;
@@ -394,7 +400,8 @@ static void find_state_errors(struct state *s, double h)
                                : speeds * (s->end->jerk[k] - s->start->jerk[k]);
 }
 
-// s->dd and s->du become the errors of positions and speeds; the norm of the first, and of the model's states.
+// s->dd and s->du become the errors of positions and speeds; the norm of the first, and of the
+// model's states.
 static inline double find_errors(struct state *s, double h, const int nu)
 {
     const double places = h * h * s->by_places, pace = s->f.pace;
@@ -415,9 +422,9 @@ static inline double find_errors(struct state *s, double h, const int nu)
     return ct_newton_iteration_norm_of_places(s->it, s->dd, s->du, nu);
 }
 
-// The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
-// there is none and in the index-3 form, whose accelerations have round-off over h^2 in them. Those of speeds count in
-// outputs alone.
+// The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and
+// the one before, zero where there is none and in the index-3 form, whose accelerations have
+// round-off over h^2 in them. Those of speeds count in outputs alone.
 static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
@@ -430,8 +437,8 @@ static double estimate(struct state *s, const struct ct_problem *p,
     return ct_newton_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
 }
 
-// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their rate; the slopes are
-// those of this step and of the one before, zero where there is none.
+// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their
+// rate; the slopes are those of this step and of the one before, zero where there is none.
 static double estimate_quadratures(struct state *s, const struct ct_problem *p,
                                    const struct ct_tolerance *tolerance, double h,
                                    const double *y, const double *dy, const double *y1,

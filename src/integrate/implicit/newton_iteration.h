@@ -1,20 +1,23 @@
 // The simplified Newton iteration that implicit methods share.
 //
-// Every method here solves, for a motion d of the places, multipliers eta that keep Phi = 0 beside v = 0, and the
-// multipliers lam of the equations of motion, linear systems of one form.  (8.2), (8.4)
+// Every method here solves, for a motion d of the places, multipliers eta that keep Phi = 0 beside
+// v = 0, and the multipliers lam of the equations of motion, linear systems of one form.  (8.2),
+// (8.4)
 //
 //     [ M + x C + y K   -(M + x C) J'   -J' ] ( d        )     ( y r   )         speeds change by c d,
 //     [ J                0               0  ] ( eta      ) = - ( phi   )         accelerations by c/x d
 //     [ J + z D         -J J'            0  ] ( y lam    )     ( z v   )         (less the part J' eta of d)
 //
-// with x = c/e, y = 1/e, z = 1/c for c = d(speed)/d(place) and e = d(acceleration)/d(place). So scaled, its condition
-// does not depend on the step. Radau's complex pair has complex c; the index-3 form has neither eta nor the last row.
+// with x = c/e, y = 1/e, z = 1/c for c = d(speed)/d(place) and e = d(acceleration)/d(place). So
+// scaled, its condition does not depend on the step. Radau's complex pair has complex c; the
+// index-3 form has neither eta nor the last row.
 //
-// Where d' = T^-1(d) u is collocated, by Radau, speeds change by (c - N) d with N d = d x w / 2 for rotations at speeds
-// w: C d becomes (C - M N) d, K d becomes (K - C N) d, D d becomes (D - J N) d, beside eta nothing changes.
+// Where d' = T^-1(d) u is collocated, by Radau, speeds change by (c - N) d with N d = d x w / 2 for
+// rotations at speeds w: C d becomes (C - M N) d, K d becomes (K - C N) d, D d becomes (D - J N) d,
+// beside eta nothing changes.
 //
-// What always holds: M, C, K, J, D are those of the last `tangent`; it is called again when convergence has become
-// slow, the factors are made again when c or e have changed.
+// What always holds: M, C, K, J, D are those of the last `tangent`; it is called again when
+// convergence has become slow, the factors are made again when c or e have changed.
 #ifndef CT_INTEGRATE_IMPLICIT_NEWTON_ITERATION_H
 #define CT_INTEGRATE_IMPLICIT_NEWTON_ITERATION_H
 
@@ -69,13 +72,17 @@ struct ct_newton_iteration {
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
     double *
-        share; // one over what changes of positions and speeds are measured against, zeros behind  (2 nu, as padded)
+        // one over what changes of positions and speeds are measured against, zeros behind  (2 nu,
+        // as padded)
+        share;
     double *off;     // an error of the states  (ny)
     double *fast;    // one of positions and speeds as vibrations count  (2 nu)
     const double *y; // the start of the step
     double t;        // of the derivatives
     double *
-        roundoff; // what a round-off of forces and constraints is worth in positions and speeds, (8.17)  (2 nu)
+        // what a round-off of forces and constraints is worth in positions and speeds, (8.17)  (2
+        // nu)
+        roundoff;
     bool has_roundoff; // with the factors there are
     struct ct_roundoff_probe probe;
     // the run of corrections
@@ -88,7 +95,8 @@ struct ct_newton_iteration {
     double roundoff_position,
         roundoff_speed; // half a round-off of the largest of each, with rows
     double size, rate, slowest,
-        tail; // of the last correction; over the one before; largest of such; all that follow it, over it
+        // of the last correction; over the one before; largest of such; all that follow it, over it
+        tail;
     int most;
 };
 
@@ -97,13 +105,14 @@ struct ct_newton_iteration *ct_newton_iteration_create(struct ct_arena *a,
                                                        const struct ct_problem *p,
                                                        bool is_stabilised, bool is_complex);
 
-/// At the begin of a step h: which rows count, what is small. True if the rows are others than before, so that
-/// multipliers must be found anew. tolerance == NULL: as small as round-off allows.
+/// At the begin of a step h: which rows count, what is small. True if the rows are others than
+/// before, so that multipliers must be found anew. tolerance == NULL: as small as round-off allows.
 bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
                                const struct ct_tolerance *tolerance, double h, const double *y);
 
-/// Places that change by less than this many round-off errors of the largest of them cannot be found better, nor, with a tolerance, speeds
-/// that move them by less in the step: where forces are very stiff, shorter steps would only show more of it.
+/// A correction of positions below this many round-off errors of the largest one ends the
+/// iteration. With a tolerance the same holds for speeds that move positions by less in the step.
+/// Chosen: steps refused for round-off against the error of positions.
 static const double ct_position_roundoff = 8;
 
 /// Each correction that much of the one before: newer derivatives would be nearer to the end.
@@ -121,8 +130,9 @@ static inline void ct_newton_iteration_forget(struct ct_newton_iteration *it)
 {
     it->has_tangent = false;
 }
-/// Multipliers lam (n) have been corrected by dlam. Where rows change along themselves, as near a singular configuration, old
-/// derivatives still give motions that are right, but each step multiplies the error of lam by 1 - J/J_old.
+/// Multipliers lam (n) have been corrected by dlam. Where rows change along themselves, as near a
+/// singular configuration, old derivatives still give motions that are right, but each step
+/// multiplies the error of lam by 1 - J/J_old.
 static inline void ct_newton_iteration_note_multipliers(struct ct_newton_iteration *it,
                                                         const double *lam, const double *dlam,
                                                         int n)
@@ -138,14 +148,17 @@ static inline void ct_newton_iteration_note_multipliers(struct ct_newton_iterati
 enum ct_eval ct_newton_iteration_refresh(struct ct_newton_iteration *it, double t,
                                          const double *q, const double *u, const double *a,
                                          const double *lam, struct ct_integrate_stats *stats);
-/// Factors for c and e, unless they are there; false if singular. s: c of the complex system, e = s^2, or 0.
+/// Factors for c and e, unless they are there; false if singular. s: c of the complex system, e =
+/// s^2, or 0.
 bool ct_newton_iteration_factor_anew(struct ct_newton_iteration *it, double c, double e,
                                      double _Complex s, struct ct_integrate_stats *stats);
 static inline bool ct_newton_iteration_factor(struct ct_newton_iteration *it, double c,
                                               double e, double _Complex s,
                                               struct ct_integrate_stats *stats)
 {
-    const double same_step = 1e-3; // factors serve for these, too: it costs no iteration
+    // Factors for a step that differs by less are used again.
+    // Derived: they add at most 2e-3 to the convergence rate, which costs no correction.
+    const double same_step = 1e-3;
     const bool are_near
         = fabs(it->c - c) <= same_step * fabs(c) && fabs(it->e - e) <= same_step * fabs(e);
     return are_near || ct_newton_iteration_factor_anew(it, c, e, s, stats);
@@ -194,7 +207,8 @@ void ct_newton_iteration_add_constraint_force_sparse(const struct ct_newton_iter
 /// r (nu) = M x.
 void ct_newton_iteration_multiply_mass(const struct ct_newton_iteration *it, double *r,
                                        const double *x);
-/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a compiler may know them.
+/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a
+/// compiler may know them.
 static inline void
 ct_newton_iteration_add_constraint_force(const struct ct_newton_iteration *it, double *out,
                                          const double *x, double c, const double *eta,
@@ -221,8 +235,8 @@ static inline double ct_newton_iteration_square(const double *x, const double *s
     return sum;
 }
 
-/// Root mean square of k positions and speeds (nu x k each) times their shares; u == NULL: of places alone. nu is that of the
-/// iteration, given so that a compiler may know it.
+/// Root mean square of k positions and speeds (nu x k each) times their shares; u == NULL: of
+/// places alone. nu is that of the iteration, given so that a compiler may know it.
 static inline double ct_newton_iteration_norm(const struct ct_newton_iteration *it,
                                               const double *d, const double *u, const int nu,
                                               int k)
@@ -247,19 +261,21 @@ static inline double ct_newton_iteration_norm_of_places(const struct ct_newton_i
     return sqrt(sum * it->per_speed);
 }
 
-/// The norm of errors d, u (nu) of positions and speeds at y of which, but for those that p asks for, only what is slow counts of
-/// speeds, (8.10), and of the rest its part of `ample` (nu); *slow (out): the same with only what is slow of places. INFINITY where
-/// that cannot be told. `off` is overwritten.
+/// The norm of errors d, u (nu) of positions and speeds at y of which, but for those that p asks
+/// for, only what is slow counts of speeds, (8.10), and of the rest its part of `ample` (nu); *slow
+/// (out): the same with only what is slow of places. INFINITY where that cannot be told. `off` is
+/// overwritten.
 double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struct ct_problem *p,
                                      const struct ct_tolerance *tolerance, const double *y,
                                      const double *ample, const double *d, const double *u,
                                      double *slow);
 
-/// `energy` is no less than that of these speeds, of which `small` is nothing. After ct_newton_iteration_slow_norm, as the three below.
+/// `energy` is no less than that of these speeds, of which `small` is nothing. After
+/// ct_newton_iteration_slow_norm, as the three below.
 void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double small,
                                      const double *speeds);
-/// Nor than that which the slow part of these accelerations gives on the way `small`, or in so much time if that is less: a motion
-/// that begins at rest has its energy to come. `off` is overwritten.
+/// Nor than that which the slow part of these accelerations gives on the way `small`, or in so much
+/// time if that is less: a motion that begins at rest has its energy to come. `off` is overwritten.
 void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double small,
                                         double time, const double *accelerations);
 
@@ -268,10 +284,12 @@ struct ct_vibration {
     double lost, present; // twice the energy that the step takes, and that there is
     double times;         // what they are of their error
 };
-/// In a step h of Radau, c = gamma/h of its real system, whose error is d, u (nu). `off` is overwritten.  (8.13)
+/// In a step h of Radau, c = gamma/h of its real system, whose error is d, u (nu). `off` is
+/// overwritten.  (8.13)
 struct ct_vibration ct_newton_iteration_vibration(struct ct_newton_iteration *it, double gamma,
                                                   double h, const double *d, const double *u);
-/// What outputs at y would change by without them, over their largest values so far, those of errors d, u (nu). `off` is overwritten.
+/// What outputs at y would change by without them, over their largest values so far, those of
+/// errors d, u (nu). `off` is overwritten.
 double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
                                          const struct ct_problem *p,
                                          const struct ct_vibration *v, double t,
@@ -286,13 +304,14 @@ struct ct_band {
     const double *furthest, *swiftest; // largest positions and speeds so far  (nu)
     const double *ahead;               // those expected  (2 nu)
 };
-/// ahead (2 nu, out): how far positions and speeds go up to the end of the run with the accelerations a (nu) at y, as far as forces let
-/// them, and not further than a unit; outputs are expected to be as large. `off` is overwritten.  (8.22)
+/// ahead (2 nu, out): how far positions and speeds go up to the end of the run with the
+/// accelerations a (nu) at y, as far as forces let them, and not further than a unit; outputs are
+/// expected to be as large. `off` is overwritten.  (8.22)
 void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
                                         const struct ct_problem *p, double t, const double *y,
                                         const double *a, double *ahead);
-/// What errors d, u (nu) at y, as far as they are vibrations of this band, leave in outputs over their largest values so far, whatever the
-/// vibrations' phase. `off` is overwritten.  (8.21)
+/// What errors d, u (nu) at y, as far as they are vibrations of this band, leave in outputs over
+/// their largest values so far, whatever the vibrations' phase. `off` is overwritten.  (8.21)
 double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
                                                  const struct ct_problem *p,
                                                  const struct ct_band *b, double t,
@@ -302,31 +321,35 @@ double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
 /// Errors d, u (nu) of positions and speeds at y1 as one of the states (ny), in `off`.
 const double *ct_newton_iteration_states(struct ct_newton_iteration *it, const double *y1,
                                          const double *d, const double *u);
-/// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors d, u (nu) of positions and
-/// speeds mean for outputs, if that is more.  (8.6)
+/// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors
+/// d, u (nu) of positions and speeds mean for outputs, if that is more.  (8.6)
 double ct_newton_iteration_error(struct ct_newton_iteration *it, const struct ct_problem *p,
                                  const struct ct_tolerance *tolerance, double t1,
                                  const double *y1, const double *d, const double *u,
                                  double states);
 
-/// What they mean for outputs that amplify, where 1 is the tolerance; `states` is the norm of the error of the step.  (8.11)
+/// What they mean for outputs that amplify, where 1 is the tolerance; `states` is the norm of the
+/// error of the step.  (8.11)
 double ct_newton_iteration_sensitive_error(struct ct_newton_iteration *it,
                                            const struct ct_problem *p,
                                            const struct ct_tolerance *tolerance, double t1,
                                            const double *y1, const double *d, const double *u,
                                            double states);
 
-/// Positions and speeds (2 nu) that the round-off of forces and constraints leads to, with the factors of the real system; two residuals, `b` is
-/// overwritten; zeros where they cannot be found. Corrections cannot be told from it.  (8.17)
+/// Positions and speeds (2 nu) that the round-off of forces and constraints leads to, with the
+/// factors of the real system; two residuals, `b` is overwritten; zeros where they cannot be found.
+/// Corrections cannot be told from it.  (8.17)
 const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 
-// ---- convergence, see newton_convergence.c -------------------------------------------------------------------
+// ---- convergence, see newton_convergence.c ------------------------------------------------------
 
 /// Before the first correction.
 void ct_newton_iteration_start(struct ct_newton_iteration *it);
-/// Once converged: corrections are to go on until they are much smaller, or of the size of round-off.
+/// Once converged: corrections are to go on until they are much smaller, or of the size of
+/// round-off.
 void ct_newton_iteration_continue(struct ct_newton_iteration *it);
-/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL: not looked at).
+/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL:
+/// not looked at).
 enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iteration *it,
                                                          double size, const double *d,
                                                          const double *u, int k);

@@ -1,11 +1,12 @@
-// What the plan of newton_sparse.h consists of: shared by the two files that know.
+// The symbolic analysis of the sparse Newton matrix, shared by newton_pattern.c and
+// newton_sparse.c.
 #ifndef CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
 #define CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
 
 #include "integrate/implicit/newton_sparse.h"
 #include "numeric/factors.h"
 
-// The matrix is S + x X + (y or z) W; numbers of the three stand one behind the other.
+// Definition: the matrix is S + x X + (y or z) W; the values of the three parts are stored in turn.
 enum { CT_NEWTON_PARTS = 3 };
 
 // Entries are sums of terms +-v[a], -v[a] v[b] and +-v[a] w[b]/2, for the list of values v.
@@ -38,7 +39,9 @@ struct ct_newton_pattern {
     bool is_stabilised;
     struct ct_pattern *pattern;
     int *
-        index; // behind nu: of the ones of rows that do not count, for eta and for lam; of the -1 of inner values
+        // behind nu: of the ones of rows that do not count, for eta and for lam; of the -1 of inner
+        // values
+        index;
     struct ct_newton_copy *copy; // those of M first
     struct ct_newton_product *product;
     struct ct_newton_rotation *rotation;

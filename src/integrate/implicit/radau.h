@@ -1,34 +1,37 @@
-// A step of Radau IIA from inside, for radau5.c and radau_error.c: its stages, and the real one of
-// its linear systems.
+// Radau IIA of order 5: coefficients, the data of a step, and the solution of the real linear
+// system. Shared by radau5.c, the step, and radau_error.c, its error estimate.
 #ifndef CT_INTEGRATE_IMPLICIT_RADAU_H
 #define CT_INTEGRATE_IMPLICIT_RADAU_H
 
 #include "integrate/implicit/newton_iteration.h"
 #include "numeric/dense.h"
 
-enum { STAGES = 3 };
+enum { STAGES = 3 }; // Definition: of the method.
 
-#define CBRT3 1.4422495703074083823
-/// The real eigenvalue of the inverse of the Runge-Kutta matrix.
+#define CBRT3 1.4422495703074083823 // Definition: cube root of 3.
+/// Definition: the real eigenvalue of the inverse of the Runge-Kutta matrix.
 #define GAMMA (3 - CBRT3 + CBRT3 * CBRT3)
 
+// Definition: square roots.
 #define SQRT3 1.7320508075688772935
 #define SQRT6 2.4494897427831780982
 
+// Definition: nodes of the method.
 #define C1 ((4 - SQRT6) / 10)
 #define C2 ((4 + SQRT6) / 10)
-/// Where stages are, in parts of the step.
+/// Nodes and Runge-Kutta matrix of the method.
 static const double C[STAGES] = {C1, C2, 1};
 static const double A[STAGES][STAGES]
     = {{(88 - 7 * SQRT6) / 360, (296 - 169 * SQRT6) / 1800, (-2 + 3 * SQRT6) / 225},
        {(296 + 169 * SQRT6) / 1800, (88 + 7 * SQRT6) / 360, (-2 - 3 * SQRT6) / 225},
        {(16 - SQRT6) / 36, (16 + SQRT6) / 36, 1. / 9}};
 
-// The eigenvalues of A^-1, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i BETA.
+// Definition: the eigenvalues of A^-1, the roots of x^3 - 9 x^2 + 36 x - 60: GAMMA and ALPHA +- i
+// BETA.
 static const double ALPHA = 3 + (CBRT3 - CBRT3 * CBRT3) / 2;
 static const double BETA = SQRT3 / 2 * (CBRT3 + CBRT3 * CBRT3);
 
-/// A^-1 = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in the program of the source.
+/// Definition: A^-1 = T diag(GAMMA, [ALPHA -BETA; BETA ALPHA]) T^-1, as in RADAU5.
 static const double T[STAGES][STAGES]
     = {{9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
        {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},

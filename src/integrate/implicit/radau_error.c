@@ -23,37 +23,40 @@
 #include <math.h>
 #include <string.h>
 
-// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped
-// because the estimate does not see it, over 1e5 radians, less than ten times that tolerance is
-// lost.  (8.7)
+// The factor on the absolute tolerance of outputs. Derived: Radau damps small vibrations that the
+// error estimate does not see. By (8.7) less than ten absolute tolerances are lost in 1e5 radians.
 static const double near_zero = 0.05;
 
-// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its
-// error counts for at least so much, (0.9/1.5)^4, so that steps grow by no more than half.
+// The least error of a step where outputs are sensitive (8.11). Their error contains the error of
+// speeds from the step before, not from this one, so steps may grow by half at most.
+// Derived: (0.9/1.5)^4, with the safety factor 0.9 and an error of order 4.
 static const double growing = 0.13;
 
-// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost
-// altogether.
+// Vibrations of less energy than this many tolerances may be damped altogether.
+// Definition: outputs are promised within ten tolerances, docs/cli.md.
 static const double promised = 10;
-// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for
-// all other errors.
+// Vibrations are damped where the loss of all of them changes outputs by less than this part of the
+// promised error (8.10). Chosen: the other half is left to all other errors.
 static const double unfelt = 0.5;
-// What is lost of them, (8.22), is known better: the largest of many looks.
+// The same for the loss over the run (8.22). Chosen: more than half, as it is the largest of many
+// estimates.
 static const double unmissed = 0.75;
 
-// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).
-// (8.21)
+// Derived: a step dissipates z^6/7200 of a vibration with z = omega h < 1, and its filtered error
+// estimate is z^4/(60 gamma), from the stability function of the method.  (8.21)
 static const double of_vibration = 7200, of_error = 60 * GAMMA;
-// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over
-// that: nearer to it less than a third of what is lost is seen there.
+// All steps of a run dissipate 1 - 1/e of a vibration with z = z0. `lost` is estimated at `apart`
+// z0 and `all` at z0/`apart`. Chosen: nearer to z0 less than a third of the loss is seen.
 static const double apart = 2;
-// Phases of several vibrations come together only now and then: so much of what was missed at a
-// look counts still at the next one.
+// The part of the last estimate of a loss that counts at least in the next one, as vibrations of
+// several frequencies are in phase only now and then. Chosen: steps against errors of outputs.
 static const double fading = 0.9;
 
-// Speeds are eased where less than this part of the error is left then; looked at every so many
-// steps where they were not, and where they are too large.
+// The filtered error of speeds is used where it is below this part of the whole error.
+// Chosen: steps that grow against new derivatives.
 static const double worth_it = 0.5;
+// Steps between estimates of fast modes where they did not help, and between estimates of losses.
+// Chosen: the work of estimates against steps that stay short.
 enum { STEPS_BETWEEN = 15 };
 
 // The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
@@ -104,11 +107,11 @@ static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
 }
 
 // What is lost of vibrations, as an error of order 3. The share of a step that is taken in every
-// step, `rate`, is one of h^5. All there is does not grow with the step, so that holds steps up less
-// before it counts.  (8.13), (8.22)
+// step, `rate`, is one of h^5. All there is does not grow with the step, so that holds steps up
+// less before it counts.  (8.13), (8.22)
 static double as_error(double rate, double all)
 {
-    const double order = 4. / 5;
+    const double order = 4. / 5; // Derived: an error estimate of h^4, a loss rate of h^5
     return ct_smaller(pow(rate, order), pow(all, 1 / order));
 }
 
@@ -206,7 +209,8 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
                                           double t, const double *y)
 {
     const double h = s->now.h, steps = ct_larger(p->duration / h, 1), h5 = h * h * h * h * h;
-    const double harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
+    // Derived: by `as_error` an error of 1.8e-4, with which a step eight times as long is accepted.
+    const double harmless = 1e-3;
     const double z0 = pow(of_vibration / steps, 1. / 6), above = apart * z0, below = z0 / apart;
     const double apart6 = apart * apart * apart * apart * apart * apart;
     const double all = missing(s, p, t, y, below / h, of_amplitude(below));
@@ -218,8 +222,8 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
 }
 
 // It is looked at where steps have become longer, where the last look has refused one, and every so
-// many steps, and follows their length in between. Of a step that was refused for it, and may be far
-// longer, vibrations that it does not resolve have no such law.
+// many steps, and follows their length in between. Of a step that was refused for it, and may be
+// far longer, vibrations that it does not resolve have no such law.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
