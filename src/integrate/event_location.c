@@ -10,11 +10,11 @@
 // Default: what is missed against evaluations; two_waves_in_a_step_are_seen. Test: events.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
-// A root that crosses between probes and comes back is suspected where the parabola through three
-// of them has its minimum below this part of its second difference, which is what it errs by.
-// Default: what is missed against evaluations; a_parabola_tells_of_dips. Test: events.
+// Two sign changes between probes are suspected where the parabola through three of them has a
+// minimum below this part of its second difference, its assumed error. Default: what is missed
+// against evaluations; a_parabola_tells_of_dips. Test: events.
 const double ct_event_location_margin = 0.1;
-// The minimum is looked for with three places, each time so much closer to each other.
+// The minimum is located with three points, whose distance shrinks by this factor each time.
 // Default: crossings_close_together_are_both_seen fails with 0.9. Test: events.
 static const double closer = 0.125;
 
@@ -27,9 +27,9 @@ static const double resolution = 1e-12;
 // of the unit round-off, where round-off and curvature err alike.
 static const double spacing = 0x1p-26;
 
-// With events a run has at least this many steps, so that probes are never too far apart when
-// the motion between events is so simple (free fall) that steps could grow without limit.
-// Default: what is missed against steps. Test: events.
+// The least number of steps of a run with events. Without it steps, and with them probes, could
+// grow without limit in a simple motion such as free fall. Default: what is missed against steps.
+// Test: events.
 static const double event_steps = 50;
 
 double ct_event_location_resolution(double t, double h)
@@ -90,7 +90,7 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
     };
 }
 
-// Sides of roots on zero: those to which they go.
+// Signs of root functions that are zero: those to which they move.
 static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, const double *y,
                                const double *dy)
 {
@@ -101,7 +101,7 @@ static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, 
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
         if (w->side[i] == 0)
             w->side[i] = (signed char)sign(w->g[i] - w->g0[i]);
-        if (w->side[i] == 0) // without a slope it goes on to where it was going
+        if (w->side[i] == 0) // without a slope it keeps its direction
             w->side[i] = w->crossed[i];
     }
     return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
@@ -117,7 +117,7 @@ enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, doub
     bool has_doubt = false;
     for (int i = 0; i < n; i++) {
         w->side[i] = (signed char)sign(w->g0[i]);
-        // where it fired the value is noise, unless the event has moved the state away
+        // the value of a root that fired is round-off, unless the event has changed the state
         if (fabs(w->g0[i]) <= w->recently_fired[i])
             w->side[i] = 0;
         else
