@@ -1,4 +1,8 @@
-// The simplified Newton iteration that implicit methods share.
+// The folder integrate/implicit holds implicit methods for stiff problems with constraints: Radau
+// IIA of order 5 (radau5.c) and the generalised-alpha family (alpha.c). They share a simplified
+// Newton iteration with dense or sparse matrices, and an error estimate that recognises fast modes.
+//
+// This file is the interface of the simplified Newton iteration.
 //
 // Every method here solves, for a motion d of the places, multipliers eta that keep Phi = 0 beside
 // v = 0, and the multipliers lam of the equations of motion, linear systems of one form.  (8.2),
@@ -29,12 +33,12 @@
 
 enum ct_convergence { CT_ITERATING, CT_CONVERGED, CT_DIVERGED };
 
-/// Where round-off of forces and constraints is looked at.
+/// Workspace to measure round-off of forces and constraints.
 struct ct_roundoff_probe {
-    double *q, *d;    // a place beside that of the step, its distance  (nq), (nu)
-    double *r, *rows; // residuals there  (nu), (rows x 2)
-    double *phi;      // the same of constraints at the step's start  (rows x 2)
-    double *zero;     // accelerations and multipliers  (larger of nu and rows)
+    double *q, *d;    // positions near those of the step, and their distance  (nq), (nu)
+    double *r, *rows; // residuals of motion and of constraints there  (nu), (rows x 2)
+    double *phi;      // residuals of constraints at the start of the step  (rows x 2)
+    double *zero;     // zero accelerations and multipliers  (larger of nu and rows)
 };
 
 struct ct_newton_iteration {
@@ -43,70 +47,64 @@ struct ct_newton_iteration {
     bool is_stabilised;
     int nu, m, n;             // speeds, rows, equations
     long version;             // of the rows
-    bool has_tangent, is_new; // `is_new`: evaluated, or tried, in this step
-    bool is_outdated;         // multipliers ask for other derivatives
-    bool is_assembled;        // S, X, W are those of the derivatives
-    struct ct_newton *
-        sparse; // all these matrices and factors as lists of entries; NULL: full ones, as follows
+    bool has_tangent, is_new; // derivatives: known; evaluated, or tried, in this step
+    bool is_outdated;         // large changes of multipliers require new derivatives
+    bool is_assembled;        // S, X, W belong to the present derivatives
+    struct ct_newton *sparse; // sparse matrices and factors; NULL: the dense ones that follow
     double *M, *C, *K, *J, *D;
     double *S, *X, *W; // the matrix is S + x X + (y or z) W  (n x n)
     double c, e;       // of the factors; 0: none
     double by_r, by_v; // -1/e, -1/c
-    int rows;  // between columns of what follows: inverses of few rows, else n and factors
-    double *G; // (rows x n)
+    int rows;          // leading dimension of G and Gi
+    double *G;         // inverse of a small system, else its LU factors  (rows x n)
     double
-        *Gi; // the inverse of the complex system: real parts, imaginary ones (rows x n, twice)
-    double _Complex *Gc, z; // or its factors (n x n); z: one over its c
-    double one; // of a single equation: what its residual is multiplied by, in both systems
-    double _Complex onec;
+        *Gi; // inverse of a small complex system: real parts, imaginary parts (rows x n, twice)
+    double _Complex *Gc, z; // or its LU factors (n x n); z = 1/c of the complex system
+    double one;             // for n = 1: the solution of the real system over the residual
+    double _Complex onec;   // the same for the complex system
     int *pivot, *pivotc;
-    double *H, slow; // of the matrix for c = `slow` alone, to tell slow speeds; 0: not factored
+    double *H, slow; // LU factors of the low-pass filter, its cutoff [1/s]; 0: not factored
     int *pivot_slow;
-    bool is_band_factor; // these factors are of another c, that of a band
-    double energy;       // twice the largest kinetic energy at looks so far, or that is to come
-    double largest_mass; // the largest mass, at the last of them
-    bool *is_slow;       // which speeds are slow by themselves, then  (nu)
+    bool is_band_factor; // H has the factors for the cutoff of a band instead
+    double energy;       // twice the largest kinetic energy, found or predicted so far
+    double largest_mass; // the largest entry of `mass` at the last estimate of the energy
+    bool *is_slow;       // per speed: does more than half of it pass the low-pass filter?  (nu)
     double *mass;        // the diagonal of M  (nu)
-    double *w;           // speeds of the derivatives (nu), for N; NULL: the method knows no N
-    double *b, *x;       // (n, of complex parts 2 n), (rows, 2 rows)
+    double *w;     // speeds at which derivatives were evaluated (nu), for N; NULL: without N
+    double *b, *x; // right-hand side (n, complex 2 n), solution (rows, complex 2 rows)
     double _Complex *bc;
     double per_speed; // 1/nu; 0: there are none
-    double *
-        // one over what changes of positions and speeds are measured against, zeros behind  (2 nu,
-        // as padded)
-        share;
-    double *off;     // an error of the states  (ny)
-    double *fast;    // one of positions and speeds as vibrations count  (2 nu)
-    const double *y; // the start of the step
-    double t;        // of the derivatives
-    double *
-        // what a round-off of forces and constraints is worth in positions and speeds, (8.17)  (2
-        // nu)
-        roundoff;
-    bool has_roundoff; // with the factors there are
+    double *share;    // one over the weights of positions and speeds in the norm  (2 nu)
+    double *off;      // workspace: an error of the states  (ny)
+    double *fast;     // workspace: positions and speeds of fast modes  (2 nu)
+    const double *y;  // state at the start of the step
+    double t;         // time of the derivatives
+    double
+        *roundoff; // corrections caused by round-off of forces and constraints, (8.17)  (2 nu)
+    bool has_roundoff; // it belongs to the present factors
     struct ct_roundoff_probe probe;
-    // the run of corrections
-    int count;
-    double kappa, roundoff_size; // a correction below: converged; below: not to be bettered
-    double kappa_for;            // the tolerance that it belongs to
-    bool is_finest;              // there is no tolerance
+    // convergence
+    int count;                   // corrections so far
+    double kappa, roundoff_size; // sizes of corrections: converged; not above round-off
+    double kappa_for;            // the tolerance that kappa belongs to
+    bool is_finest;              // there is no tolerance: iterate down to round-off
     bool is_further;             // corrections go on after convergence
-    double least;                // nor where places change by less  [m, rad]
-    double roundoff_position,
-        roundoff_speed; // half a round-off of the largest of each, with rows
-    double size, rate, slowest,
-        // of the last correction; over the one before; largest of such; all that follow it, over it
-        tail;
-    int most;
+    double least;                // a change of positions by less is round-off  [m, rad]
+    double roundoff_position, roundoff_speed; // half a unit round-off of the largest one
+    double size;                              // of the last correction
+    double rate, slowest;                     // convergence rate: the last two, the largest
+    double tail; // the remaining error after a correction, over its size
+    int most;    // largest number of corrections
 };
 
-/// Room for everything, the complex parts on request.
+/// Allocates the iteration, with the complex system on request.
 struct ct_newton_iteration *ct_newton_iteration_create(struct ct_arena *a,
                                                        const struct ct_problem *p,
                                                        bool is_stabilised, bool is_complex);
 
-/// At the begin of a step h: which rows count, what is small. True if the rows are others than
-/// before, so that multipliers must be found anew. tolerance == NULL: as small as round-off allows.
+/// Called at the start of a step h: sets the weights of the norm and the present rows. True if the
+/// rows have changed, so that multipliers must be found again. tolerance == NULL: iterate down to
+/// round-off.
 bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
                                const struct ct_tolerance *tolerance, double h, const double *y);
 
@@ -115,17 +113,17 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
 /// Chosen: steps refused for round-off against the error of positions.
 static const double ct_position_roundoff = 8;
 
-/// Each correction that much of the one before: newer derivatives would be nearer to the end.
+/// Is the convergence rate so slow that new derivatives pay?
 static inline bool ct_newton_iteration_is_slow(double rate)
 {
     return rate > 0.1;
 }
-/// Are the derivatives too old? They are kept while corrections are not slow.
+/// Must derivatives be evaluated again? They are kept while convergence is not slow.
 static inline bool ct_newton_iteration_is_old(const struct ct_newton_iteration *it)
 {
     return !it->has_tangent || it->is_outdated || ct_newton_iteration_is_slow(it->rate);
 }
-/// They are of another place: behind an event or a singular configuration.
+/// Discards the derivatives, after an event or a singular configuration.
 static inline void ct_newton_iteration_forget(struct ct_newton_iteration *it)
 {
     it->has_tangent = false;
@@ -144,7 +142,8 @@ static inline void ct_newton_iteration_note_multipliers(struct ct_newton_iterati
     }
     it->is_outdated = change > size / 2;
 }
-/// Derivatives at a point, where they are too old; after it come the factors.
+/// Evaluates the derivatives at a point, if they are too old. The matrix must be factored after
+/// that.
 enum ct_eval ct_newton_iteration_refresh(struct ct_newton_iteration *it, double t,
                                          const double *q, const double *u, const double *a,
                                          const double *lam, struct ct_integrate_stats *stats);
@@ -164,7 +163,7 @@ static inline bool ct_newton_iteration_factor(struct ct_newton_iteration *it, do
     return are_near || ct_newton_iteration_factor_anew(it, c, e, s, stats);
 }
 
-/// A (n x n, columns lda apart, out): the matrix for c and e, where it is full.
+/// A (n x n, leading dimension lda, out): the dense matrix for c and e.
 void ct_newton_iteration_fill(struct ct_newton_iteration *it, double *A, int lda, double c,
                               double e);
 
@@ -181,7 +180,7 @@ static inline void ct_newton_iteration_solve(struct ct_newton_iteration *it, dou
     else
         ct_newton_iteration_solve_system(it, d, eta, lam, r, phi, v);
 }
-/// The same with the complex system: of each the imaginary parts stand behind the real ones.
+/// The same with the complex system. In each vector imaginary parts follow the real parts.
 void ct_newton_iteration_solve_complex(struct ct_newton_iteration *it, double *d, double *eta,
                                        double *lam, const double *r, const double *phi,
                                        const double *v);
@@ -281,8 +280,8 @@ void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double s
 
 /// Undamped vibrations in a step.
 struct ct_vibration {
-    double lost, present; // twice the energy that the step takes, and that there is
-    double times;         // what they are of their error
+    double lost, present; // twice the energy that the step dissipates, and their energy
+    double times;         // their amplitude over their error estimate
 };
 /// In a step h of Radau, c = gamma/h of its real system, whose error is d, u (nu). `off` is
 /// overwritten.  (8.13)
@@ -295,14 +294,14 @@ double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
                                          const struct ct_vibration *v, double t,
                                          const double *y, const double *d, const double *u);
 
-/// Vibrations of about one rate.
+/// Vibrations in a band of frequencies.
 struct ct_band {
-    double rate;                       // [1/s]
-    double times;                      // what they are of their error
-    double small;                      // positions and speeds that are nothing
-    double least;                      // outputs that are smaller count as so large
+    double rate;                       // its frequency  [1/s]
+    double times;                      // their amplitude over their error estimate
+    double small;                      // positions and speeds below it are negligible
+    double least;                      // least scale of outputs
     const double *furthest, *swiftest; // largest positions and speeds so far  (nu)
-    const double *ahead;               // those expected  (2 nu)
+    const double *ahead;               // predicted positions and speeds  (2 nu)
 };
 /// ahead (2 nu, out): how far positions and speeds go up to the end of the run with the
 /// accelerations a (nu) at y, as far as forces let them, and not further than a unit; outputs are
@@ -345,8 +344,7 @@ const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 
 /// Before the first correction.
 void ct_newton_iteration_start(struct ct_newton_iteration *it);
-/// Once converged: corrections are to go on until they are much smaller, or of the size of
-/// round-off.
+/// After convergence: lets corrections go on until they are much smaller or come to round-off.
 void ct_newton_iteration_continue(struct ct_newton_iteration *it);
 /// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL:
 /// not looked at).

@@ -1,4 +1,5 @@
-// See newton_sparse.h: which entries there are, and in which order they are factored.
+// Symbolic analysis of the sparse Newton matrix: sparsity pattern and elimination order; see
+// newton_sparse.h.
 #include "integrate/implicit/newton_pattern.h"
 
 #include "numeric/inverse.h"
@@ -9,7 +10,8 @@ enum part { S, X, W };
 
 // ---- places and terms ---------------------------------------------------------------------------
 
-// Places while they are found; a term's target is its place here until the pattern is known.
+// Entries in the order in which they are found, with repetitions. The target of a term is an index
+// into this list until the pattern is known.
 struct places {
     struct ct_arena *a;
     int *row, *column, *part;
@@ -167,7 +169,7 @@ static void add_terms(struct ct_newton_pattern *p, struct places *s, const int *
     add_turns(p, s, q_of, W, &p->J, below);
 }
 
-// From places to the pattern: a target becomes part * nz + place.
+// Replaces targets by their index in the pattern: part * nz + entry.
 static void settle_targets(struct ct_newton_pattern *p, struct ct_arena *a,
                            const struct places *s)
 {
@@ -229,7 +231,8 @@ static void invent(const struct ct_newton_pattern *p, double *v)
                 v[heavy[k]->first + i] += much;
 }
 
-// Coordinates, inner values, and rows that touch coordinates, as nodes of a graph.
+// A graph whose nodes are speeds, auxiliary unknowns and constraint rows, for the elimination
+// order.
 static struct ct_pattern *find_graph(const struct ct_newton_pattern *p,
                                      struct ct_arena *scratch)
 {
@@ -349,7 +352,7 @@ static void *keep(struct ct_arena *a, const void *x, size_t n, size_t size)
     return n ? memcpy(kept, x, n * size) : kept;
 }
 
-// The plan, its terms in `scratch`.
+// The symbolic analysis, with temporary data in `scratch`.
 static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scratch,
                                       const struct ct_dae *dae, bool is_stabilised, bool anyway)
 {
