@@ -68,7 +68,7 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
         = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter, &s->once};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
-    for (int i = first; i < last; i++) // a change of speeds in which none is singled out
+    for (int i = first; i < last; i++) // all speeds, with unequal parts
         s->v[i] = 1 + 0.5 * sin(i + 1.);
     return s;
 }
@@ -106,7 +106,7 @@ static double turn_to(struct ct_stiffness *s, const double *x)
     return size;
 }
 
-// a'b with places as fast as speeds.
+// Scalar product of a and b with positions scaled by `fast`.
 static double dot(const struct ct_stiffness *s, const double *a, const double *b)
 {
     double places = 0, speeds = 0;
@@ -134,8 +134,8 @@ static double find_decay(const struct ct_stiffness *s, const double *x, double g
     return half + sqrt(fmax(0, half * half + a * size));
 }
 
-// Two applications: one turns a vibration's places into speeds and back, its rate is the root of
-// both gains.
+// Estimates `fast` and `decay`. Two applications of J take positions of a vibration to speeds and
+// back; its rate is the square root of the product of both gains.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
     if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
@@ -178,7 +178,7 @@ static double find_slow(const struct ct_stiffness *s, double h)
     return size > 0 ? sqrt(change) / (h * size) : 0;
 }
 
-// Stiff forces answer a round-off of places by eps fast^2 times as much acceleration.
+// Does round-off eps |q| of positions, amplified to accelerations by fast^2, exceed the tolerance?
 static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
 {
     double place = 0;
@@ -187,8 +187,8 @@ static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
     return DBL_EPSILON * s->fast * s->fast * place > s->rtol * length(s->f, s->first, s->last);
 }
 
-// The rate at which places change by themselves, of those that have gone further than a unit by a
-// unit.
+// The rate of change of positions: the largest speed over the largest position, or over 1 if that
+// is less.
 static double find_pace(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, speed = 0;
@@ -199,7 +199,7 @@ static double find_pace(const struct ct_stiffness *s, const double *y)
     return speed / fmin(place, 1);
 }
 
-// The same from rest, by accelerations s->f.
+// The same for a motion that starts at rest, from accelerations s->f.
 static double find_departure(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, change = 0;
@@ -210,8 +210,8 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
     return sqrt(change / fmin(place, 1));
 }
 
-// Has the rate of the fastest motion been about the same for some tests? Beside singular
-// configurations it is large for a moment, and nothing turns.
+// Has the rate of the fastest mode been about the same for several tests? Near singular
+// configurations it is large for a moment only.
 static bool is_persistent(const struct ct_stiffness *s)
 {
     return s->alike >= suspicious_tests;
@@ -224,9 +224,9 @@ static void compare_rates(struct ct_stiffness *s, double before)
     s->alike = is_same ? s->alike + 1 : 1;
 }
 
-// What is left of the fastest motion since it was last excited: decay over the time since then, of
-// which each test measures one value for the steps before it. Without friction, too, it dies and
-// grows at times as masses and stiffnesses change along the motion, at the pace of that.  (8.33)
+// Integrates the decay rate of the fastest mode since the last event; each test gives its value for
+// the steps before it. Without damping amplitudes change, too, because mass and stiffness change
+// along the motion, at the rate `pace`, which is subtracted.  (8.33)
 static void note_decay(struct ct_stiffness *s, bool is_known, double pace, double start,
                        double t)
 {
@@ -263,7 +263,7 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     return reach > unfollowed_step || (is_held_up && is_apart);
 }
 
-// Between tests: does the rate of the fastest motion last?
+// Between tests: is the rate of the fastest mode still about the same?
 static void look_again(struct ct_stiffness *s, double t, const double *y)
 {
     const double before = s->fast;
@@ -323,8 +323,8 @@ static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x
     return true;
 }
 
-// y'' (ny, out) = J f + df/dt. What follows a driver is carried along with the fastest motion at
-// rest: its rate is a part of f, and J f alone takes that for a vibration.
+// y'' (ny, out) = J f + df/dt. The second term is needed where coordinates follow a prescribed
+// motion: its rate is a part of f, which J f alone would take for a vibration.
 static bool find_second_derivative(struct ct_stiffness *s, double t, const double *y,
                                    double *out)
 {
@@ -372,8 +372,7 @@ bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, dou
     return is_far && end - t > steps_worth_it * s->step;
 }
 
-// What a step leaves of the term of order p + 1 in exp(z): b' A^p 1 - 1/(p + 1)!, b the last row of
-// A.
+// The error constant of the stability function: b' A^p 1 - 1/(p + 1)!, b the last row of A.
 static double error_constant(const struct ct_method *m)
 {
     const struct ct_tableau *b = m->tableau;

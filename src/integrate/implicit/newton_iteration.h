@@ -2,26 +2,22 @@
 // IIA of order 5 (radau5.c) and the generalised-alpha family (alpha.c). They share a simplified
 // Newton iteration with dense or sparse matrices, and an error estimate that recognises fast modes.
 //
-// This file is the interface of the simplified Newton iteration.
-//
-// Every method here solves, for a motion d of the places, multipliers eta that keep Phi = 0 beside
-// v = 0, and the multipliers lam of the equations of motion, linear systems of one form.  (8.2),
-// (8.4)
+// This file is the interface of the simplified Newton iteration. Every method here solves linear
+// systems of one form. The unknowns are corrections of positions d, of the multipliers eta, which
+// enforce Phi = 0 in addition to v = 0, and of the multipliers lam of the equations of motion.
+// (8.2), (8.4)
 //
 //     [ M + x C + y K   -(M + x C) J'   -J' ] ( d        )     ( y r   )         speeds change by c d,
 //     [ J                0               0  ] ( eta      ) = - ( phi   )         accelerations by c/x d
 //     [ J + z D         -J J'            0  ] ( y lam    )     ( z v   )         (less the part J' eta of d)
-//
-// with x = c/e, y = 1/e, z = 1/c for c = d(speed)/d(place) and e = d(acceleration)/d(place). So
-// scaled, its condition does not depend on the step. Radau's complex pair has complex c; the
-// index-3 form has neither eta nor the last row.
-//
-// Where d' = T^-1(d) u is collocated, by Radau, speeds change by (c - N) d with N d = d x w / 2 for
-// rotations at speeds w: C d becomes (C - M N) d, K d becomes (K - C N) d, D d becomes (D - J N) d,
-// beside eta nothing changes.
-//
-// What always holds: M, C, K, J, D are those of the last `tangent`; it is called again when
-// convergence has become slow, the factors are made again when c or e have changed.
+// with x = c/e, y = 1/e, z = 1/c, where c = d(speed)/d(position) and e =
+// d(acceleration)/d(position). With this scaling the condition number does not depend on the step.
+// The complex system of Radau IIA has a complex c. The index-3 form has neither eta nor the last
+// row. Radau IIA collocates d' = T^-1(d) u. There speeds change by (c - N) d with N d = d x w / 2
+// for rotations at angular velocities w: C becomes C - M N, K becomes K - C N and D becomes D - J
+// N. The columns of eta do not change. What always holds: M, C, K, J, D come from the last call of
+// `tangent`. They are evaluated again when convergence has become slow, and the matrix is factored
+// again when c or e have changed.
 #ifndef CT_INTEGRATE_IMPLICIT_NEWTON_ITERATION_H
 #define CT_INTEGRATE_IMPLICIT_NEWTON_ITERATION_H
 
@@ -128,9 +124,9 @@ static inline void ct_newton_iteration_forget(struct ct_newton_iteration *it)
 {
     it->has_tangent = false;
 }
-/// Multipliers lam (n) have been corrected by dlam. Where rows change along themselves, as near a
-/// singular configuration, old derivatives still give motions that are right, but each step
-/// multiplies the error of lam by 1 - J/J_old.
+/// Multipliers lam (n) have been corrected by dlam. Near a singular configuration constraint rows
+/// change mostly in length. With old derivatives positions still converge, but each step multiplies
+/// the error of lam by 1 - J/J_old, so large corrections call for new derivatives.
 static inline void ct_newton_iteration_note_multipliers(struct ct_newton_iteration *it,
                                                         const double *lam, const double *dlam,
                                                         int n)
@@ -206,8 +202,8 @@ void ct_newton_iteration_add_constraint_force_sparse(const struct ct_newton_iter
 /// r (nu) = M x.
 void ct_newton_iteration_multiply_mass(const struct ct_newton_iteration *it, double *r,
                                        const double *x);
-/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration, given so that a
-/// compiler may know them.
+/// out (nu) = x + c J' eta (m); out may be x. nu and m are those of the iteration; constants let
+/// the compiler unroll loops.
 static inline void
 ct_newton_iteration_add_constraint_force(const struct ct_newton_iteration *it, double *out,
                                          const double *x, double c, const double *eta,
@@ -234,8 +230,9 @@ static inline double ct_newton_iteration_square(const double *x, const double *s
     return sum;
 }
 
-/// Root mean square of k positions and speeds (nu x k each) times their shares; u == NULL: of
-/// places alone. nu is that of the iteration, given so that a compiler may know it.
+/// The norm of corrections: root mean square of k changes of positions d and of speeds u (nu x k
+/// each) over their weights; u == NULL: of positions alone. nu is that of the iteration; a constant
+/// lets the compiler unroll loops.
 static inline double ct_newton_iteration_norm(const struct ct_newton_iteration *it,
                                               const double *d, const double *u, const int nu,
                                               int k)
@@ -248,7 +245,7 @@ static inline double ct_newton_iteration_norm(const struct ct_newton_iteration *
     return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
-/// The same of places and, of speeds, the states of the model alone.
+/// The same for positions and for the state variables of the model among the speeds.
 static inline double ct_newton_iteration_norm_of_places(const struct ct_newton_iteration *it,
                                                         const double *d, const double *u,
                                                         const int nu)
@@ -260,21 +257,22 @@ static inline double ct_newton_iteration_norm_of_places(const struct ct_newton_i
     return sqrt(sum * it->per_speed);
 }
 
-/// The norm of errors d, u (nu) of positions and speeds at y of which, but for those that p asks
-/// for, only what is slow counts of speeds, (8.10), and of the rest its part of `ample` (nu); *slow
-/// (out): the same with only what is slow of places. INFINITY where that cannot be told. `off` is
+/// The norm of errors d, u (nu) of positions and speeds at y, with speeds that are not outputs
+/// low-pass filtered (8.10). Their fast part counts over `ample` (nu) instead. *slow (out): the
+/// same with filtered positions. INFINITY where the filter cannot be factored. `off` is
 /// overwritten.
 double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struct ct_problem *p,
                                      const struct ct_tolerance *tolerance, const double *y,
                                      const double *ample, const double *d, const double *u,
                                      double *slow);
 
-/// `energy` is no less than that of these speeds, of which `small` is nothing. After
-/// ct_newton_iteration_slow_norm, as the three below.
+/// Raises `energy` to twice the kinetic energy of these speeds, where speeds below `small` are
+/// negligible. To be called after ct_newton_iteration_slow_norm, as the three functions below.
 void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double small,
                                      const double *speeds);
-/// Nor than that which the slow part of these accelerations gives on the way `small`, or in so much
-/// time if that is less: a motion that begins at rest has its energy to come. `off` is overwritten.
+/// Raises `energy` to a prediction for motions that start at rest: the energy from the slow part of
+/// these accelerations after the distance `small`, or after `time` if that is less. `off` is
+/// overwritten.
 void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double small,
                                         double time, const double *accelerations);
 
@@ -283,12 +281,12 @@ struct ct_vibration {
     double lost, present; // twice the energy that the step dissipates, and their energy
     double times;         // their amplitude over their error estimate
 };
-/// In a step h of Radau, c = gamma/h of its real system, whose error is d, u (nu). `off` is
-/// overwritten.  (8.13)
+/// The vibrations in a step h of Radau IIA whose error estimate is d, u (nu); gamma/h is c of its
+/// real system. `off` is overwritten.  (8.13)
 struct ct_vibration ct_newton_iteration_vibration(struct ct_newton_iteration *it, double gamma,
                                                   double h, const double *d, const double *u);
-/// What outputs at y would change by without them, over their largest values so far, those of
-/// errors d, u (nu). `off` is overwritten.
+/// The largest relative change of outputs at y without the vibrations v in errors d, u (nu). `off`
+/// is overwritten.
 double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
                                          const struct ct_problem *p,
                                          const struct ct_vibration *v, double t,
@@ -303,14 +301,14 @@ struct ct_band {
     const double *furthest, *swiftest; // largest positions and speeds so far  (nu)
     const double *ahead;               // predicted positions and speeds  (2 nu)
 };
-/// ahead (2 nu, out): how far positions and speeds go up to the end of the run with the
-/// accelerations a (nu) at y, as far as forces let them, and not further than a unit; outputs are
-/// expected to be as large. `off` is overwritten.  (8.22)
+/// ahead (2 nu, out): predicted changes of positions and speeds up to the end of the run, from the
+/// low-pass filtered speeds and accelerations a (nu) at y, and not above a unit. The outputs that
+/// follow are passed to `expect_output`. `off` is overwritten.  (8.22)
 void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
                                         const struct ct_problem *p, double t, const double *y,
                                         const double *a, double *ahead);
-/// What errors d, u (nu) at y, as far as they are vibrations of this band, leave in outputs over
-/// their largest values so far, whatever the vibrations' phase. `off` is overwritten.  (8.21)
+/// The largest relative change of outputs at y by the part of errors d, u (nu) in this band, for
+/// any phase of the vibrations. `off` is overwritten.  (8.21)
 double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
                                                  const struct ct_problem *p,
                                                  const struct ct_band *b, double t,
@@ -327,17 +325,17 @@ double ct_newton_iteration_error(struct ct_newton_iteration *it, const struct ct
                                  const double *y1, const double *d, const double *u,
                                  double states);
 
-/// What they mean for outputs that amplify, where 1 is the tolerance; `states` is the norm of the
-/// error of the step.  (8.11)
+/// The error of sensitive outputs that follows from errors d, u (nu), where 1 is the tolerance;
+/// `states` is the norm of the error of the step.  (8.11)
 double ct_newton_iteration_sensitive_error(struct ct_newton_iteration *it,
                                            const struct ct_problem *p,
                                            const struct ct_tolerance *tolerance, double t1,
                                            const double *y1, const double *d, const double *u,
                                            double states);
 
-/// Positions and speeds (2 nu) that the round-off of forces and constraints leads to, with the
-/// factors of the real system; two residuals, `b` is overwritten; zeros where they cannot be found.
-/// Corrections cannot be told from it.  (8.17)
+/// The corrections of positions and speeds (2 nu) that round-off of forces and constraints causes,
+/// by the factors of the real system. Smaller corrections mean nothing. It takes two residuals;
+/// zeros where they cannot be computed. `b` is overwritten.  (8.17)
 const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 
 // ---- convergence, see newton_convergence.c ------------------------------------------------------
@@ -346,8 +344,8 @@ const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 void ct_newton_iteration_start(struct ct_newton_iteration *it);
 /// After convergence: lets corrections go on until they are much smaller or come to round-off.
 void ct_newton_iteration_continue(struct ct_newton_iteration *it);
-/// After a correction of this size, which moved places by d (nu x k) and speeds by u (nu x k; NULL:
-/// not looked at).
+/// The convergence test, after a correction of norm `size` of positions by d (nu x k) and of speeds
+/// by u (nu x k; NULL: not tested).
 enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iteration *it,
                                                          double size, const double *d,
                                                          const double *u, int k);

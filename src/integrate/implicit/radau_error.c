@@ -108,9 +108,9 @@ static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
     }
 }
 
-// What is lost of vibrations, as an error of order 3. The share of a step that is taken in every
-// step, `rate`, is one of h^5. All there is does not grow with the step, so that holds steps up
-// less before it counts.  (8.13), (8.22)
+// The dissipation of vibrations as an error of order 3. Dissipation over the run, `rate`, grows
+// with h^5. The loss of the whole vibration, `all`, does not depend on h, so it enters with a power
+// that limits steps less while it is small.  (8.13), (8.22)
 static double as_error(double rate, double all)
 {
     const double order = 4. / 5; // Derived: an error estimate of h^4, a loss rate of h^5
@@ -224,9 +224,10 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
     return m;
 }
 
-// It is looked at where steps have become longer, where the last look has refused one, and every so
-// many steps, and follows their length in between. Of a step that was refused for it, and may be
-// far longer, vibrations that it does not resolve have no such law.
+// The error of a step by dissipation of vibrations. It is estimated where steps have become longer,
+// after a refusal for this error, and at regular intervals; in between it is scaled with the length
+// of the step. After a refusal it is not scaled, because vibrations that a much longer step does
+// not resolve follow no power of h.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
