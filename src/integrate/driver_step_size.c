@@ -4,12 +4,12 @@
 #include <assert.h>
 #include <math.h>
 
-// A crossing that failed for its error begins nearer by what the error says, with the safety factor
-// of step control. Derived: SAFE of DOPRI5 (Hairer and Wanner).
+// The safety factor for a shorter crossing after one that failed for its error. Derived: SAFE of
+// DOPRI5 (Hairer and Wanner).
 static const double safety = 0.9;
 
-// A crossing that failed is tried again from nearer by this factor.
-// Default: the number of trials against digits lost near by. Test: crossing.
+// A failed crossing is repeated with its start nearer to the singular configuration by this factor
+// at least. Default: the number of trials against digits lost near by. Test: crossing.
 static const double nearer = 0.5;
 // After so many failures the configuration counts as nearly singular only.
 // Default: crossings given up against trials in vain. Test: crossing.
@@ -80,8 +80,8 @@ static double fit_fixed(struct ct_driver *r, double stop)
     return h;
 }
 
-// The step across a singular configuration, centred on it. Beyond the end of the run f is the same
-// function, beyond a time event it is not.
+// Plans a step across a singular configuration, centred on it. It may go beyond the end of the run,
+// but not beyond a time event, where f changes.
 static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
                           struct ct_planned_step *s)
 {
@@ -93,7 +93,7 @@ static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
     s->t1 = s->reaches_stop ? stop : r->t + s->h;
 }
 
-// The rest of the crossing that an event has cut, centred on the event.
+// Plans the remainder of a crossing after an event in its gap. Its stages are centred on the event.
 static void plan_remainder(const struct ct_driver *r, double stop, bool is_time,
                            struct ct_planned_step *s)
 {
@@ -112,8 +112,7 @@ static bool has_crossing(const struct ct_driver *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
-// s (out): member by member, because steps are short against the time that a copy of it waits for
-// its parts.
+// s is filled member by member: a copy of the whole would wait for stores of its members.
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s)
 {
@@ -129,8 +128,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
         plan_remainder(r, stop, is_time, s);
         return;
     }
-    // the run may end before the position, but beside it; one that begins beside it can only come
-    // from a crossing
+    // the run may end shortly before the singular configuration; one that starts within its reach
+    // must come to it
     if (has_crossing(r) && reach > 0
         && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
@@ -168,8 +167,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     double reach;
     const double before = r->singular_in;
     r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
-    // none, or another one; or what has failed was begun for one that had been taken to be much
-    // farther off
+    // there is none, or another one, or failed attempts were made with a wrong prediction of its
+    // time
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
@@ -181,8 +180,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
-// The rest of a crossing that began nearer to the position than it should have ends where that
-// would have begun.
+// Plans the length of the remainder. A crossing that began too near to the singular configuration
+// has a remainder as long as the usual approach.
 static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double whole
@@ -205,7 +204,7 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
     r->control.was_refused = false;
 }
 
-// Shorter, which none is any more after so many times.
+// Shortens the remainder of a crossing after a failure, and gives it up after too many.
 static void shrink_remainder(struct ct_driver *r)
 {
     enum { MOST = 12 }; // Default: as most_crossings. Test: crossing.
