@@ -193,7 +193,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
     }
 }
 
-// Of the state or, where they are known, its group.
+// The scale of the error of state i: its own size or the largest of its group.
 static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
 {
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : ct_larger(fabs(y[i]), fabs(y1[i]));

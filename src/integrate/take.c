@@ -53,7 +53,7 @@ struct ct_take_scan {
     struct state *state;
     struct interval {
         double a, b;
-        bool *is_open; // (n) what is not taken from it yet
+        bool *is_open; // (n) functions whose result does not include it yet
     } interval[LEVELS];
     int depth;             // intervals that wait, the last one is next; 0: the step is done
     int asked;             // nodes given of it

@@ -400,7 +400,7 @@ static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, doubl
         place_stage(s, y, i);
         ct_stepper_copy(y1, s->q, nq);
         ct_stepper_copy(y1 + nq, s->u, nu);
-        if (i == last && p->project) // takes off what the iteration left
+        if (i == last && p->project) // removes the error that the iteration leaves
             e = p->project(p->user, t + h, y1);
         if (e == CT_EVAL_OK)
             e = ct_stepper_rhs(p, t + C[i] * h, y1, dy1, stats);
