@@ -1,10 +1,10 @@
-// Steps, their size, events and samples: ct_integrate.
+// The integration loop ct_integrate: steps, their size, events and samples.
 //
 //     fit -> attempt (step, project) -> search for an event -> [attempt again up to it]
 //         -> samples on the way -> commit -> event -> sample on it
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
-// is tried again shorter; until `commit` nothing has changed. Step control is that of
+// is repeated with a shorter length; until `commit` the run has not changed. Step size control:
 // step_control.h.
 #include "integrate/driver.h"
 
@@ -119,7 +119,7 @@ static double find_rate(struct ct_driver *r, double h, double limit)
 {
     // Default: evaluations before the first step against its length. Test: integrate.
     enum { LOOKS = 5 };
-    // Default: changes that show a rate, beyond round-off and before the motion turns. Test:
+    // Default: changes that show a rate, beyond round-off and before the motion reverses. Test:
     // integrate.
     const double least = 0.02, most = 0.5, wanted = 0.05;
     const double further = 100;

@@ -107,7 +107,8 @@ static void measure(struct ct_driver *r, double h)
     r->problem.roundoff = r->roundoff;
 }
 
-// A step of this length and error, after one that was refused at the same place.
+// Does the error of this step, after a longer one was refused at the same state, indicate
+// round-off?
 static bool shows_roundoff(const struct ct_driver *r, double h, double error)
 {
     const struct ct_refusal *last = &r->refusal;

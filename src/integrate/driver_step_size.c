@@ -14,9 +14,9 @@ static const double nearer = 0.5;
 // After so many failures the configuration counts as nearly singular only.
 // Default: crossings given up against trials in vain. Test: crossing.
 static const int most_crossings = 6;
-// A crossing may begin at once where it should begin after at most this factor of the time to the
-// configuration; after a failure only where a step to that place has ended.
-// Default: short steps to that place against longer crossings. Test: crossing.
+// A crossing may begin before its planned start, up to this factor of the planned time before the
+// configuration; after a failure only at the planned start. Default: a short step to the planned
+// start against longer crossings. Test: crossing.
 static const double early = 1.3, on_time = 1.02;
 // Predicted times that differ by such a factor belong to two configurations.
 // Default: predictions err, and configurations follow each other. Test: crossing.

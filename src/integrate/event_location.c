@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-// Places within a step where sign changes are looked for.
+// Probes: times within a step, as parts of it, at which g is evaluated.
 // Default: what is missed against evaluations; two_waves_in_a_step_are_seen. Test: events.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 

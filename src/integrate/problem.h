@@ -125,9 +125,8 @@ struct ct_singularities {
     /// A step has crossed a singular configuration. It ends at t1 or later, and is the crossing
     /// without its first part `begin`. False if the configuration does not lie before t1.
     bool (*passed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
-    /// Asked after a crossing has failed: does the motion end in the configuration that is `in`
-    /// seconds ahead of y, the last accepted state, because the constraints cannot be met behind
-    /// it?
+    /// Called after a crossing has failed: does the motion end in the configuration `in` seconds
+    /// after y, the last accepted state, because the constraints have no solution beyond it?
     bool (*ends_motion)(void *user, double t, const double *y, double in);
 };
 
@@ -191,7 +190,7 @@ struct ct_problem {
     /// The longest step from t, up to h, that does not miss changes of time-dependent inputs. May
     /// be NULL.
     double (*input_limited_step)(void *user, double t, double h);
-    /// NULL: none are looked for.
+    /// NULL: singular configurations are not treated.
     const struct ct_singularities *singular;
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is

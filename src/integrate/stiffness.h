@@ -24,9 +24,10 @@ struct ct_stiffness {
     bool is_far;      // the fastest mode is far above the motion, and its speeds are no outputs
     bool is_followed; // steps resolve the fastest mode, whose rate has stayed about the same
     bool is_dead;     // the fastest mode has decayed below the tolerance
+    int in_a_row;     // positive tests in a row
     bool
         is_unstable; // steps are limited by stability, at a rate that has stayed about the same
-    int in_a_row;    // positive tests in a row
+
     int alike;       // tests in a row with about the same rate
     long test_at;    // number of steps at which the rate is estimated between tests; 0: none
     double window_t; // time of the last test, with its counts

@@ -35,7 +35,7 @@ struct factors {
     double u_a0, u_a, d_a0, d_a; // changes of speeds and positions by a0 and a
 };
 
-// A correction: of places, of speeds, of multipliers.
+// A correction of positions, of speeds and of multipliers.
 struct correction {
     const double *d, *u, *lam;
 };
@@ -50,13 +50,14 @@ struct state {
     bool is_fresh, has_jerk;               // there is no step before; u'' at the start is known
     struct memory memory[2], *start, *end; // of the step
     double *a0, *jerk;                     // (nu): a at the start, for this step's size; u''
-    double *d, *u, *q;                     // the step's motion (nu), its end (nu, nq)
+    // increment of positions (nu), speeds (nu) and positions (nq) at the end
+    double *d, *u, *q;
     double *noise;   // error of speeds that the Newton iteration leaves  (nu)
     double *dd, *du; // corrections (nu each), stored in turn in (ny + nu), followed by zeros
     double *eta, *dlam;
     double *r, *phi, *v; // stored in turn
     struct correction last;
-    double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
+    double *rate1, *out;      // for dense output: d' at the end; an increment (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
 

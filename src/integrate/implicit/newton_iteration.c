@@ -265,7 +265,7 @@ static void assemble(struct ct_newton_iteration *it)
     fill_place(it, it->S, it->J, m, nu);
     fill_place(it, it->X, it->C, nu, 0);
     fill_place(it, it->W, it->K, nu, 0);
-    for (int j = 0; j < m; j++) // -J' behind all others
+    for (int j = 0; j < m; j++) // -J' in the last columns
         for (int k = 0; k < nu; k++)
             it->S[k + n * (n - m + j)] = -it->J[j + m * k];
     if (!it->is_stabilised)

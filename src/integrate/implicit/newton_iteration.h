@@ -318,8 +318,9 @@ double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
 /// Errors d, u (nu) of positions and speeds at y1 as one of the states (ny), in `off`.
 const double *ct_newton_iteration_states(struct ct_newton_iteration *it, const double *y1,
                                          const double *d, const double *u);
-/// The error of a step that ends at y1, time t1: that of the states, `states`, or what the errors
-/// d, u (nu) of positions and speeds mean for outputs, if that is more.  (8.6)
+/// The error of a step that ends at y1, time t1: the larger of `states`, the norm of the error of
+/// states, and the error of outputs that follows from errors d, u (nu) of positions and speeds.
+/// (8.6)
 double ct_newton_iteration_error(struct ct_newton_iteration *it, const struct ct_problem *p,
                                  const struct ct_tolerance *tolerance, double t1,
                                  const double *y1, const double *d, const double *u,
@@ -334,7 +335,7 @@ double ct_newton_iteration_sensitive_error(struct ct_newton_iteration *it,
                                            double states);
 
 /// The corrections of positions and speeds (2 nu) that round-off of forces and constraints causes,
-/// by the factors of the real system. Smaller corrections mean nothing. It takes two residuals;
+/// by the factors of the real system. Smaller corrections are round-off. It takes two residuals;
 /// zeros where they cannot be computed. `b` is overwritten.  (8.17)
 const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 

@@ -8,7 +8,7 @@
 
 enum part { S, X, W };
 
-// ---- places and terms ---------------------------------------------------------------------------
+// ---- entries and terms --------------------------------------------------------------------------
 
 // Entries in the order in which they are found, with repetitions. The target of a term is an index
 // into this list until the pattern is known.
@@ -251,9 +251,9 @@ static struct ct_pattern *find_graph(const struct ct_newton_pattern *p,
     return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, place);
 }
 
-// first (n, out): coordinates and inner values in an order of little fill, and behind the last
-// coordinate that a row touches its multipliers, where elimination has left a pivot on their
-// diagonal: J H^-1 J' of what H there is of accelerations.
+// first (n, out): the elimination order of speeds and auxiliary unknowns with little fill. The
+// multipliers of a row follow the last speed in that row, where elimination has made their diagonal
+// entry nonzero.
 static bool find_first(const struct ct_newton_pattern *p, struct ct_arena *scratch, int *first)
 {
     const int most_rows = p->most_rows, nunknown = p->nu + p->nauxiliary;
@@ -298,7 +298,7 @@ static bool find_order(struct ct_newton_pattern *p, struct ct_arena *a,
     return ct_pattern_order(a, p->pattern, A, first);
 }
 
-// ---- is it worth it? ----------------------------------------------------------------------------
+// ---- comparison with dense matrices -------------------------------------------------------------
 
 static struct ct_newton_work sparse_work(const struct ct_newton_pattern *p)
 {
@@ -377,7 +377,8 @@ static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scrat
     // instead.
     const double n = p->first_auxiliary, most = 0.5;
     const bool is_dense
-        = p->pattern->nz > most * n * n && !p->nauxiliary; // those are looked for with a reason
+        // auxiliary unknowns are there to make it sparse
+        = p->pattern->nz > most * n * n && !p->nauxiliary;
     if ((!anyway && is_dense) || !find_order(p, a, scratch)
         || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(n))))
         return NULL;

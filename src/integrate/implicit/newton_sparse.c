@@ -9,13 +9,13 @@ struct ct_newton {
     const struct ct_dae *dae;
     const int *active; // rows that count  (m)
     int m;
-    double *v;     // K, C, M, R, D, J, zeros in rows that do not count
+    double *v;     // K, C, M, R, D, J, with zeros in unused rows
     double *A;     // S, X, W
     double *G;     // the matrix, real or complex
     bool *counts;  // each row  (most_rows)
     int *rank_of;  // of rows that count  (most_rows)
     double *b;     // of all rows (n numbers or pairs)
-    double *k;     // variations of inner values  (ninner)
+    double *k;     // changes of auxiliary unknowns  (nauxiliary)
     double *x, *y; // of products  (nu)
     struct ct_factors *real, *pair, *slow;
 };

@@ -41,10 +41,10 @@ static const double T_INVERSE[STAGES][STAGES]
        {-4.1787185915519047273, -0.32768282076106238708, 0.47662355450055045196},
        {-0.50287263494578687595, 2.5719269498556054292, -0.59603920482822492497}};
 
-/// Stages of a step, or their corrections, one stage behind the other.
+/// Stages of a step, or their corrections, stored stage by stage.
 struct ct_radau_stages {
     double h;
-    double *d, *u;     // motion and change of speed since the start  (nu x 3)
+    double *d, *u;     // changes of positions and of speeds since the start  (nu x 3)
     double *lam, *eta; // (rows x 3)
 };
 
@@ -65,7 +65,7 @@ struct ct_radau {
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)
     double *q, *u, *u_dot, *lam; // of a stage; of the start  (lam)
-    double *d;                   // a motion, or change of speed  (nu)
+    double *d;                   // a change of positions or of speeds  (nu)
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
     // fast modes in the error estimate, see radau_error.c
