@@ -70,7 +70,7 @@ double ct_step_control_euler_step(double d0, double d1, double limit);
 double ct_step_control_first(const struct ct_method *m, double h, double d1, double d2,
                              double limit);
 /// A first step for a motion of a known `rate` [1/s]: the first term of its Taylor series in the
-/// error estimate, (rate h)^n/n!, is a hundredth of the tolerance.
+/// estimated error, (rate h)^n/n!, is a hundredth of the tolerance.
 double ct_step_control_first_at_rate(const struct ct_method *m, double rate, double rtol);
 
 #endif

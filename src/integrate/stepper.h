@@ -77,7 +77,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
 double ct_stepper_norm(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                        const double *y, const double *y1, const double *e);
 
-/// Subtracts from the error estimate e (ny) of a step h the round-off of f, problem.roundoff.
+/// Subtracts from the estimated error e (ny) of a step h the round-off of f, problem.roundoff.
 void ct_stepper_subtract_roundoff(const struct ct_problem *p, double h, double *e);
 
 /// The error of a step that ends at y1, time t1: the larger of `states`, the norm of the error e
@@ -96,7 +96,7 @@ static inline double ct_stepper_larger_error(const struct ct_problem *p,
 double ct_stepper_error(const struct ct_problem *p, const struct ct_tolerance *tolerance,
                         double t1, const double *y, const double *y1, const double *e);
 
-/// The error estimate of DOP853 from those of order 5 and 3; source as dop853.c.
+/// The estimated error of DOP853 from those of order 5 and 3; source as dop853.c.
 double ct_stepper_join(double e5, double e3);
 
 /// Largest |e_i| / (rtol max(|y_i|, |y1_i|) + atol) over the controlled states from `first` on. For

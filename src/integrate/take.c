@@ -155,7 +155,7 @@ static double integral(const double *c)
     return sum;
 }
 
-// Error estimate of the interpolant: coefficients of smooth functions decrease, so those left out
+// Estimated error of the interpolant: coefficients of smooth functions decrease, so those left out
 // are smaller than the last two.
 static double error_of(const double *c)
 {
