@@ -1,13 +1,13 @@
-// See crossing.h. The stages are 2 m: the zeros of a Chebyshev polynomial with the ends of the
-// step, put onto the two intervals that the gap leaves,
+// See crossing.h. The 2 m stages lie on the two intervals on both sides of the gap. They are zeros
+// of a Chebyshev polynomial and the ends of the step, mapped to these intervals:
 //
 //     c = (1 -+ sqrt(s)) / 2,   s_j = g^2 + (1 - g^2) (1 + cos(2 pi j / (2 m - 1))) / 2,   j = 0 ... m - 1
+// with g the gap as part of the step. In s these nodes nearly minimise the node polynomial, and s =
+// x^2 maps the two intervals to one.
 //
-// with g the gap as part of the step. In s they are nodes of least growth of the node polynomial,
-// and s = x^2 makes one interval of the two. Stages are found by fixed-point iteration in
-// Gauss-Seidel order, y_j = y + h sum_i A_ji f(y_i) with the newest values, as f is not stiff. The
-// first guess extrapolates from stage to stage. The error is taken to be the change when two of the
-// inner stages are left out, which is larger than the error.
+// f is not stiff, so stages are found by fixed-point iteration in Gauss-Seidel order, y_j = y + h
+// sum_i A_ji f(y_i) with the newest values. Starting values are extrapolated from stage to stage.
+// The error estimate is the change without two of the inner stages, which is larger than the error.
 //
 // Source: collocation as in Hairer, Norsett and Wanner (1993), II.7, key hairer1993; the nodes are
 // those of least Chebyshev norm on two symmetric intervals.
@@ -21,8 +21,8 @@
 
 // Definition: stages, those before the gap, points of Gauss-Legendre quadrature.
 enum { STAGES = CT_CROSSING_STAGES, SIDE = STAGES / 2, QUADRATURE = 8 };
-// Derived: without these sweeps a crossing takes more sweeps over all stages; three linkages took up
-// to 36 per cent more evaluations in a run.
+// Derived: without these sweeps a crossing takes more sweeps over all stages; three linkages took
+// up to 36 per cent more evaluations in a run.
 enum { LEFT_SWEEPS = 2 };
 
 // Part of the step, about its middle, in which f is not evaluated.
@@ -33,30 +33,31 @@ static const double gap = 0.3;
 // mismatch limit below, so that it spoils neither. Derived: kappa of Hairer and Wanner (1996),
 // IV.8, key hairer1996.
 static const double kappa = 0.1;
-// Round-off of a change, in tolerances; most of it is in coordinates that the constraints
-// determine. Default: with less, iterations next to round-off fail. Test: singular_switching.
+// The size of changes that may be round-off, in tolerances; mostly of dependent coordinates.
+// Default: with less, iterations next to round-off fail. Test: singular_switching.
 static const double roundoff = 10;
 const double ct_crossing_mismatch_limit = 1e-9;
 // Default: with less, crossings fail for round-off. Test: singular_approach.
 const double ct_crossing_roundoff = 5e-13;
-// Where the constraints are missed in the middle by more than the mismatch limit and so many
-// tolerances, a crossing from nearer by is not tried.
-// Default: trials in vain against crossings given up too early. Test: crossing.
+// With a residual of the constraints in the middle above the mismatch limit and so many tolerances,
+// no shorter crossing is tried. Default: trials in vain against crossings given up too early. Test:
+// crossing.
 static const double held_tolerance = 100;
 
 struct work {
-    double c[STAGES], norm[STAGES];   // norms of find_norms, of all stages
-    double A[STAGES][STAGES];         // integrals of the Lagrange polynomials up to c_j
-    double left[SIDE][STAGES];        // the same for the polynomial through the left side alone
-    double first[STAGES][STAGES];     // and through all stages before j
-    double from[STAGES][STAGES];      // A from a place within the step on
-    double e[STAGES];                 // A's last without two inner stages, less it
-    double rest[STAGES];              // the same of `from`
-    double t[STAGES], weight[STAGES]; // of the bridge
+    double c[STAGES], norm[STAGES]; // norms of find_norms, of all stages
+    double A[STAGES][STAGES];       // integrals of the Lagrange polynomials from 0 to c_j
+    double left[SIDE][STAGES];      // the same for the polynomial through the left side alone
+    double first[STAGES][STAGES];   // the same through all stages before j
+    double from[STAGES][STAGES];    // A for a step that begins within the crossing
+    // weights of the error: without two inner stages, less the last row of A
+    double e[STAGES];
+    double rest[STAGES];              // the same for `from`
+    double t[STAGES], weight[STAGES]; // for ct_crossing_interpolation
     double *k, *stage;                // (ny x STAGES) each
     double *point, *end;              // (ny) each
-    bool has_weights;                 // most runs cross nothing
-    double begin; // where the step begins, as part of the whole: 0 but for rests
+    bool has_weights;                 // computed at the first crossing
+    double begin;                     // start of the step, as part of the whole crossing
 };
 
 // --- weights ---------------------------------------------------------------------------------
@@ -180,8 +181,8 @@ struct task {
     struct ct_integrate_stats *stats;
 };
 
-// f at stage j, put onto the constraints: how far it lies off them would be divided by a small
-// pivot. The stage itself stays the polynomial's.
+// f at stage j, projected onto the constraints, since near the singular configuration their
+// residual would be divided by a small pivot. The stage of the polynomial is not changed.
 static enum ct_eval evaluate(const struct task *s, int j)
 {
     struct work *w = s->w;
@@ -194,7 +195,7 @@ static enum ct_eval evaluate(const struct task *s, int j)
     return ct_stepper_rhs(s->p, t, w->point, w->k + j * s->p->ny, s->stats);
 }
 
-// Stage j with weights a; *moved grows to the norm by which it has moved.
+// Updates stage j with weights a; *moved becomes the norm of its change, if that is larger.
 static enum ct_eval put_stage(const struct task *s, int j, const double *a, double *moved)
 {
     struct work *w = s->w;
@@ -210,8 +211,9 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
     return evaluate(s, j);
 }
 
-// A first guess: the stages of the left side by extrapolation from stage to stage and some sweeps
-// over them alone, which costs less than sweeps over all; then extrapolation across the gap.
+// Starting values: stages before the gap by extrapolation from stage to stage and some sweeps over
+// these alone, which take less work than sweeps over all; then stages behind the gap by
+// extrapolation.
 static enum ct_eval guess(const struct task *s)
 {
     struct work *w = s->w;
@@ -227,9 +229,9 @@ static enum ct_eval guess(const struct task *s)
     return e;
 }
 
-// The fixed-point iteration for the stages from `first` on, with weights A. It ends, too, where it
-// does not halve the change any more: at round-off, or because the step is too long for it. The
-// first two changes are those of the guess.
+// Fixed-point iteration for the stages from `first` on, with weights A. It also ends where a sweep
+// does not halve the change: at round-off, or because the step is too long for convergence. The
+// first two changes do not count, as they depend on the starting values.
 static enum ct_eval iterate(const struct task *s, const double (*A)[STAGES], int first)
 {
     const double fine = kappa * fmin(1, ct_crossing_mismatch_limit / s->tolerance->rtol);
@@ -264,7 +266,7 @@ static void integrate_to(const struct work *w, double c, double *a)
     integrate_lagrange(a, w->c, all, w->norm, c);
 }
 
-// y (ny, out) at c, a part of the whole, h, of which y is the state where the step begins.
+// out (ny) = the state at c, a part of the whole crossing h; y: the state at the start of the step.
 static void point_at(const struct ct_problem *p, double h, double c, const double *y,
                      const struct work *w, double *out)
 {
@@ -278,22 +280,23 @@ static void point_at(const struct ct_problem *p, double h, double c, const doubl
     ct_stepper_combine(out, y, h, a, w->k, STAGES, p->ny);
 }
 
-// The largest miss of the combination of rows that becomes dependent, for which the configuration
-// counts as singular. Derived: a mechanism that only passes by misses it by m, and its smallest
-// pivot is some sqrt(m), so that round-off of accelerations is eps/m. Where that is more than the
-// accuracy, steps could not follow the motion.
+// At a singular configuration one combination of the constraints becomes dependent on the others.
+// This is the largest residual of that combination for which the configuration counts as singular.
+// A mechanism that passes it with a residual m has a smallest pivot near sqrt(m), and accelerations
+// with a round-off error of eps/m. Where that exceeds the accuracy, steps cannot follow the motion.
 static double allowed_mismatch(const struct ct_problem *p)
 {
-    const double met = 1e-12; // round-off of the constraints; singular.sh fails without
+    // Default: with less, round-off of the constraints counts as a mismatch. Test: singular.
+    const double met = 1e-12;
     return fmin(ct_crossing_mismatch_limit, fmax(met, DBL_EPSILON / p->accuracy));
 }
 
-// The error of a step whose mismatch is that. The error of the polynomial in the middle makes a
-// mismatch of its square: where that may be all of it a shorter step is tried, else the mechanism
-// only passes by.
+// The error of a step with this residual `mismatch` of the dependent constraint. An error of the
+// polynomial in the middle causes a residual of its square. Where this may explain the residual a
+// shorter step is tried; otherwise the mechanism is only nearly singular.
 static double judge(const struct task *s, double mismatch, double error)
 {
-    // of the error there over that of the step, for rows whose curvature is 1/m or 1/rad
+    // the error in the middle over the error of the step, for constraints of curvature 1/m or 1/rad
     // Default: with less, crossings are given up too early. Test: singular.
     const double in_gap = 30;
     const double most = ct_vector_largest(s->y, (size_t)s->p->ny),
@@ -304,7 +307,7 @@ static double judge(const struct task *s, double mismatch, double error)
     return mismatch > own * own ? INFINITY : fmax(error, sqrt(part));
 }
 
-// w->from: integrals from a part of the whole on; w->rest of them.
+// w->from and w->rest: weights of the stages and of the error for a step from `begin` on.
 static void begin_at(struct work *w, double begin)
 {
     double before[STAGES], norm[STAGES];
@@ -320,8 +323,8 @@ static void begin_at(struct work *w, double begin)
         w->rest[j] = w->e[j] - (w->rest[j] - before[j]);
 }
 
-// All stages from the state within the whole. The iteration begins with stages along the tangent
-// dy, which its first sweep puts onto the constraints.
+// All stages from a state at `begin` of the whole crossing. The iteration starts with the constant
+// derivative dy.
 static enum ct_eval stages_from(const struct task *s, double begin, const double *dy)
 {
     struct work *w = s->w;
@@ -334,7 +337,7 @@ static enum ct_eval stages_from(const struct task *s, double begin, const double
     return iterate(s, (const double(*)[STAGES])w->from, 0);
 }
 
-// All stages from the state at the first of them.
+// All stages from the state at the start of the crossing.
 static enum ct_eval stages_on(const struct task *s, const double *dy)
 {
     struct work *w = s->w;
@@ -348,7 +351,7 @@ static enum ct_eval stages_on(const struct task *s, const double *dy)
     return e == CT_EVAL_OK ? iterate(s, (const double(*)[STAGES])w->A, 1) : e;
 }
 
-// h: of the whole.
+// The error estimate of the step that ends at y1.
 static double error_of(const struct task *s, const double *y1)
 {
     struct work *w = s->w;
@@ -409,7 +412,7 @@ void ct_crossing_begin(void *work, double begin)
     w->begin = begin;
 }
 
-// Parts of the step as parts of the whole.
+// Converts a part of the step to a part of the whole crossing.
 static double part_of_whole(const struct work *w, double theta)
 {
     return w->begin + theta * (1 - w->begin);
@@ -428,7 +431,7 @@ bool ct_crossing_is_gap(const void *work, double theta)
     return fabs(part_of_whole(work, theta) - 0.5) < gap / 2;
 }
 
-// w->weight: of the stages, at a part of the whole.
+// w->weight: interpolation weights of the stages at c, a part of the whole crossing.
 static void weigh(struct work *w, double c)
 {
     bool all[STAGES];

@@ -1,46 +1,47 @@
-// One step across a singular configuration: collocation whose stages stay away from it.
+// One step across a singular configuration, by collocation with stages that are not close to it.
 //
-// f has a limit at the position but cannot be computed there or close by. Seen along the motion it
-// is smooth, so a polynomial of high order through values of f on both sides carries it across.
+// At a singular configuration f has a limit, but cannot be computed there or close by. Along the
+// motion it is smooth, so a polynomial of high degree through values of f on both sides
+// interpolates it.
 #ifndef CT_INTEGRATE_CROSSING_H
 #define CT_INTEGRATE_CROSSING_H
 
 #include "integrate/stepper.h"
 
-/// Not in ct_methods: only the driver takes such steps, centred on the position. *err is infinite
-/// when there is no smooth motion across, since the polynomial leaves the constraints: the
-/// mechanism only passes close by.
+/// Not in ct_methods: only the driver takes such steps, centred on the singular configuration. *err
+/// is infinite where the polynomial does not satisfy the constraints. Then no smooth motion leads
+/// across, or the mechanism is only nearly singular.
 extern const struct ct_method ct_crossing;
 /// Definition: of the method.
 enum { CT_CROSSING_STAGES = 14 };
 
-/// A smooth motion meets the constraints also in the middle, up to this [m, rad].
+/// The largest residual of the constraints in the middle of a crossing [m, rad].
 extern const double ct_crossing_mismatch_limit;
 
 /// Near a singular configuration f has fewer digits: crossings may err by this part of the largest
 /// state.
 extern const double ct_crossing_roundoff;
 
-/// The steps to come begin within what they cross, at this part of the whole: the rest of a
-/// crossing that something has cut. 0, as at first: where it begins. Stages are those of the whole,
-/// with f as it is then.  (8.37)
+/// Steps that follow are the remainder of a crossing from `begin` on, as part of the whole
+/// crossing; 0: whole crossings, as at first. Stages are those of the whole crossing, with the
+/// present f.  (8.37)
 void ct_crossing_begin(void *work, double begin);
 
 /// True where f is not to be computed.
 bool ct_crossing_is_gap(const void *work, double theta);
 
-/// dy (n, out): what f of the step just taken is at theta, interpolated between stages.
+/// dy (n, out): f at theta of the last step, interpolated between stages.
 void ct_crossing_slope(void *work, int n, double theta, double *dy);
 
-/// The stages of the step just taken from t by h, with weights for theta. Valid until the next one.
+/// The stages of the last step, from t by h, with interpolation weights for theta. Valid until the
+/// next step.
 struct ct_gap_interpolation ct_crossing_interpolation(void *work, double t, double h,
                                                       double theta);
 
-/// The state before (ny, out) at t - theta h, where a step h across a singular configuration
-/// begins, of the motion that is at y at t, in the position or near it. dy: its derivative;
-/// accelerations, which need not be known, are not used. *err (out): what the step errs by, as of
-/// others; the tolerance of the step is its own, next to round-off. Its rest in the constraints is
-/// the caller's to look at. (8.23)
+/// Starts a motion at a singular configuration, or near it, from the state y at t. A crossing of
+/// length h that contains y is computed backwards to its start: before (ny, out) = the state at t -
+/// theta h. dy: derivative of y, of which only the speeds need be known. *err (out): error
+/// estimate. The caller must check the constraints at `before`.  (8.23)
 enum ct_eval ct_crossing_initial_step(const struct ct_problem *p, double t, double h,
                                       double theta, const double *y, const double *dy,
                                       const struct ct_tolerance *tolerance, double *before,

@@ -1,8 +1,7 @@
-// Dormand-Prince 8(5,3): twelve stages a step and three more for dense output of order 7.
-//
-// The error of a step is put together from two embedded results, of order 5 and 3: with E5 and E3
-// their distances to the step, |E5|^2 / sqrt(|E5|^2 + 0.01 |E3|^2) behaves as h^8. With
-// t = theta and s = 1 - theta the interpolant is
+// Dormand-Prince 8(5,3): twelve stages a step and three more for dense output of order 7. The error
+// estimate combines two embedded solutions, of order 5 and 3: with E5 and E3 their differences to
+// the step, |E5|^2 / sqrt(|E5|^2 + 0.01 |E3|^2) behaves as h^8. With t = theta and s = 1 - theta
+// the interpolant is
 //
 //     y(t + theta h) = Hermite(theta) + t^2 s^2 (F_0 + t (F_1 + s (F_2 + t F_3))),
 //     F_j = h sum_i D_ji k_i
@@ -79,7 +78,7 @@ static const double A[ALL_STAGES][ALL_STAGES] = {
             -5.8012039600105847814672114227, 0.31116436695781989440891606237 - 0x1p-54,
             -0.152160949662516078556178806805 - 5 * 0x1p-55, 0.201365400804030348374776537501,
             0.0447106157277725905176885569043 + 0x1p-54},
-    // only for the interpolant
+    // for dense output only
     [13] = {0.0561675022830479523392909219681, 0, 0, 0, 0, 0, 0.253500210216624811088794765333,
             -0.246239037470802489917441475441, -0.124191423263816360469010140626,
             0.15329179827876569731206322685, 0.00820105229563468988491666602057,
@@ -94,7 +93,7 @@ static const double A[ALL_STAGES][ALL_STAGES] = {
             2.9475147891527723389556272149, -9.15095847217987001081870187138},
 };
 
-// y1 minus the result of order 5
+// y1 minus the embedded solution of order 5
 static const double E5[STAGES - 1] = {
     0.01312004499419488073250102996,
     0,
@@ -110,7 +109,7 @@ static const double E5[STAGES - 1] = {
     -0.02235530786388629525884427845,
 };
 
-// weights of the result of order 3
+// weights of the embedded solution of order 3
 static const double B3[STAGES - 1] = {
     [0] = 31. / 127,
     [8] = 0.733846688281611857341361741547,
@@ -281,17 +280,19 @@ const struct ct_method ct_method_dop853 = {
     .dense_tableau = &dense_tableau,
     .order = 8,
     .error_order = 7,
-    // the two results of the estimate may cross by accident: a long step after a short one is not
-    // to be trusted
+    // the two embedded solutions may agree by chance, so steps grow by this factor at most
     .most_growth = 1.5,
     .create = create,
     .restart = ct_compensation_restart,
     .accept = ct_compensation_accept,
     .step = step,
-    .resolved_limit
-    = 2.5, // stable up to about 6; where accuracy holds steps up, at 1e-4, they come to 2.4 (cart pole, four-bars)
-    // left of the imaginary axis |R(z)| <= 1 for |z| <= 5.95; but at z = -4.95 the estimate is
-    // largest, and falls to zero at -5.65: control would go on to -6.4, where errors grow
+    // Derived: stable up to about 6. Steps that accuracy limits, at a tolerance of 1e-4, come
+    // to 2.4
+    // in a cart with a pendulum and in four-bar linkages.
+    .resolved_limit = 2.5,
+    // Derived: |R(z)| <= 1 for |z| <= 5.95 in the left half-plane. But on the real axis the error
+    // estimate has its maximum at z = -4.95 and is zero at -5.65, so step size control alone would
+    // go on to -6.4, where errors grow.
     .stability_limit = 4.8,
     .stiffness_estimate = swiftness,
     .prepare = prepare,

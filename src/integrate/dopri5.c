@@ -163,6 +163,7 @@ enum { DENSE_STAGES = STAGES + 2 }; // Definition: of the method.
 
 static const double dense_C[] = {1. / 2, 1. / 5};
 
+// Definition: weights of the solution of order 5, the last row of A.
 #define B0 (35. / 384)
 #define B2 (500. / 1113)
 #define B3 (125. / 192)

@@ -1,19 +1,20 @@
-// Steps, their size, events and samples: ct_integrate.
+// The integration loop ct_integrate: steps, their size, events and samples.
 //
 //     fit -> attempt (step, project) -> search for an event -> [attempt again up to it]
 //         -> samples on the way -> commit -> event -> sample on it
 //
 // A step that the method, the projection or a root function refuses, or whose error is too large,
-// is tried again shorter; until `commit` nothing has changed. Step control is that of
+// is repeated with a shorter length; until `commit` the run has not changed. Step size control:
 // step_control.h.
 #include "integrate/driver.h"
 
 #include <math.h>
 #include <string.h>
 
-// Crossings may err by more than ct_crossing_roundoff where they begin nearer to the position than
-// crossings do, with the square of how much nearer, up to this part of what is wanted (8.28).
-// Default: with less, crossings fail for round-off. Test: singular_approach.
+// The absolute tolerance of a crossing is ct_crossing_roundoff. If it must begin nearer to the
+// singular configuration than usual, the tolerance grows with the square of that ratio, up to this
+// part of the accuracy (8.28). Default: with less, crossings fail for round-off. Test:
+// singular_approach.
 static const double unfelt = 0.1;
 
 static const struct ct_mark nowhere = {0};
@@ -88,7 +89,7 @@ static void start_anew(struct ct_driver *r)
     r->control.is_starting = true;
 }
 
-// The derivative, and on which side the roots are, at a state that was not stepped to.
+// The derivative and the signs of root functions at the start and after an event.
 static bool take_bearings(struct ct_driver *r)
 {
     start_anew(r);
@@ -111,14 +112,15 @@ static double changed_by(const struct ct_driver *r)
     return size > 0 ? change / size : INFINITY;
 }
 
-// The rate at which accelerations begin to change, looked for from h on, along the parabola that
-// r->point is the second derivative of: from rest their change grows with the square of time. 0
-// where it is not found.
+// The rate at which accelerations begin to change, for the first step; 0 if not found. They are
+// evaluated along a parabola with the second derivative r->point, for increasing h, until they have
+// changed enough. In a motion from rest their change grows with h^2.
 static double find_rate(struct ct_driver *r, double h, double limit)
 {
     // Default: evaluations before the first step against its length. Test: integrate.
     enum { LOOKS = 5 };
-    // Default: changes that show a rate, beyond round-off and before the motion turns. Test: integrate.
+    // Default: changes that show a rate, beyond round-off and before the motion reverses. Test:
+    // integrate.
     const double least = 0.02, most = 0.5, wanted = 0.05;
     const double further = 100;
     const struct ct_problem *p = r->p;
@@ -159,14 +161,14 @@ static double first_step(struct ct_driver *r, double limit)
 
 // --- one step --------------------------------------------------------------------------------
 
-// Has the projection moved y1 so far that its derivative must be found again? That of the step errs
-// by h df/dy times the way, so less than `unnoticed` of the tolerance is lost in the error of the
-// step. Steps of fixed length keep it: it is the first of their stages alone, and what it errs is
-// of an order more than the error of the step, from which the way comes. Over seven closed
-// mechanisms and tops errors stay as they are with and without to a few percent, where steps
-// resolve the motion.
+// Has the projection moved y1 so far that its derivative must be evaluated again? The derivative at
+// y1 differs from that at the projected state by df/dy times the displacement. Steps of fixed
+// length never evaluate it again: only their first stage uses it, and its error is one order higher
+// than that of the step.
 static bool has_moved(struct ct_driver *r)
 {
+    // A displacement up to this part of the tolerance is ignored. Chosen: evaluations against
+    // accuracy. Without it the errors of seven closed mechanisms and tops change by a few per cent.
     const double unnoticed = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)
@@ -176,14 +178,14 @@ static bool has_moved(struct ct_driver *r)
     return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
 }
 
-// Steps of fixed length end on samples: where there are no roots to find and nobody looks into
-// steps none is interpolated.
+// Steps of fixed length end on samples, so without root functions and `over_step` there is no dense
+// output.
 static bool is_never_interpolated(const struct ct_driver *r)
 {
     return r->o->step > 0 && r->p->nroot == 0 && !r->o->over_step;
 }
 
-// end, dend (out) = y1, dy1 on the constraints, which implicit methods meet by themselves.
+// end, dend (out) = y1, dy1 projected onto the constraints. Implicit methods need no projection.
 static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
@@ -204,7 +206,7 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
                                             : CT_EVAL_RETRY;
 }
 
-// end, dend (out) = the crossing at t1, within it.
+// Ends a crossing at t1, within it: end, dend (out).
 static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
@@ -219,7 +221,8 @@ static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
     return e == CT_EVAL_OK ? ct_stepper_rhs(p, s->t1, r->end, r->dend, r->stats) : e;
 }
 
-// tol (out): that of the run, of crossings with room for round-off. NULL: steps are fixed.
+// The tolerance of the run; for crossings tol (out), with a higher one for round-off. NULL: fixed
+// steps.
 static const struct ct_tolerance *tolerance_of(const struct ct_driver *r,
                                                const struct ct_planned_step *s,
                                                struct ct_tolerance *tol)
@@ -243,11 +246,13 @@ static bool is_put(const struct ct_driver *r, const struct ct_planned_step *s)
     return s->method == &ct_crossing && r->method->leaves_speeds && r->p->project;
 }
 
-// Crossings begin on the constraints, which speeds of some methods meet to their order only; not
-// where they miss these by so much more than is wanted that steps have lost the motion.
+// A crossing begins on the constraints. The speeds of some methods meet them only to the order of
+// the method, so they are projected first. Where they are farther off than the accuracy allows, the
+// step is refused.
 static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
-    const double most = 10; // times what is wanted
+    const double most
+        = 10; // Definition: outputs are promised within ten tolerances, docs/cli.md
     const struct ct_problem *p = r->p;
     const size_t bytes = (size_t)p->ny * sizeof *r->y;
     if (!is_put(r, s))
@@ -266,7 +271,7 @@ static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_
     return p->rhs(p->user, r->t, r->y, r->dy);
 }
 
-// The step across has failed: steps go on from where they were.
+// After a failed crossing: restores the state before the projection of speeds.
 static void restore_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const size_t bytes = (size_t)r->p->ny * sizeof *r->y;
@@ -276,8 +281,8 @@ static void restore_speeds(struct ct_driver *r, const struct ct_planned_step *s)
     memcpy(r->dy, r->put_dy, bytes);
 }
 
-// From y to end by the method and the projection. Refused with s->error > 1 when that is the
-// reason.
+// One attempt at a step from y to end, with projection. If the error estimate is the reason of a
+// refusal s->error > 1.
 static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *s)
 {
     struct ct_tolerance own;
@@ -306,7 +311,7 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *
     return e;
 }
 
-// Make the method ready to interpolate, once.
+// Prepares dense output, once for a step.
 static enum ct_eval interpolate(struct ct_driver *r, struct ct_planned_step *s)
 {
     if (s->is_interpolated || !s->method->prepare)
@@ -315,8 +320,8 @@ static enum ct_eval interpolate(struct ct_driver *r, struct ct_planned_step *s)
     return s->method->prepare(r->p, r->t, s->h, r->y, r->y1, s->work, r->stats);
 }
 
-// Are outputs that amplify as good in the next sample as at the end of the step? If not, steps end
-// on samples from here on.
+// Are sensitive outputs (8.11) accurate at the next sample? If not, steps end on samples from here
+// on.
 static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
@@ -343,9 +348,9 @@ static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_plann
     return s->is_damping || !has_sample ? CT_EVAL_OK : look_at_sample(r, s);
 }
 
-// Step again, to the event that the interpolant shows at t + h; then correct h for the difference
-// between the interpolant and the step until the root that fires is zero to the resolution.
-// Corrected up to where the whole step ended, the step is the whole step, for the sake of its stop.
+// Repeats the step up to the event that dense output shows at t + h. Then h is corrected by
+// Newton's method until the root function is zero to the resolution of time. If it comes to the end
+// of the whole step, that step is used, so that it ends exactly on its stop.
 static enum ct_eval step_to_event(struct ct_driver *r, struct ct_planned_step *s, double h)
 {
     const struct ct_planned_step whole = *s;
@@ -369,8 +374,9 @@ static enum ct_eval step_to_event(struct ct_driver *r, struct ct_planned_step *s
     return CT_EVAL_OK;
 }
 
-// The interpolant is the step itself: a place on it where the root is zero to round-off, as roots
-// are found late by up to the resolution.
+// Ends a crossing on an event, at theta of the step. Here dense output is as accurate as the step,
+// so it is not repeated. One Newton correction of the time makes the root function zero to
+// round-off.
 static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s, double theta)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
@@ -385,7 +391,7 @@ static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s,
     return cut(r, s);
 }
 
-// If a root fires within the step, the step is made to end there.
+// If a state event lies within the step, the step is made to end there.
 static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
 {
     double theta;
@@ -408,17 +414,17 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
                                                             : step_to_event(r, s, theta * s->h);
 }
 
-// The caller's memories and choices move on to the end of the step.
+// Tells the problem that the step is accepted.
 static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
     const bool is_across = s->method == &ct_crossing;
-    if (s->leaves_remainder) // that will be
+    if (s->leaves_remainder) // the remainder is accepted later
         return CT_EVAL_OK;
     return p->accepted ? p->accepted(p->user, s->t1, r->end, r->dend, is_across) : CT_EVAL_OK;
 }
 
-// Sides of roots after an event in the gap of a crossing, where f is r->dy now.
+// Signs of root functions after an event in the gap of a crossing, where f is r->dy.
 static enum ct_eval take_sides(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
@@ -428,7 +434,8 @@ static enum ct_eval take_sides(struct ct_driver *r)
              : e;
 }
 
-// On which side the roots are where the rest of a crossing begins: what it makes of f there tells.
+// Signs of root functions at the start of the remainder of a crossing, with f interpolated from its
+// stages.
 static enum ct_eval take_bearings_of_remainder(struct ct_driver *r,
                                                const struct ct_planned_step *s)
 {
@@ -452,8 +459,9 @@ static enum ct_eval finish_step(struct ct_driver *r, struct ct_planned_step *s, 
     return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
 }
 
-// So near to the end of a motion that locks, as part of the run, nothing more is to be had from
-// steps.
+// A run ends with the message that the mechanism locks when the time left to that configuration is
+// below this part of the duration. Chosen: steps spent near the lock against the time of the
+// message.
 static const double nearest_lock = 1e-6;
 
 static bool is_at_lock(const struct ct_driver *r)
@@ -501,7 +509,7 @@ static bool step_too_small(struct ct_driver *r, double h)
         r->t, h);
 }
 
-// No rest of a crossing has been found: other steps go on from the event.
+// The remainder of a crossing has failed: ordinary steps go on from the event.
 static bool leave_remainder(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
@@ -515,7 +523,7 @@ static bool leave_remainder(struct ct_driver *r)
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
-// The step that has failed is to be tried again shorter.
+// Adapts the step size after a failed step.
 static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned_step *s,
                                     double h, double error)
 {
@@ -543,7 +551,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
         = p->event ? p->event(p->user, r->t, r->y, dy, r->events.crossed, is_time) : CT_EVAL_OK;
     if (e != CT_EVAL_OK)
         return state_refused(r, e);
-    r->reach = INFINITY; // of the position ahead everything may have changed
+    r->reach = INFINITY; // the next singular configuration may be another one
     r->failed_crossings = 0;
     r->is_locked = false;
     if (dy) {
@@ -554,7 +562,7 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
     return take_bearings(r);
 }
 
-// One step that everybody accepts: from y to end.
+// One accepted step from y to end.
 static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_planned_step *s)
 {
     for (;;) {
@@ -609,7 +617,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
     }
 }
 
-// --- the march -------------------------------------------------------------------------------
+// --- the loop over steps ---------------------------------------------------------------------
 
 static void count_turns(struct ct_driver *r, double t1)
 {
@@ -631,14 +639,14 @@ static void commit(struct ct_driver *r, const struct ct_planned_step *s)
     r->t = s->t1;
     r->stats->steps++;
     ct_driver_note_step(r, s->h, s->error);
-    // a crossing tells an implicit method nothing about the steps to come
+    // an implicit method cannot extrapolate from a crossing
     if (s->method != r->method && r->method->is_implicit)
         r->method->restart(r->work);
     else if (r->method->accept)
         r->method->accept(r->work);
 }
 
-// Is the rest of a crossing to come?
+// Is the remainder of a crossing to come?
 static bool is_on_the_way(const struct ct_driver *r)
 {
     return ct_driver_has_remainder(r) && r->t < r->o->t1;
@@ -700,12 +708,12 @@ static bool run_steps(struct ct_driver *r)
 
 static bool start(struct ct_driver *r)
 {
-    if (r->o->t0 < r->o->t1) { // else there is nothing to step
+    if (r->o->t0 < r->o->t1) { // else there are no steps
         bool is_time;
         ct_driver_look_ahead(r, r->t);
         const double limit
             = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
-        r->control.h = limit; // a scale for the bearings
+        r->control.h = limit; // a time scale for the signs of root functions
         if (!take_bearings(r))
             return false;
         r->control.h = r->o->step > 0       ? r->o->step

@@ -1,9 +1,9 @@
-// ct_integrate from inside: what its files share.
+// The integration loop ct_integrate: data and functions that its files share.
 //
-//     driver.c           steps and events
-//     driver_step_size.c      how long the next step is to be
-//     driver_samples.c   samples on the way
-//     driver_roundoff.c     what round-off makes of f
+//     driver.c             steps and events
+//     driver_step_size.c   the length of the next step
+//     driver_samples.c     samples by dense output
+//     driver_roundoff.c    round-off of f in error estimates
 #ifndef CT_INTEGRATE_DRIVER_H
 #define CT_INTEGRATE_DRIVER_H
 
@@ -12,7 +12,7 @@
 #include "integrate/periodic_tolerance.h"
 #include "integrate/event_location.h"
 
-// A step h that erred too much, and the longest one tried from the same place; 0: there was none.
+// The last refused step h and its error, and the longest step refused from the same state; 0: none.
 struct ct_refusal {
     double longest, h, error;
 };
@@ -35,63 +35,65 @@ struct ct_driver {
     } even;
     struct ct_step_control control;
     struct ct_pace pace;
-    bool is_announced;      // that it takes long
-    double *y, *dy;         // (ny) each, as all that follow
-    double *y1, *dy1;       // end of the step as the method gives it
-    double *put_y, *put_dy; // y, dy before speeds were put onto the constraints for a crossing
-    double *end, *dend; // the same, projected: y1, dy1 themselves where that changes nothing
-    double *moved, *dmoved; // where end, dend are others
-    double *point;          // a state to spare
-    void *work;             // the method's own
-    void *sample_work;      // the same for steps to samples; NULL: its interpolant always holds
-    double *sample_end, *dsample_end; // their ends  (ny)
-    int unchecked; // interpolants to come that are taken as the last one compared with such a step
-    bool has_erred;      // it did
-    int trusted;         // so many are not compared after one that held
-    double fastest;      // rate of the fastest motion that steps have seen of late
-    void *crossing_work; // of ct_crossing; NULL: there are no singular configurations to cross
-    double singular_in;  // time to the next one, from t
-    double reach;        // crossing it is to begin this long before
-    double
-        crossing_begin;   // time before it where crossings of it begin, if that is over; else 0
-    int failed_crossings; // of it
-    bool is_locked;       // the motion ends in it
-    double predicted_at;  // when it was to come as the last of them was begun
-    bool is_open;         // the last step met everything but the constraints
-    size_t sample;        // the next one to give
-    bool ends_on_samples; // steps end on samples: between them outputs err too much
-    double *roundoff;     // of f, of problem.noise once that has been felt  (ny)
-    double *arithmetic_roundoff; // of f: what its arithmetic leaves by itself  (ny)
-    double *other;               // a derivative to spare  (ny)
-    int roundoff_steps;          // since it was measured
-    struct ct_refusal refusal;   // of the step before this try
-    struct ct_problem problem;   // the caller's, with what is found here
+    bool is_announced; // `forecast` has been called
+    double *y, *dy;    // the last accepted state and its derivative  (ny), as all that follow
+    double *y1, *dy1;  // end of the step before projection
+    double *put_y, *put_dy; // y, dy before speeds were projected for a crossing
+    double *end, *dend;     // end of the step after projection; may be y1, dy1
+    double *moved, *dmoved; // storage of end, dend where they differ from y1, dy1
+    double *point;          // workspace
+    void *work;             // workspace of the method
+    void *sample_work; // for separate steps to samples; NULL: dense output is always accurate
+    double *sample_end, *dsample_end; // ends of those steps  (ny)
+    int unchecked;  // steps to come whose dense output is not compared with such a step
+    bool has_erred; // dense output was inaccurate at the last comparison
+    int trusted;    // steps without comparison after an agreement
+    double fastest; // rate of the fastest mode in recent steps  [1/s]
+    // the next singular configuration
+    void *crossing_work;   // workspace of ct_crossing; NULL: none are crossed
+    double singular_in;    // time from t to it
+    double reach;          // the crossing begins this long before it
+    double crossing_begin; // the same, where that time has passed already; else 0
+    int failed_crossings;  // attempts to cross it
+    bool is_locked;        // the motion ends in it
+    double predicted_at;   // its time as predicted at the last attempt
+    bool is_open;          // the last step failed in the projection onto the constraints alone
+    size_t sample;         // index of the next sample
+    bool ends_on_samples;  // sensitive outputs are inaccurate between steps
+    double *roundoff;      // round-off of f, once it has shown in error estimates  (ny)
+    double *arithmetic_roundoff; // the part from the arithmetic of f itself  (ny)
+    double *other;               // workspace  (ny)
+    int roundoff_steps;          // steps since it was measured
+    struct ct_refusal refusal;   // of the attempt before this one
+    struct ct_problem problem;   // a copy of the caller's, with the round-off of f
     struct ct_crossing_remainder {
-        double h, first;   // its length, and as it was tried first; 0: there is none
-        bool is_known;     // sides of roots are, with f as it is now
-        bool is_announced; // the position has been, by what came before the event
-    } remainder; // of a crossing that an event has cut where f cannot be computed: the next step  (8.37)
+        double h, first;   // its length, now and at the first attempt; 0: there is none
+        bool is_known;     // the signs of root functions with the present f are known
+        bool is_announced; // `passed` has been called for this singular configuration
+    } remainder; // the second part of a crossing with an event in its gap: the next step  (8.37)
 };
 
-// A step as planned: to t1, which is t + h but for round-off, or the end of the run before that.
+// A planned step from t to t1, which is t + h but for round-off, or the end of the run if that is
+// before.
 struct ct_planned_step {
     const struct ct_method *method;
     void *work; // the method's
     double h, t1;
-    double begin; // of a crossing: where the step begins, as part of the whole; 0 but for rests
-    bool reaches_stop;     // t1 is the stop it was planned for
-    bool is_event;         // a state event ends it
-    bool leaves_rest;      // a root has left its rest on zero: an event where the step begins
-    bool leaves_remainder; // of a crossing, which is to be the next step
-    bool is_interpolated;  // the method is ready to interpolate it
-    bool is_off_between;   // outputs err too much in a sample before its end
-    bool is_damping;       // a motion that it does not follow: samples have steps of their own
+    double begin; // start of the remainder of a crossing, as part of the whole crossing; else 0
+    bool reaches_stop; // t1 is the stop it was planned for
+    bool is_event;     // it ends with a state event
+    bool leaves_rest;  // a root that was zero changes: an event at the start of the step
+    bool
+        leaves_remainder; // a crossing with an event in its gap: the remainder is the next step
+    bool is_interpolated; // the method is prepared for dense output
+    bool is_off_between;  // sensitive outputs are inaccurate at a sample before its end
+    bool is_damping;      // it damps a fast mode: samples are computed by separate steps
     double error;
 };
 
 /// Largest step allowed.
 double ct_driver_step_limit(const struct ct_driver *r);
-/// Samples this close before an event count as on it: times of samples are rounded, too.
+/// Samples this close before an event count as on it, since their times are rounded.
 double ct_driver_event_margin(bool is_event, double t, double h);
 /// Where steps must end next; *is_time tells that a time event is there.
 double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
@@ -99,36 +101,34 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time);
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s);
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_step *s);
-/// Time to the next singular configuration from t, up to where steps have been accepted, and where
-/// to begin to cross it.
+/// Predicts the time from t, the end of the last accepted step, to the next singular configuration,
+/// and where its crossing begins.
 void ct_driver_look_ahead(struct ct_driver *r, double t);
 void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s);
 void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error);
 
-/// Has an event cut a crossing where f cannot be computed, so that the next step is its rest?
+/// Has an event in the gap ended a crossing, so that the next step is its second part?
 static inline bool ct_driver_has_remainder(const struct ct_driver *r)
 {
     return r->remainder.h > 0;
 }
-/// Is t in the gap of a crossing, where only its interpolant tells the state?
+/// Is t in the gap of a crossing, where the state comes from its interpolant?
 bool ct_driver_is_in_gap(const struct ct_driver *r, const struct ct_planned_step *s, double t);
-/// A step h was refused for this error: is it round-off of f, which is taken off errors from now
-/// on?
+/// A step h was refused for this error: is the cause round-off of f? Then it is subtracted from
+/// error estimates from now on.
 bool ct_driver_is_roundoff(struct ct_driver *r, double h, double error);
-/// A step h was accepted; the same question.
+/// The same for an accepted step h.
 void ct_driver_note_step(struct ct_driver *r, double h, double error);
 
 /// Is there a sample inside the step?
 bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s);
-/// Does the step, ready to be interpolated, damp a motion that it does not follow, so that its
-/// interpolant does not hold?
+/// Does the step damp a fast mode that it does not resolve, so that its dense output is inaccurate?
 bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s);
-/// Samples before `end`, from the interpolant of the step; in the gap of a crossing also the one on
-/// its end.
+/// Samples before `end`, by dense output; in the gap of a crossing also the one at the end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_planned_step *s,
                                    double end);
-/// Those due at the state of now.
+/// Samples at the present time.
 bool ct_driver_give_samples_here(struct ct_driver *r);
 
 #endif

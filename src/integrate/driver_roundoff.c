@@ -1,18 +1,22 @@
-// See driver.h: round-off in f.
+// Round-off errors in f, which step size control must not take for truncation errors; see driver.h.
 //
-// Stiff forces answer a round-off of places by accelerations: eps omega^2 |q|, where a step errs by
-// h times as much, however short it is. Control that takes this for an error of its order shortens
-// steps a hundredfold in vain. Round-off shows where a step that was refused and then shortened
-// errs by more than any truncation would: then f is asked what it makes of a change of places far
-// above round-off, and that is no error as long as steps are as short.
+// A stiff force of frequency omega turns the round-off of positions into an acceleration error of
+// eps omega^2 |q|. It adds h times as much to the error of a step, however short the step is. Step
+// size control that assumes the order of the method would shorten steps a hundredfold in vain.
+//
+// Round-off is suspected where a refused step is repeated with a shorter one and the error falls
+// more slowly than any truncation error would. Then positions are changed by far more than
+// round-off and the change of f is measured. Scaled down to round-off, it is subtracted from error
+// estimates as long as steps stay as short.
 #include "integrate/driver.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Places are changed by this part of the largest of them, and what f changes by is taken for that
-// of a round-off.
+// Positions are changed by this part of the largest of them to measure how round-off of positions
+// acts on f. Derived: 2^12 unit round-offs, so that round-off in f itself changes the result by
+// 2^-12.
 static const double change = 0x1p-40;
 // Derived: truncation errors of methods of order 4 or more fall with the fifth power of the step or
 // faster, those of round-off with the first one, and 3 lies between. This holds for steps shorter
@@ -22,18 +26,20 @@ static const double between = 3;
 // Positions are changed by different parts, so that nothing cancels. Derived: multiples of the
 // golden section are spread most evenly.
 static const double golden = 0.618033988749895;
-// After so many steps it is measured anew, or for the first time, as steps that round-off keeps
-// short may not be refused: as many thousandths of an evaluation a step as there are speeds.
+// Round-off is measured after each of so many steps, too, since it may keep steps short without a
+// refusal. Chosen: at a cost of nu/1000 evaluations a step, nu the number of speeds.
 enum { STEPS_BETWEEN = 1000 };
 
-// What is damped forgets errors of steps, whatever makes them, but for the last ones: there they
-// count. A vibration of omega answers a change of speeds by omega times one of places with 2 zeta
-// of the answer to that. Each speed is changed alone: what turns answers with the others, undamped.
-// du: the change.
+// Sets the round-off error of damped speeds to zero, so that it is not subtracted: damping removes
+// the errors of earlier steps, and those of the last steps must count. A vibration with the damping
+// ratio zeta answers a change x of position by the acceleration omega^2 x, and a change omega x of
+// speed by 2 zeta times that. Each speed is changed alone by du, as gyroscopic forces, which do not
+// damp, act on the other speeds.
 static void leave_out_damped(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
-    const double damped = 0.02; // zeta of 0.01: half is left after 11 periods
+    // 2 zeta. Chosen: with zeta = 0.01 half of the amplitude is left after 11 periods.
+    const double damped = 0.02;
     ct_stepper_copy(r->point, r->y, p->ny);
     for (int i = p->nq; i < p->nq + p->nu; i++) {
         r->point[i] += du;
@@ -44,8 +50,8 @@ static void leave_out_damped(struct ct_driver *r, double du)
     }
 }
 
-// Places by `part` of the largest, each by a share of its own in [1, 2): by another one with each
-// k.
+// dy (ny, out) = f where position i is changed by `part` times a factor in [1, 2). The factors
+// differ between positions and with k.
 static enum ct_eval move_places(struct ct_driver *r, double part, int k, double *dy)
 {
     const struct ct_problem *p = r->p;
@@ -54,12 +60,12 @@ static enum ct_eval move_places(struct ct_driver *r, double part, int k, double 
     return ct_stepper_rhs(p, r->t, r->point, dy, r->stats);
 }
 
-// What the arithmetic of f leaves by itself, as where a mass matrix is next to singular: with
-// places changed to both sides what is linear in them cancels. The largest of a few looks, as one
-// may be zero by chance.
+// Round-off from the arithmetic of f itself, as with a nearly singular mass matrix. Positions are
+// changed in both directions, so that the linear part of f cancels. The largest of several
+// measurements counts, as a single one may be zero by chance.
 static void find_arithmetic_roundoff(struct ct_driver *r, double part)
 {
-    enum { LOOKS = 3 };
+    enum { LOOKS = 3 }; // Chosen: evaluations against a round-off missed by chance
     const struct ct_problem *p = r->p;
     memset(r->arithmetic_roundoff, 0, (size_t)p->ny * sizeof *r->arithmetic_roundoff);
     for (int k = 0; k < LOOKS; k++) {
@@ -101,7 +107,8 @@ static void measure(struct ct_driver *r, double h)
     r->problem.roundoff = r->roundoff;
 }
 
-// A step of this length and error, after one that was refused at the same place.
+// Does the error of this step, after a longer one was refused at the same state, indicate
+// round-off?
 static bool shows_roundoff(const struct ct_driver *r, double h, double error)
 {
     const struct ct_refusal *last = &r->refusal;

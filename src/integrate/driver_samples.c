@@ -15,7 +15,8 @@ static bool give_sample(struct ct_driver *r, const double *y)
     return r->o->at_sample(r->p->user, t, y);
 }
 
-// A sample in the gap of a crossing is as good as the interpolant: projected it would be worse.
+// A sample in the gap of a crossing comes from the interpolant. Projection would make it less
+// accurate, as the constraints are dependent there.
 static bool give_singular_sample(struct ct_driver *r, const struct ct_planned_step *s,
                                  const double *y)
 {
@@ -42,7 +43,7 @@ static bool give_projected_sample(struct ct_driver *r, double *y)
     return e == CT_EVAL_OK && give_sample(r, y);
 }
 
-// Part of themselves by which accelerations have changed in the step.
+// Relative change of the accelerations over the step.
 static double change_over_step(const struct ct_driver *r)
 {
     const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
@@ -54,11 +55,15 @@ static double change_over_step(const struct ct_driver *r)
     return size > 0 ? change / size : 0;
 }
 
-// Is there a motion that the step does not follow, much faster than the one there is? Not each step
-// shows it, so that it is remembered.
+// Is there a mode that the step damps instead of resolving it, and that is much faster than the
+// motion itself? Not every step shows it, so the largest rate is remembered.
 static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
-    const double kept = 0.95; // from look to look
+    // Part of the largest rate that is kept from step to step.
+    // Chosen: comparisons of interpolants against a fast mode that is missed.
+    const double kept = 0.95;
+    // The least ratio of its rate times h to the relative change of the accelerations.
+    // Chosen: comparisons of interpolants against a fast mode that is not seen.
     const double much_faster = 3;
     if (!r->sample_work || s->work != r->work)
         return false;
@@ -73,9 +78,10 @@ bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_ste
     return r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
 }
 
-// Does the interpolant err in the next sample, or else in the middle of the step, by so much of
-// what steps may? A step from the start of this one to there tells. Each time it does not, more
-// steps to come are not asked; where it does, as many as ever are taken to err as well.
+// Is the error of the interpolant at the next sample, or without one in the middle of the step, too
+// large? It is compared with a separate step from the start of this one. After each agreement twice
+// as many steps go unchecked. After a disagreement the largest number of steps counts as
+// inaccurate.
 static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
 {
     // Default: evaluations against interpolants that err unseen. Test: integrate.
@@ -108,8 +114,8 @@ bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s)
     return is_unresolved(r, s) && interpolant_errs(r, s);
 }
 
-// y (ny, out) at t, inside of the step: from the interpolant, where that holds, else by a step from
-// the start of this one.
+// y (ny, out) = the state at a time t inside the step: from the interpolant where it is accurate,
+// else by a separate step from the start of this one.
 static bool find_state(struct ct_driver *r, const struct ct_planned_step *s, double t,
                        double *y)
 {

@@ -4,24 +4,26 @@
 #include <assert.h>
 #include <math.h>
 
-// A crossing that failed for its error begins nearer by what the error says, with the safety factor
-// of step control. Derived: SAFE of DOPRI5 (Hairer and Wanner).
+// The safety factor for a shorter crossing after one that failed for its error. Derived: SAFE of
+// DOPRI5 (Hairer and Wanner).
 static const double safety = 0.9;
 
-// A crossing that failed is tried again from nearer by this factor.
-// Default: the number of trials against digits lost near by. Test: crossing.
+// A failed crossing is repeated with its start nearer to the singular configuration by this factor
+// at least. Default: the number of trials against digits lost near by. Test: crossing.
 static const double nearer = 0.5;
 // After so many failures the configuration counts as nearly singular only.
 // Default: crossings given up against trials in vain. Test: crossing.
 static const int most_crossings = 6;
-// A crossing may begin at once where it should begin after at most this factor of the time to the
-// configuration; after a failure only where a step to that place has ended.
-// Default: short steps to that place against longer crossings. Test: crossing.
+// A crossing may begin before its planned start, up to this factor of the planned time before the
+// configuration; after a failure only at the planned start. Default: a short step to the planned
+// start against longer crossings. Test: crossing.
 static const double early = 1.3, on_time = 1.02;
 // Predicted times that differ by such a factor belong to two configurations.
 // Default: predictions err, and configurations follow each other. Test: crossing.
 static const double other = 2;
-// A run that ends less than this part of the reach before the configuration ends by a crossing.
+// A run whose end lies before the configuration, by less than this part of the length of the
+// approach, ends with a crossing, of which only the part up to the end is used.
+// Chosen: short steps near the configuration against a crossing.
 static const double beside = 0.5;
 
 double ct_driver_step_limit(const struct ct_driver *r)
@@ -58,12 +60,13 @@ double ct_driver_next_stop(const struct ct_driver *r, bool *is_time)
     return stop;
 }
 
-// The fewest even steps up to the stop that are not longer than the one asked for: those that were
-// left at the last step, less one, where that ended as planned.
+// The length of the next step where steps are fixed: the interval up to the stop is divided into
+// the fewest equal steps that are not longer than the length asked for.
 static double fit_fixed(struct ct_driver *r, double stop)
 {
-    // a stop that is a whole number of steps away but for round-off, that of t in each step before
-    // added up, must not cost one more
+    // A stop that is a whole number of steps away but for round-off must not cost one step more.
+    // Derived: n steps leave a round-off of sqrt(n) eps t in t = n h, that is n^1.5 eps steps; 1e-6
+    // is enough for some 3e6 steps.
     const double roundoff = 1e-6, rest = stop - r->t;
     struct ct_fixed_steps *e = &r->even;
     if (e->stop == stop && e->next == r->t && e->left > 1) {
@@ -77,8 +80,8 @@ static double fit_fixed(struct ct_driver *r, double stop)
     return h;
 }
 
-// The step across a singular configuration, centred on it. Beyond the end of the run f is the same
-// function, beyond a time event it is not.
+// Plans a step across a singular configuration, centred on it. It may go beyond the end of the run,
+// but not beyond a time event, where f changes.
 static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
                           struct ct_planned_step *s)
 {
@@ -90,7 +93,7 @@ static void plan_crossing(const struct ct_driver *r, double stop, bool is_time,
     s->t1 = s->reaches_stop ? stop : r->t + s->h;
 }
 
-// The rest of the crossing that an event has cut, centred on the event.
+// Plans the remainder of a crossing after an event in its gap. Its stages are centred on the event.
 static void plan_remainder(const struct ct_driver *r, double stop, bool is_time,
                            struct ct_planned_step *s)
 {
@@ -109,8 +112,7 @@ static bool has_crossing(const struct ct_driver *r)
     return r->singular_in < INFINITY && r->failed_crossings < most_crossings && !r->is_locked;
 }
 
-// s (out): member by member, because steps are short against the time that a copy of it waits for
-// its parts.
+// s is filled member by member: a copy of the whole would wait for stores of its members.
 void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
                          struct ct_planned_step *s)
 {
@@ -126,8 +128,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
         plan_remainder(r, stop, is_time, s);
         return;
     }
-    // the run may end before the position, but beside it; one that begins beside it can only come
-    // from a crossing
+    // the run may end shortly before the singular configuration; one that starts within its reach
+    // must come to it
     if (has_crossing(r) && reach > 0
         && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
         if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
@@ -165,8 +167,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     double reach;
     const double before = r->singular_in;
     r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
-    // none, or another one; or what has failed was begun for one that had been taken to be much
-    // farther off
+    // there is none, or another one, or failed attempts were made with a wrong prediction of its
+    // time
     if (!(r->singular_in < INFINITY) || r->singular_in > other * before
         || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
@@ -178,8 +180,8 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     r->reach = fmin(fmin(r->reach, reach), r->singular_in);
 }
 
-// The rest of a crossing that began nearer to the position than it should have ends where that
-// would have begun.
+// Plans the length of the remainder. A crossing that began too near to the singular configuration
+// has a remainder as long as the usual approach.
 static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double whole
@@ -202,7 +204,7 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
     r->control.was_refused = false;
 }
 
-// Shorter, which none is any more after so many times.
+// Shortens the remainder of a crossing after a failure, and gives it up after too many.
 static void shrink_remainder(struct ct_driver *r)
 {
     enum { MOST = 12 }; // Default: as most_crossings. Test: crossing.

@@ -6,15 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-// Places within a step where sign changes are looked for.
+// Probes: times within a step, as parts of it, at which g is evaluated.
 // Default: what is missed against evaluations; two_waves_in_a_step_are_seen. Test: events.
 static const double probes[] = {0.25, 0.5, 0.75, 1};
 
-// A root that crosses between probes and comes back is suspected where the parabola through three
-// of them has its minimum below this part of its second difference, which is what it errs by.
-// Default: what is missed against evaluations; a_parabola_tells_of_dips. Test: events.
+// Two sign changes between probes are suspected where the parabola through three of them has a
+// minimum below this part of its second difference, its assumed error. Default: what is missed
+// against evaluations; a_parabola_tells_of_dips. Test: events.
 const double ct_event_location_margin = 0.1;
-// The minimum is looked for with three places, each time so much closer to each other.
+// The minimum is located with three points, whose distance shrinks by this factor each time.
 // Default: crossings_close_together_are_both_seen fails with 0.9. Test: events.
 static const double closer = 0.125;
 
@@ -27,9 +27,9 @@ static const double resolution = 1e-12;
 // of the unit round-off, where round-off and curvature err alike.
 static const double spacing = 0x1p-26;
 
-// With events a run has at least this many steps, so that probes are never too far apart when
-// the motion between events is so simple (free fall) that steps could grow without limit.
-// Default: what is missed against steps. Test: events.
+// The least number of steps of a run with events. Without it steps, and with them probes, could
+// grow without limit in a simple motion such as free fall. Default: what is missed against steps.
+// Test: events.
 static const double event_steps = 50;
 
 double ct_event_location_resolution(double t, double h)
@@ -90,7 +90,7 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
     };
 }
 
-// Sides of roots on zero: those to which they go.
+// Signs of root functions that are zero: those to which they move.
 static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, const double *y,
                                const double *dy)
 {
@@ -101,7 +101,7 @@ static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, 
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
         if (w->side[i] == 0)
             w->side[i] = (signed char)sign(w->g[i] - w->g0[i]);
-        if (w->side[i] == 0) // without a slope it goes on to where it was going
+        if (w->side[i] == 0) // without a slope it keeps its direction
             w->side[i] = w->crossed[i];
     }
     return e == CT_EVAL_RETRY ? CT_EVAL_OK : e; // the first step will find the side
@@ -117,7 +117,7 @@ enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, doub
     bool has_doubt = false;
     for (int i = 0; i < n; i++) {
         w->side[i] = (signed char)sign(w->g0[i]);
-        // where it fired the value is noise, unless the event has moved the state away
+        // the value of a root that fired is round-off, unless the event has changed the state
         if (fabs(w->g0[i]) <= w->recently_fired[i])
             w->side[i] = 0;
         else
@@ -140,7 +140,7 @@ static bool any_rests(const struct ct_event_location *w)
     return false;
 }
 
-// Roots at rest that are not zero at y any more fire, to where they are there.
+// Root functions that stayed zero and are not zero at y fire, with their sign there.
 static enum ct_eval find_leaving(struct ct_event_location *w, double t, const double *y,
                                  bool *any)
 {
@@ -155,8 +155,8 @@ static enum ct_eval find_leaving(struct ct_event_location *w, double t, const do
     return e;
 }
 
-// Does a root at rest leave zero in a step to y_end? The end tells first, as the interpolant is
-// less accurate.
+// Does a root function that stayed zero change in a step to y_end? The end is tested first, as it
+// is more accurate than dense output.
 static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_stepper_span *s,
                                    const double *y_end, bool *any)
 {
@@ -169,15 +169,16 @@ static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_
     return e;
 }
 
-// Reaching zero is crossing it; a root at rest on zero has no side to cross from. One that has just
-// fired may still be on the wrong side: until it has got away it must go further than it was then.
+// Has root function i changed sign? Zero counts as a change, unless it stays zero. After an event
+// its value is round-off of either sign; until it has left that range only larger values count.
 static bool has_crossed(const struct ct_event_location *w, int i, const double *g)
 {
     const double x = w->side[i] * g[i];
     return w->side[i] && (w->recently_fired[i] > 0 ? x < -w->recently_fired[i] : x <= 0);
 }
 
-// A probe without an event: roots that have fired got away.
+// At a probe without an event: root functions that have left the range of round-off after they
+// fired.
 static void note_away(struct ct_event_location *w, const double *g)
 {
     for (int i = 0; i < w->p->nroot; i++)
@@ -193,7 +194,7 @@ static bool any_crossed(const struct ct_event_location *w, const double *g)
     return false;
 }
 
-// Where between low and high the first of the crossing roots should be zero, by secants.
+// The first zero of root functions between low and high, by secants.
 // `bias` weighs the values at high against those at low (Illinois).
 static double guess(const struct ct_event_location *w, double low, double high, double bias)
 {
@@ -202,7 +203,7 @@ static double guess(const struct ct_event_location *w, double low, double high, 
         if (!has_crossed(w, i, w->high))
             continue;
         const double a = fabs(w->low[i]), b = bias * fabs(w->high[i]);
-        // at the start of a step the root may still be on the wrong side by a round-off
+        // at the start of a step its sign may be wrong by round-off
         const bool is_secant = sign(w->low[i]) == w->side[i] && a + b > 0;
         part = fmin(part, is_secant ? a / (a + b) : 0.5);
     }
@@ -216,8 +217,9 @@ static void swap(double **a, double **b)
     *b = c;
 }
 
-// Narrow [low, high] around the first crossing, from values in w->low and w->high, until it is
-// shorter than `width`. Ends: at the latest each third try halves the bracket.
+// Narrows the bracket [low, high] of the first sign change, from values in w->low and w->high,
+// until it is shorter than `width`. It terminates, since at least every third iteration halves the
+// bracket.
 static enum ct_eval locate(struct ct_event_location *w, const struct ct_stepper_span *s,
                            double low, double high, double width, double *theta)
 {
@@ -264,8 +266,8 @@ static enum ct_eval mark(struct ct_event_location *w, const struct ct_stepper_sp
     return e;
 }
 
-// g at the end of a step (out: w->high), carried on by the resolution: a root that is about to be
-// zero fires at the end of this step and not at the start of the next, after a sample there.
+// w->high (out) = g at the end of a step, extrapolated by the resolution of time. So a root that is
+// zero there but for round-off fires at the end of this step, before a sample, and not in the next.
 static enum ct_eval evaluate_end(struct ct_event_location *w, const struct ct_stepper_span *s,
                                  const double *y_end, double since)
 {
@@ -276,7 +278,7 @@ static enum ct_eval evaluate_end(struct ct_event_location *w, const struct ct_st
     return e;
 }
 
-// ---- roots that come back between probes --------------------------------------------------------
+// ---- two sign changes between probes ------------------------------------------------------------
 
 bool ct_event_location_may_dip(double a, double b, double c)
 {
@@ -285,9 +287,9 @@ bool ct_event_location_may_dip(double a, double b, double c)
         && 2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend;
 }
 
-// A place within the step where root i, which has not crossed at places `apart` from each other
-// about theta, is beyond zero by more than `depth`; g is left in w->high. *theta (in, out): 2 if
-// there is none.
+// *theta (in, out): a time near theta at which root function i has changed sign by more than
+// `depth`, though not at three points `apart` from each other; 2 if there is none. g is left in
+// w->high.
 static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                              int i, const double *f, double depth, double apart, double *theta)
 {
@@ -313,8 +315,8 @@ static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_steppe
     return CT_EVAL_OK;
 }
 
-// The first place before probe `end` where a root is beyond zero that is not so at the probes; else
-// 2.
+// *theta (out): the first time before probe `end` at which a root function has changed sign between
+// probes; else 2.
 static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_stepper_span *s,
                                 int end, double before, double *theta)
 {
@@ -339,7 +341,7 @@ static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_ste
     return CT_EVAL_OK;
 }
 
-// The event in [low, high], where no root is beyond zero at low, in w->low, and one is at high, in
+// Locates the event in [low, high], with no sign change at low, in w->low, and one at high, in
 // w->high.
 static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_span *s,
                            double low, double high, double *theta)
@@ -349,8 +351,8 @@ static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_
     return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
 }
 
-// If a root comes back from beyond zero before `before`, where the probe `end` does not see it:
-// *theta, else 2.
+// *theta (out): the first event between probes before `before`, that probes up to `end` do not
+// show; else 2.
 static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                                int end, double before, double *theta)
 {

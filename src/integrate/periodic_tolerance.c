@@ -3,13 +3,15 @@
 
 #include <math.h>
 
-// Steps between updates. The first steps are as important as any, as their errors act on all turns.
+// Steps between updates. They begin early, because errors of the first steps act on all periods.
+// Chosen: the work of updates against steps made with the tolerance before.
 enum { STEPS_BETWEEN = 16 };
-// Up to so many turns the tolerance of steps is that of the run.
+// Up to so many periods the tolerance of steps is that of the run.
+// Chosen: evaluations against accuracy over long runs.
 static const double usual_turns = 20;
 
-// Derived: the share of a hundred times as many turns, as it falls with their square; with less,
-// round-off would be felt.
+// The smallest factor on the tolerance. Derived: that of a hundred times as many periods, as it
+// falls with their square. With less, round-off would exceed the tolerance.
 static const double least_share = 1e-4;
 
 struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
@@ -19,8 +21,8 @@ struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
     return (struct ct_periodic_tolerance){.t0 = t0, .t1 = t1, .small = small, .share = 1};
 }
 
-// Derived: in a turn a coordinate goes twice its range, there and back, and a speed four times its
-// largest value. A motion that has not turned yet has not repeated anything.
+// The number of periods so far. Derived: in a period a coordinate moves by twice its range, and a
+// speed changes by four times its largest value. Before the first reversal there is no period.
 static double turns_so_far(const struct ct_periodic_tolerance *r)
 {
     const double far_q = fmax(sqrt(r->range_q), r->small),

@@ -1,11 +1,11 @@
-// Tolerance scaling for periodic motion: how often a motion repeats itself until the end of a run,
-// and how much better its steps have to be for that.
+// Tolerance scaling for periodic motion: counts the periods of a motion and reduces the tolerance
+// of steps for the number expected up to the end of the run. The error of a step changes the
+// energy, and with it the frequency of all periods that follow. So over n periods the error of the
+// solution grows with n^2.
 //
-// The error of a step changes the energy and with it the pace of all turns that follow: over n
-// turns the error of the solution grows with n^2. Turns are counted by the ways of all coordinates
-// and of all speeds, against how far they get, and not less than what the tolerance sees as small:
-// the smaller number counts, so that neither vibrations that are small, whether beside the motion
-// or beside a unit, nor steady rotations are turns.
+// Periods are counted from the path lengths of coordinates and of speeds, each over the largest
+// distance reached, or over the size below which the absolute tolerance counts. The smaller number
+// counts. So neither small vibrations nor steady rotations are counted as periods.
 #ifndef CT_INTEGRATE_PERIODIC_TOLERANCE_H
 #define CT_INTEGRATE_PERIODIC_TOLERANCE_H
 
@@ -15,11 +15,11 @@ struct ct_periodic_tolerance {
     double t0, t1; // of the run
     double small;  // distances and speeds below it are measured against the absolute tolerance
     double path_q,
-        // of coordinates: the way so far, the square of the largest distance from the start
+        // of coordinates: path length, square of the largest distance from the start
         range_q;
-    double path_u, range_u; // of speeds: the sum of their changes, the square of the largest
-    int steps;              // since the last look
-    double share;           // of the tolerance of a step
+    double path_u, range_u; // of speeds: sum of their changes, square of the largest
+    int steps;              // since the last update
+    double share;           // factor on the tolerance of a step
 };
 
 /// What is left of a tolerance at this share, where rtol is not to fall below `least`.

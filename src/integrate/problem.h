@@ -1,9 +1,15 @@
-// An initial value problem as integrators see it: arrays and callbacks, no model.
+// The folder integrate holds numerical methods for initial value problems: explicit Runge-Kutta
+// methods here, Radau IIA and generalised-alpha methods in implicit/. Around them are step size
+// control, projection onto the constraints, event location, dense output, stiffness detection and
+// steps across singular configurations. A problem is a set of arrays and callbacks; nothing here
+// depends on a mechanical model.
 //
-//     y' = f(t, y)   with  events, a projection after each step and samples on the way
+// This file defines the problem, the method and the function that integrates:
 //
-// What always holds: between two events f is smooth; f is called at stage points that may lie off
-// the constraint manifold; after `project` the state lies on it. Nothing allocates while stepping.
+//     y' = f(t, y)   with events, a projection after each step, and samples at given times
+//
+// What always holds: between two events f is smooth. Stages, at which f is evaluated, may lie off
+// the constraint manifold; after `project` the state lies on it. Steps do not allocate.
 #ifndef CT_INTEGRATE_PROBLEM_H
 #define CT_INTEGRATE_PROBLEM_H
 
@@ -12,49 +18,50 @@
 enum ct_eval {
     CT_EVAL_OK,
     CT_EVAL_RETRY, // take a smaller step
-    CT_EVAL_FATAL, // diagnosed
+    CT_EVAL_FATAL, // cannot go on; a diagnostic is there
 };
 
-/// Where K, C, M (nu x nu), D and J (most_rows x nu) have entries, each place at most once: lists
-/// one behind the other.
+/// Sparsity patterns of K, C, M (nu x nu), D and J (most_rows x nu). The lists of entries follow
+/// each other; each entry is listed once at most.
 ///
-/// With inner values k (ninner) that r depends on, K, C, M and R have rows of r, then of k, with k
-/// held but in R = d(r, k)/dk, in which k_i depends on those before it alone: the matrices are r_q
-/// + r_k (1 - k_k)^-1 k_q and so on.  (8.19)
+/// The residual r may depend on auxiliary unknowns k (nauxiliary), where k_i depends on the
+/// unknowns before it alone. Then K, C and M have rows of r, followed by rows of k, as derivatives
+/// at fixed k, and R = d(r, k)/dk. The whole derivative of r is r_q + r_k (1 - k_k)^-1 k_q, and so
+/// on.  (8.19)
 struct ct_slopes {
     int nK, nC, nM, nR, nD, nJ; // in this order; K, C, M, R by row
     int nauxiliary;
     const int *row, *column;
 };
 
-/// What a speed moves that is not the rate of one coordinate: a rotation, of size one, three in a
-/// row; nothing, as it is a state of its own.
+/// Speeds that are not the derivative of one coordinate: three angular velocities of a rotation, in
+/// turn, or a state variable of the model that moves no coordinate.
 enum ct_no_coordinate { CT_MOVES_ROTATION = -1, CT_MOVES_NOTHING = -2 };
 
-/// The same problem as implicit methods solve it: second order, with constraints.  (formulation
-/// 0.4, 8)
+/// The same problem in the form that implicit methods solve: of second order, with constraints.
+/// (theory 0.4, 8)
 ///
 ///     r(t, q, u, u', lam) = M u' - Q - J' lam = 0,   Phi(q, t) = 0,   v(q, u, t) = J u + Phi_t = 0
 ///
-/// Positions move by q (+) d, d (nu) a small motion in the speeds: sums for plain coordinates,
-/// rotations where q is a quaternion. Derivatives by q are taken along it. Of the constraints only
-/// independent rows count.
+/// A position changes by an increment d (nu), written q (+) d: a sum for plain coordinates, a
+/// rotation for a quaternion. Derivatives by q are derivatives by d. Only independent constraints
+/// are among the rows.
 struct ct_dae {
     void *user;
-    int nq, nu;    // the states are q, u and perhaps quadratures: their rate feeds nothing back
-    int most_rows; // rows there can be
+    int nq, nu;    // the states are q, u and perhaps quadratures, on which f does not depend
+    int most_rows; // the largest number of rows
     const int
         *q_of; // (nu) the coordinate that moves with speed k alone; or of enum ct_no_coordinate
-    double scale; // of places: residuals are rounded as where places are at least as large
+    double scale; // least size of positions for the round-off of residuals
 
-    /// The number of rows now; *version changes when they become other rows. Only `rhs`, `project`
-    /// and `accepted` of the problem change them.
+    /// The present number of rows. *version changes whenever other rows are selected, which only
+    /// `rhs`, `project` and `accepted` of the problem do.
     int (*rows)(void *user, long *version);
     /// q1 (nq, out) = q (+) d.
     void (*retract)(void *user, const double *q, const double *d, double *q1);
-    /// rate (nu, out) = d' where q (+) d moves at speeds w.  T^-1(d) w for rotations, (7.3)
+    /// rate (nu, out) = d', where q (+) d has the speeds w; T^-1(d) w for rotations.  (7.3)
     void (*chart_rate)(void *user, const double *d, const double *w, double *rate);
-    /// a (nu, out), lam (rows, out) that satisfy r = 0 and the rows' accelerations at y.
+    /// a (nu, out), lam (rows, out) that satisfy r = 0 and the constraints on accelerations at y.
     enum ct_eval (*start)(void *user, double t, const double *y, double *a, double *lam);
     /// r (nu, out), phi, v (rows, out).
     enum ct_eval (*residual)(void *user, double t, const double *q, const double *u,
@@ -66,103 +73,101 @@ struct ct_dae {
                             const double *a, const double *lam, double *M, double *C, double *K,
                             double *J, double *D);
 
-    /// The same derivatives as lists of entries; NULL: they are not known as such.
+    /// The sparsity patterns of the same derivatives; NULL: not known.
     const struct ct_slopes *slopes;
-    /// *value (out): those of K, C, M, R, D, J, one list behind the other, until the next call.
+    /// *value (out): the entries of K, C, M, R, D, J in turn, valid until the next call.
     enum ct_eval (*evaluate_slopes)(void *user, double t, const double *q, const double *u,
                                     const double *a, const double *lam, const double **value);
-    /// The rows that count now, of most_rows, in the order of lam.
+    /// Indices of the present rows among most_rows, in the order of lam.
     const int *(*active_rows)(void *user);
-    const struct ct_newton_pattern *plan[2]; // stabilised: 1; NULL: full matrices serve as well
+    /// Symbolic analysis of the Newton matrix, [1] for stabilised forms; NULL: dense matrices.
+    const struct ct_newton_pattern *plan[2];
 
-    // what makes steps cheaper, where it is known
-    bool
-        is_plain; // coordinate k moves with speed k: q (+) d = q + d, and rates in the chart are speeds
+    // special cases that make steps cheaper
+    bool is_plain;     // speed k is the derivative of coordinate k: q (+) d = q + d
     bool has_no_power; // rates of quadratures are zero
-    int nstate;        // the last speeds are states of their own, which move no coordinate
+    int nstate;        // the last speeds are state variables, which move no coordinate
 };
 
-/// States that are components of one thing, as those of a vector: all are measured by the largest
-/// of them.
+/// Groups of states that are components of one quantity, such as a vector. The largest component is
+/// the scale of errors for the whole group.
 struct ct_groups {
     int n;
     const int *of; // per state: 0 ... n - 1; -1: measured by itself
     double *size;  // workspace (n)
 };
 
-/// What an error is measured against: rtol * max(|y_i| at either end of the step) + atol, of a
-/// group the largest |y_i|.
+/// The weight of an error is rtol * max(|y_i| at either end of the step) + atol; in a group with
+/// the largest |y_i|.
 struct ct_tolerance {
     double rtol, atol;
 };
 
 struct ct_stepper_span;
 
-/// Singular configurations: there f has a limit along the motion that cannot be computed. Methods
-/// with step control cross one in a single step that does not evaluate f close to it, see
-/// crossing.h.
+/// Singular configurations, in which constraints become dependent. Along the motion f has a limit
+/// there that cannot be computed directly. With step size control one is crossed in a single step
+/// that does not evaluate f close to it, see crossing.h.
 struct ct_singularities {
     void *user;
-    /// Time from the last accepted state to the next singular configuration as far as it can be
-    /// predicted, else INFINITY. *reach (out): the time before and after it in which f is better
-    /// not computed.
+    /// The predicted time from the last accepted state to the next singular configuration, or
+    /// INFINITY. *reach (out): the time before and after it within which f has too few digits.
     double (*time_to_next)(void *user, double *reach);
     /// Is y so near to a singular configuration that f has too few digits?
     bool (*is_near)(void *user, double t, const double *y);
-    /// Evaluations from now on belong to a crossing, none of them close to the singular
-    /// configuration; or do not any more.
+    /// Tells whether the evaluations that follow belong to a crossing, and are not close to the
+    /// singular configuration.
     void (*set_crossing)(void *user, bool is_crossing);
-    /// How far y is from the constraints. *dependent (out): the same of the combination of
-    /// constraints that becomes dependent. It vanishes with the square of the distance from a
-    /// singular configuration, and does not if y is only nearly singular.
+    /// The residual of the constraints at y. *dependent (out): that of the combination of
+    /// constraints that becomes dependent. At a singular configuration it vanishes; at one that is
+    /// only nearly singular it does not.
     double (*residual)(void *user, double t, const double *y, double *dependent);
     /// A step has crossed a singular configuration. It ends at t1 or later, and is the crossing
     /// without its first part `begin`. False if the configuration does not lie before t1.
     bool (*passed)(void *user, const struct ct_stepper_span *step, double begin, double t1);
-    /// Asked after a crossing has failed: does the motion end in the configuration that is `in`
-    /// seconds ahead of y, the last accepted state, because the constraints cannot be met behind
-    /// it?
+    /// Called after a crossing has failed: does the motion end in the configuration `in` seconds
+    /// after y, the last accepted state, because the constraints have no solution beyond it?
     bool (*ends_motion)(void *user, double t, const double *y, double in);
 };
 
 struct ct_problem {
     void *user;
     int ny;     // states
-    int nq, nu; // the first are coordinates, those behind them their speeds; 0: not known
-    /// What implicit methods need beside the rest; NULL: none can be used.
+    int nq, nu; // y begins with nq coordinates and nu speeds; 0: not known
+    /// The form for implicit methods; NULL: none can be used.
     const struct ct_dae *dae;
-    /// Per state: counts in error control (quadratures do not). NULL: all do.
+    /// Per state: is its error controlled? Those of quadratures are not. NULL: all are.
     const bool *error_controlled;
-    /// Per speed (nu), and per coordinate that moves with it: is wanted of the run itself, and not
-    /// only what it leads to in outputs. NULL, both: all are.
+    /// Per speed (nu), and per coordinate of that speed: is it an output itself? NULL: all are.
     const bool *requested_speeds, *requested_positions;
-    /// So that the total energy is kept to the accuracy, however little of it vibrates; or the last quadrature, a work.
+    /// Is the total energy an output, so that even small vibrations must keep theirs? Is the last
+    /// quadrature, a work, one?
     bool keeps_energy, keeps_work;
-    double accuracy,
-        duration; // wanted of the outputs, relative, over the whole run; its length. 0: not known
-    /// Round-off of f, per state (ny), where it is felt in the errors of steps as long as
-    /// `roundoff_step` or shorter. NULL: it is not.
+    double accuracy; // relative, wanted of outputs over the whole run; 0: not known
+    double duration; // of the run [s]; 0: not known
+    /// Round-off of f, per state (ny), that is subtracted from error estimates of steps up to
+    /// `roundoff_step`. NULL: it does not matter.
     const double *roundoff;
     double roundoff_step;
-    /// NULL: every state is measured by itself.
+    /// NULL: every state has its own scale of errors.
     const struct ct_groups *groups;
 
-    /// What an error e (ny) of the state y at the end of a step means for what is wanted of the
-    /// run, where 1 is the tolerance; `states` is the norm of e. 0 where that is enough. NULL: it
-    /// always is.
+    /// The error of outputs, where 1 is the tolerance, that follows from an error e (ny) of the
+    /// state y at the end of a step. `states` is the norm of e. 0: the error of states is enough.
+    /// NULL: it always is.
     double (*output_error)(void *user, double t, const double *y, const double *e,
                            const struct ct_tolerance *tolerance, double states);
-    /// The most that an output changes by for a change e (ny) of y, over its largest value so far.
-    /// With least > 0 over that if it is more, or over what is expected, and without outputs that
-    /// amplify errors of states. NULL: there is none but states.
+    /// The largest relative change of an output for a change e (ny) of y, relative to its largest
+    /// value so far. With least > 0 it is relative to `least`, or to the predicted value, if these
+    /// are larger, and sensitive outputs (8.11) do not count. NULL: outputs are states only.
     double (*output_change)(void *user, double t, const double *y, const double *e,
                             double least);
-    /// Outputs are expected to become as large as so many `times` what they change by for a change
-    /// way (ny) of y. NULL as above.
+    /// Predicts outputs: they will change by `times` their change for a change way (ny) of y. NULL
+    /// as above.
     void (*expect_output)(void *user, double t, const double *y, const double *way,
                           double times);
-    /// The same of the outputs that amplify errors of states, which output_error leaves to this
-    /// where it is not NULL; 0 where there are none.  (8.11)
+    /// As output_error, for sensitive outputs, which amplify errors of states (8.11). Where it is
+    /// not NULL output_error leaves them out. 0: there are none.
     double (*sensitive_output_error)(void *user, double t, const double *y, const double *e,
                                      const struct ct_tolerance *tolerance, double states);
 
@@ -173,53 +178,54 @@ struct ct_problem {
     /// NULL.
     enum ct_eval (*project)(void *user, double t, double *y);
 
-    /// After a step was accepted and projected: update memories and choices that keep f the same
-    /// function. May be NULL. Before it answers CT_EVAL_RETRY it must have changed nothing. dy
-    /// belongs to y. is_across: the step was made to cross a singular configuration.
+    /// Called after a step was accepted and projected, dy = f(t, y). Here the problem may change
+    /// its internal choices, such as independent coordinates, as long as f stays the same function.
+    /// If it returns CT_EVAL_RETRY it must not have changed anything. is_across: the step has
+    /// crossed a singular configuration. May be NULL.
     enum ct_eval (*accepted)(void *user, double t, const double *y, const double *dy,
                              bool is_across);
 
-    /// Longest step from the last accepted state, or from where the start or an event has put it.
-    /// May be NULL.
+    /// The longest step allowed from the present state. May be NULL.
     double (*longest_step)(void *user);
-    /// The longest step from t, of at most h, that does not pass over what f does by time alone.
-    /// May be NULL.
+    /// The longest step from t, up to h, that does not miss changes of time-dependent inputs. May
+    /// be NULL.
     double (*input_limited_step)(void *user, double t, double h);
-    /// NULL: none are looked for.
+    /// NULL: singular configurations are not treated.
     const struct ct_singularities *singular;
 
     /// Root functions on the state, g (nroot, out); a sign change within a step is an event. g is
     /// continuous within the step.
     int nroot;
     enum ct_eval (*root)(void *user, double t, const double *y, double *g);
-    /// side (nroot, out): the sides of zero that f stands for, -1 or 1, at a start and after an
-    /// event; 0 for a root at rest on zero. NULL: those to which roots go from there.
+    /// side (nroot, out): the sign of each root function that f assumes at a start and after an
+    /// event, -1 or 1; 0 for a root that stays zero. NULL: the sign to which the root function
+    /// moves.
     void (*sides)(void *user, signed char *side);
 
     /// The first time event after t (never t itself), or INFINITY. May be NULL. Steps end exactly
     /// on it.
     double (*next_time_event)(void *user, double t);
 
-    /// At an event: t and y are those of the event, crossed[i] (nroot) is -1 or +1 for the roots
-    /// that changed sign downwards or upwards, 0 else; is_time tells that a time event is due.
-    /// Changes modes and may change y (impulses). Integration restarts after it. dy: f before the
-    /// event where it cannot be computed, in the gap of a crossing; else NULL.
+    /// Called at an event, with its t and y. crossed[i] (nroot) is -1 or 1 for root functions that
+    /// changed sign downwards or upwards, else 0; is_time: a time event is due. It changes discrete
+    /// states and may change y (impulses). Integration restarts after it. dy: f before the event in
+    /// the gap of a crossing, where f cannot be computed; else NULL.
     enum ct_eval (*event)(void *user, double t, double *y, const double *dy,
                           const signed char *crossed, bool is_time);
-    /// After an event in the gap of a crossing: dy is f there as it is now, found by a step from
-    /// there. May be NULL.
+    /// Called after an event in the gap of a crossing, when a step from there has found the new f,
+    /// dy. May be NULL.
     enum ct_eval (*resumed)(void *user, double t, const double *y, const double *dy);
 };
 
-/// Times and states around a sample where f cannot be computed, and their weights in what is
-/// interpolated there.
+/// The stages of a crossing and their interpolation weights for a time in its gap, where f cannot
+/// be computed.
 struct ct_gap_interpolation {
     int n;
     const double *t, *weight; // (n)
     const double *y;          // (ny x n)
 };
 
-/// An accepted step as it is handed on.
+/// An accepted step, for ct_step_state.
 struct ct_step_view {
     double t0, t1;
     void *driver;
@@ -229,7 +235,7 @@ struct ct_step_view {
 struct ct_integrate_options {
     double t0, t1;
     double rtol, atol;    // tolerance of the states; see ct_integrate
-    double least_rtol;    // > 0: motions that repeat themselves often get less, down to this
+    double least_rtol;    // > 0: for periodic motions rtol may be reduced down to this
     double step;          // > 0: fixed step, see ct_integrate
     double first_step;    // 0: chosen
     long max_steps;       // 0: 100 million
@@ -238,14 +244,13 @@ struct ct_integrate_options {
     /// Called once for each sample, in order. A sample on an event is given after it. y may be used
     /// freely; dy is not given. Return false to stop (a diagnostic is there).
     bool (*at_sample)(void *user, double t, const double *y);
-    /// The same for samples in singular configurations or close to them. NULL: at_sample.
+    /// The same for samples in the gap of a crossing. NULL: at_sample.
     bool (*at_singular_sample)(void *user, double t, const double *y,
                                const struct ct_gap_interpolation *b);
     /// Called after each accepted step, before the samples in it; ct_step_state gives the states.
-    /// Return false to stop (a diagnostic is there). NULL: nobody looks into steps.
+    /// Return false to stop (a diagnostic is there). May be NULL.
     bool (*over_step)(void *user, const struct ct_step_view *step);
-    /// Called once if the end is foreseen to be more than so many steps away, with their present
-    /// size. May be NULL.
+    /// Called once if more than `many_steps` steps of the present size are to come. May be NULL.
     void (*forecast)(void *user, double t, const double *y, double step, double to_come);
     double many_steps;
     /// Called after each accepted step for progress; may be NULL. Return false to stop quietly.
@@ -254,32 +259,31 @@ struct ct_integrate_options {
 
 struct ct_integrate_stats {
     long steps, rejected_steps, evaluations, jacobians, factorizations, events;
-    long inaccurate_steps; // of those rejected: for their error; the others could not be done
+    long inaccurate_steps; // steps rejected for their error; others could not be computed
     double last_time;      // reached, also on failure
-    double last_rtol;      // that its steps were held to in the end; 0: to none
-    double next_step;      // that step control would take next
+    double last_rtol;      // relative tolerance of the last steps; 0: fixed steps
+    double next_step;      // step size for the next step
 };
 
 enum { CT_MOST_STAGES = 13 }; // Definition: of a tableau, those of dop853
 
-/// The numbers of an explicit method whose last stage is the end of the step: for those who step by
-/// themselves. Stage s is at t + C_s h, y + h sum_j A_sj k_j; its error is h sum E_j k_j or, with a
-/// result B3 of order 3, |e| / hypot(1, |e3| / (10 |e|)) in the norms of both.
+/// The Butcher tableau of an explicit method whose last stage is the end of the step (first same as
+/// last). Stage s is at t + C_s h, y + h sum_j A_sj k_j. The error estimate is h sum E_j k_j or,
+/// with a second solution B3 of order 3, |e| / hypot(1, |e3| / (10 |e|)) in the norms of both.
 struct ct_tableau {
     int stages, stride;           // A has rows of `stride` numbers
     const double *C, *A, *E, *B3; // B3: NULL without
     int nerror;                   // length of E and B3
 };
 
-/// What an explicit method's interpolant is made of: with y1 and f there as the last stage of the
-/// step, more stages C, A as those of its tableau, then F_j = h sum_i D_ji k_i and, t = theta, s =
-/// 1 - theta,
+/// Dense output of an explicit method. It has additional stages with the coefficients C, A, as in
+/// the tableau. With F_j = h sum_i D_ji k_i, t = theta and s = 1 - theta,
 ///
 ///     y(t + theta h) = Hermite(theta) + t^2 s^2 (F_0 + t (F_1 + s (F_2 + t F_3)))
 ///
 /// A and D have rows of `stride` numbers; D has `corrections` of them, the other F are zero.
 struct ct_dense_tableau {
-    int stages, corrections, stride; // stages: those of the step and these
+    int stages, corrections, stride; // stages: of the step and the additional ones
     const double *C, *A, *D;
 };
 /// Definition: those of dop853.
@@ -290,24 +294,23 @@ struct ct_method {
     const char *name;                             // as in `simulation.method`
     const char *summary;                          // one line for `cotree methods`
     const char *source;                           // key into docs/references.bib
-    const struct ct_tableau *tableau;             // NULL: it is more than its numbers
+    const struct ct_tableau *tableau;             // NULL: not an explicit Runge-Kutta method
     const struct ct_dense_tableau *dense_tableau; // of those that have a tableau
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
-    /// Needs problem.dae, and meets the constraints by itself: the driver does not project its
-    /// steps.
+    /// Needs problem.dae, and solves the constraints itself: its steps are not projected.
     bool is_implicit;
-    /// But those of speeds only to its order: speeds err across the constraints.
+    /// Its speeds meet the velocity constraints only to the order of the method.
     bool leaves_speeds;
-    /// Rules of step control; 0: the usual ones. A next step that differs from the last by a factor
-    /// between steady[0] and steady[1] is not made: it would cost a factorisation.
+    /// Step size control; 0: the usual values. The step size is kept where it would change by a
+    /// factor between steady[0] and steady[1], which saves a factorisation.
     double most_growth, steady[2];
     const void *coefficients; // of families of methods
-    /// The private workspace for a run. What it keeps from step to step begins with `restart` and
-    /// moves on with `accept`; both may be NULL.
+    /// The workspace for a run. `restart` clears what it keeps from earlier steps, `accept` adds
+    /// the last step; both may be NULL.
     void *(*create)(struct ct_arena *a, const struct ct_method *method,
                     const struct ct_problem *p);
-    /// Before the first step and after each event: nothing is known of the time before.
+    /// Called before the first step and after each event.
     void (*restart)(void *work);
     /// The last step was accepted; the next one starts at its end.
     void (*accept)(void *work);
@@ -318,17 +321,17 @@ struct ct_method {
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
                          double *dy1, double *err, void *work,
                          struct ct_integrate_stats *stats);
-    /// h times the rate of the fastest motion that the last two stages of a step have seen, at one
-    /// time. Beyond `resolved_limit` the step does not follow that motion but damps it, and `dense`
-    /// does not hold inside the step. NULL: it does.
+    /// h times the estimated largest eigenvalue of df/dy, from the last two stages of a step, which
+    /// are at the same time. Beyond `resolved_limit` the step damps that mode instead of resolving
+    /// it, and dense output is inaccurate. NULL: it is accurate.
     double resolved_limit;
     double (*stiffness_estimate)(const struct ct_problem *p, double h, const double *y,
                                  const double *y1, void *work);
-    /// Up to so much of it a step makes nothing that is damped, or turns, larger; beyond, the
-    /// estimate does not see what does. 0: it does.
+    /// The limit of stability: up to this value a step does not amplify damped or undamped modes.
+    /// Beyond it the error estimate does not see the growth. 0: it does.
     double stability_limit;
-    /// Called once for a step before its first `dense`: extra stages. May be NULL. With
-    /// has_rough_dense, `dense` works without it, too, well enough to find roots.
+    /// Called once for a step before its first `dense`, for additional stages. May be NULL. With
+    /// has_rough_dense, `dense` without it is accurate enough to find roots.
     bool has_rough_dense;
     enum ct_eval (*prepare)(const struct ct_problem *p, double t, double h, const double *y,
                             const double *y1, void *work, struct ct_integrate_stats *stats);
@@ -336,7 +339,7 @@ struct ct_method {
     /// `step`.
     void (*dense)(const struct ct_problem *p, double h, double theta, const double *y,
                   const double *y1, void *work, double *out);
-    /// *err (out): what the outputs that amplify err by in that point, where 1 is the tolerance; y
+    /// *err (out): the error of sensitive outputs (8.11) in that point, where 1 is the tolerance. y
     /// is overwritten. NULL: no more than at the end of the step.
     enum ct_eval (*dense_error)(const struct ct_problem *p, double t, double h, double theta,
                                 double *y, void *work, double *err,
@@ -349,12 +352,12 @@ extern const int ct_nmethod;
 const struct ct_method *ct_method_find(const char *name);
 
 /// Integrate y (ny, in: start, out: end) from t0 to t1 >= t0. The error of a step is held below
-/// rtol * max(|y_i|, ...) + atol in each watched state (weighted root mean square) and, with
-/// output_error, in outputs. The methods of order 2 among the implicit ones measure coordinates,
-/// quadratures and outputs, not speeds.
+/// rtol * max(|y_i|, ...) + atol in the controlled states (weighted root mean square) and, with
+/// output_error, in outputs. Implicit methods of order 2 control the errors of coordinates,
+/// quadratures and outputs, not of speeds.
 ///
-/// With least_rtol, nq and nu, a motion that repeats itself for more than some turns up to t1 is
-/// held to a smaller part of the tolerance, see periodic_tolerance.h.
+/// With least_rtol, nq and nu, the tolerance is reduced for a motion of many periods up to t1, see
+/// periodic_tolerance.h.
 ///
 /// Steps end exactly on time events and on t1. Samples between step ends are interpolated and
 /// projected. State events are located on the interpolant; the step is then taken again up to the
@@ -370,9 +373,8 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
                   const struct ct_problem *p, const struct ct_integrate_options *options,
                   double *y, struct ct_integrate_stats *stats);
 
-/// For over_step: y (ny, out) at t, t0 <= t <= t1, as samples have it but for the projection. gap
-/// (out): in the gap of a crossing, where f cannot be computed, what is interpolated there; else
-/// its n is 0. False with a diagnostic.
+/// For over_step: y (ny, out) = the state at t, t0 <= t <= t1, without projection. gap (out): the
+/// interpolation in the gap of a crossing; elsewhere its n is 0. False with a diagnostic.
 bool ct_step_state(const struct ct_step_view *step, double t, double *y,
                    struct ct_gap_interpolation *gap);
 

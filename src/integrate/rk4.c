@@ -35,12 +35,12 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
     return w;
 }
 
-// point (n, out) = y + c h k. Stages come from the one before alone, which has just been stored
-// number by number: where there are few, a wider read would wait for that.
+// point (n, out) = y + c h k. The stage k has just been stored number by number. A vector load
+// would wait for these stores, so few numbers are read one at a time (volatile).
 static inline void go(double *restrict point, const double *y, double h, double c,
                       const double *k, int n)
 {
-    enum { FEW = 16 };
+    enum { FEW = 16 }; // Limit: of time; both ways give the same numbers
     const volatile double *one = k;
     if (n > FEW)
         ct_stepper_combine(point, y, h, &c, k, 1, n);

@@ -87,7 +87,7 @@ static double safety_of(const struct ct_method *m)
     return m->is_implicit ? implicit_safety : safety;
 }
 
-// What a method says of its steps, as logarithms.
+// Sets the parameters of the controller for method m.
 static void learn(struct ct_step_control *c, const struct ct_method *m)
 {
     const double power = 1.0 / (m->error_order + 1);
@@ -106,13 +106,11 @@ void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m
         learn(c, m);
     c->is_starting = c->is_starting && error < remembered_error;
     const double log_error = near_log2(error);
-    // safety error_before^beta / error^alpha: what the error says about the next step, in parts of
-    // this one, without limits
+    // log2 of safety error_before^beta / error^alpha, the next step over this one, without limits
     const double power = c->log_safety + c->beta * c->log_before - c->alpha * log_error;
     c->log_before = ct_larger(log_error, c->log_least);
     if (power > c->log_steady[0] && power < c->log_steady[1]) {
-        // nothing is written where nothing changes: the next step need not wait for the error of
-        // this one
+        // no store where h stays the same: so the next step does not wait for the error of this one
         if (c->was_refused || h > c->h)
             c->h = h;
         c->was_refused = false;
@@ -121,7 +119,7 @@ void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m
     const bool has_own = m->most_growth > 0 && !c->is_starting;
     const double growth = has_own ? m->most_growth : most_growth;
     const double factor = ct_smaller(ct_larger(near_exp2(power), most_shrink), growth);
-    if (c->was_refused) // not at once back to what has just failed
+    if (c->was_refused) // after a refusal the step may not grow
         c->h = ct_smaller(factor, 1) * h;
     else // a step that is not c->h was cut for a stop, not for its error
         c->h = h < c->h ? ct_larger(factor * h, c->h) : factor * h;

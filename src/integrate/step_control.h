@@ -14,34 +14,34 @@ struct ct_step_control {
     double h;          // size the next step should have
     double log_before; // log2 of the error of the last accepted step, at least log_least
     double log_least;
-    // of the method that the last step was made with, found when it is another one
+    // values of the method of the last step, computed when the method changes
     const struct ct_method *method;
     double alpha, beta;               // powers of the errors of this step and the one before
     double log_safety, log_steady[2]; // log2
-    bool was_refused;                 // the step before this try was
-    bool is_starting; // errors since the start, or an event, say that steps are much too short
+    bool was_refused;                 // the last attempt was refused
+    bool is_starting; // since the start or an event errors are far below the tolerance
 };
 
 /// Before the first step.
 struct ct_step_control ct_step_control_start(void);
-/// The step wanted, adapted to the rest of the way to a stop so that neither it nor the one after
-/// it is a crumb.
+/// The step wanted, adapted to the time left to a stop, so that no very short step remains before
+/// it.
 static inline double ct_step_control_fit(double rest, double wanted)
 {
-    // a step may be so much longer to end on a stop. Derived: with the safety factors of
+    // A step may be longer by this factor to end on a stop. Derived: with the safety factors of
     // step_control.c, 0.8 and 0.9, its error is still expected to be below the tolerance
     const double stretch = 1.1;
     if (rest <= stretch * wanted)
         return rest;
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
-/// Is h, which does not end on a stop, too small to move t by more than round-off? run: the whole
-/// time.
+/// Is h, which does not end on a stop, too small against the round-off of t? run: the duration [s].
 static inline bool ct_step_control_is_below_roundoff(double h, double t, double run)
 {
-    // 16 * eps leaves room for the stage times; near t = 0 the scale is a millionth of the run,
-    // below which no motion of interest begins
-    const double least_step = 16 * DBL_EPSILON, least_scale = 1e-6, scale = least_scale * run;
+    // Derived: the stage times of DOPRI5, at least h/16 apart, then differ by a round-off of t.
+    const double least_step = 16 * DBL_EPSILON;
+    // Chosen: near t = 0, shortest steps against the message that steps have become too short.
+    const double least_scale = 1e-6, scale = least_scale * run;
     return h <= least_step * (fabs(t) > scale ? fabs(t) : scale);
 }
 /// A step of size h was accepted, its error 1 at the tolerance.
@@ -51,25 +51,26 @@ void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m
 void ct_step_control_refuse(struct ct_step_control *c, const struct ct_method *m, double h,
                             double error);
 
-/// How far a run gets with a thousandth of the steps it may make; all zero before the first.
+/// The time gained with each thousandth of the steps allowed; all zero before the first.
 struct ct_pace {
     double t, gain;       // where the last thousandth ended, and its length
-    long next;            // steps at its end: before, there is nothing to ask
+    long next;            // number of steps at its end
     double step, to_come; // then: mean step, steps up to the end; 0 while steps still grow
 };
-/// After so many of `most` steps t is reached, and `rest` is left: would the end take several times
-/// as many as are allowed? False while steps still grow.
+/// After so many of `most` steps t is reached, and `rest` is left: would the rest take several
+/// times the steps allowed? False while steps still grow.
 bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,
                                    double rest);
 
-/// The Euler step that looks ahead, from the norms of y and y' against the tolerance.
+/// The length of the Euler step that estimates y'', from the norms d0, d1 of y and y' over the
+/// tolerance.
 double ct_step_control_euler_step(double d0, double d1, double limit);
 /// A first step whose error should be near a hundredth of the tolerance; d1, d2: norms of y' and of
 /// its change over the Euler step h, divided by h.
 double ct_step_control_first(const struct ct_method *m, double h, double d1, double d2,
                              double limit);
-/// The same of a motion that is known to go on at `rate` [1/s]: the first term of its series that
-/// the error sees, of order n, (rate h)^n/n!, is a hundredth of what is asked.
+/// A first step for a motion of a known `rate` [1/s]: the first term of its Taylor series in the
+/// estimated error, (rate h)^n/n!, is a hundredth of the tolerance.
 double ct_step_control_first_at_rate(const struct ct_method *m, double rate, double rtol);
 
 #endif

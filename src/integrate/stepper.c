@@ -13,11 +13,13 @@ enum ct_eval ct_stepper_rhs(const struct ct_problem *p, double t, const double *
     return e == CT_EVAL_OK && !ct_stepper_finite(dy, p->ny) ? CT_EVAL_RETRY : e;
 }
 
-// Four entries at a time, up to four times four side by side: their sums stay in registers,
-// whatever the number of stages. The last four may overlap those before, which are then found
-// twice. Fewer than four are summed side by side, each number of them by code of its own. The
-// newest stage has just been stored number by number and is read so (volatile): a wider read would
-// wait until these stores are done.
+// Linear combinations of stages by SIMD. Four entries are summed at a time, in up to four vectors
+// side by side, whose sums stay in registers for any number of stages. The last vector may overlap
+// the one before, so that some entries are computed twice. Fewer than four entries have scalar
+// code.
+//
+// The newest stage has just been stored number by number. A vector load would wait for these
+// stores, so it is read number by number (volatile). Definition: doubles in a register of 256 bits.
 enum { LANES = 4 };
 
 static inline void by_ones(double *restrict out, const double *y, double h, const double *a,
@@ -57,17 +59,17 @@ static void combine_few(double *restrict out, const double *y, double h, const d
 typedef double four
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-enum { MOST_FOURS = 4 };
+enum { MOST_FOURS = 4 }; // Limit: of registers; more entries take more passes
 
-// sum += a (k_0 ... k_3) of the newest stage
+// sum += a (k_0 ... k_3), of the newest stage
 __attribute__((always_inline)) static inline void add_newest(four *sum, double a,
                                                              const volatile double *k)
 {
     *sum += a * (four){k[0], k[1], k[2], k[3]};
 }
 
-// Entries from i on, in so many fours; inlined into callers, each with the registers that it may
-// use.
+// Entries from i on, in `fours` vectors. Inlined with a constant `fours`, so that sums are
+// registers.
 __attribute__((always_inline)) static inline void some_fours(double *out, const double *y,
                                                              double h, const double *a,
                                                              const double *k, int s, int n,
@@ -191,7 +193,7 @@ void ct_stepper_group(const struct ct_groups *g, int ny, const double *y, const 
     }
 }
 
-// Of the state or, where they are known, its group.
+// The scale of the error of state i: its own size or the largest of its group.
 static double size_of(const struct ct_groups *g, int i, const double *y, const double *y1)
 {
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : ct_larger(fabs(y[i]), fabs(y1[i]));
@@ -261,7 +263,8 @@ double ct_stepper_stiffness_estimate(const struct ct_problem *p, double h, const
                                      const double *dy1, const double *point,
                                      const double *dpoint)
 {
-    const double roundoffs = 16 * DBL_EPSILON; // less tells nothing
+    // Derived: two points that are closer differ mostly by their round-off.
+    const double roundoffs = 16 * DBL_EPSILON;
     double size = 0, way = 0, change = 0;
     for (int i = 0; i < (p->nu ? p->nq + p->nu : p->ny); i++) {
         const double d = y1[i] - point[i], f = dy1[i] - dpoint[i];

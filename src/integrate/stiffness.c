@@ -7,44 +7,52 @@
 #include <math.h>
 #include <string.h>
 
-static const long test_every = 100; // steps
-static const int first_rounds
-    = 6; // of the power method, before v has turned to the fastest motion
+// Steps between tests. Chosen: four evaluations a test against stiffness found late.
+static const long test_every = 100;
+// Iterations of the power method in the first test, before v is the fastest mode.
+// Chosen: evaluations against the error of the first rate.
+static const int first_rounds = 6;
+// Positive tests in a row before a trial. Chosen: trials in vain against stiffness found late.
 static const int suspicious_tests = 3;
-// Where the last step was as long as none follows the fastest motion with, its rate is looked at
-// again so many steps later, until it is known to last: what a hundred more steps would make
-// larger, unseen, is by 13 in each where they are seven times 1/fast.
+// Where the last step was too long for the fastest mode, its rate is estimated again so many steps
+// later, until it has stayed about the same. Chosen: at h = 7/fast an unstable step multiplies an
+// error by 13, so that instability must be seen within a few steps.
 static const long look_after = 5;
-// Explicit methods become unstable, or lose their accuracy to what is fast, where step * fast is 1
-// to 6; with half of that the step may be held up.
+// The least h fast that a test counts as held up. Chosen: explicit methods become unstable, or lose
+// their accuracy, for h fast between 1 and 6; this is half of the lower bound.
 static const double suspicious_step = 0.5;
-// With as much no method follows the fastest motion: what changes from step to step at its rate
-// then is no motion but errors at the limit of stability, and `slow` is not known.
+// From this h fast on no method resolves the fastest mode. The changes from step to step are then
+// errors at the limit of stability, and `slow` is not known.
+// Derived: a vibration needs two points in a period, a step of pi/omega.
 static const double unfollowed_step = 3;
-// Motions that go on at the rate of the fastest have to be followed, whatever the method.
+// The least fast/slow of a stiff problem: closer modes must be resolved by any method.
+// Chosen: trials in vain against stiffness not seen.
 static const double least_separation = 10;
-// Nor if they are vibrations that no output asks the rates of, (8.10): steps of explicit methods,
-// of some 1/fast, are worth a trial where so many of them are made while places change by
-// themselves.
+// The same against the rate of change of positions, for vibrations whose speeds no output depends
+// on (8.10). Chosen: as many explicit steps, of some 1/fast each, are worth a trial.
 static const double far_off = 1000;
-// Two applications of J to one motion stay in a plane, to this part of their length: else there are
-// several, whose decay is not known.
+// The part of J^2 x outside the plane of x and J x up to which x counts as a single mode. Otherwise
+// the decay rate is not known. Chosen: the error of the decay rate against modes without one.
 static const double one_motion = 0.1;
-// A motion that changes by no more in a step needs no such steps: (1e-3)^5 is round-off already.
-// Where the round-off of places alone changes forces by more than the tolerance, it is that which
-// holds them up, far from the limit of stability.
+// A motion with h slow below this does not limit the step. Then round-off of positions, which the
+// forces amplify, may limit it far from the limit of stability.
+// Derived: (1e-3)^5, the error of a method of order 5, is a few round-off errors.
 static const double idle_step = 1e-3;
-// Fewer steps to come are not worth a trial, nor the preparation of an implicit method.
+// Fewer steps to come are worth neither a trial nor the preparation of an implicit method.
+// Chosen: the work of a trial against that of the rest of the run.
 static const double steps_worth_it = 1000;
-// Until the next trial the number of steps doubles, and their work is this many times that of the
-// trial.
+// Until the next trial the number of steps doubles.
+// Chosen: trials in vain against stiffness found late.
 static const long put_off_by = 2;
+// The work of the explicit steps until the next trial, over that of the trial.
+// Chosen: trials in vain take less than a tenth of the work.
 static const double put_off_work = 10;
 
-// The first steps of a trial bring the step to its size, the others count.
+// Steps of a trial: the first ones find the step size and do not count, the others do.
+// Chosen: the work of a trial against the error of its result.
 static const int warming_steps = 6, counted_steps = 12;
-// Steps as long as the tolerance allows at first, of some 3 radians, leave a hundredth of a
-// vibration after so many.
+// Steps that do not count where vibrations must be damped first. Derived: Radau IIA has |R(3 i)| =
+// 0.947, so that 40 steps of h omega = 3 leave 0.012 of the energy of a vibration.
 static const int damping_steps = 40;
 
 // ---- suspicion ----------------------------------------------------------------------------------
@@ -60,7 +68,7 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
         = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter, &s->once};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
-    for (int i = first; i < last; i++) // a change of speeds in which none is singled out
+    for (int i = first; i < last; i++) // all speeds, with unequal parts
         s->v[i] = 1 + 0.5 * sin(i + 1.);
     return s;
 }
@@ -98,7 +106,7 @@ static double turn_to(struct ct_stiffness *s, const double *x)
     return size;
 }
 
-// a'b with places as fast as speeds.
+// Scalar product of a and b with positions scaled by `fast`.
 static double dot(const struct ct_stiffness *s, const double *a, const double *b)
 {
     double places = 0, speeds = 0;
@@ -126,8 +134,8 @@ static double find_decay(const struct ct_stiffness *s, const double *x, double g
     return half + sqrt(fmax(0, half * half + a * size));
 }
 
-// Two applications: one turns a vibration's places into speeds and back, its rate is the root of
-// both gains.
+// Estimates `fast` and `decay`. Two applications of J take positions of a vibration to speeds and
+// back; its rate is the square root of the product of both gains.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
     if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
@@ -170,7 +178,7 @@ static double find_slow(const struct ct_stiffness *s, double h)
     return size > 0 ? sqrt(change) / (h * size) : 0;
 }
 
-// Stiff forces answer a round-off of places by eps fast^2 times as much acceleration.
+// Does round-off eps |q| of positions, amplified to accelerations by fast^2, exceed the tolerance?
 static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
 {
     double place = 0;
@@ -179,8 +187,8 @@ static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
     return DBL_EPSILON * s->fast * s->fast * place > s->rtol * length(s->f, s->first, s->last);
 }
 
-// The rate at which places change by themselves, of those that have gone further than a unit by a
-// unit.
+// The rate of change of positions: the largest speed over the largest position, or over 1 if that
+// is less.
 static double find_pace(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, speed = 0;
@@ -191,7 +199,7 @@ static double find_pace(const struct ct_stiffness *s, const double *y)
     return speed / fmin(place, 1);
 }
 
-// The same from rest, by accelerations s->f.
+// The same for a motion that starts at rest, from accelerations s->f.
 static double find_departure(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, change = 0;
@@ -202,8 +210,8 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
     return sqrt(change / fmin(place, 1));
 }
 
-// Has the rate of the fastest motion been about the same for some tests? Beside singular
-// configurations it is large for a moment, and nothing turns.
+// Has the rate of the fastest mode been about the same for several tests? Near singular
+// configurations it is large for a moment only.
 static bool is_persistent(const struct ct_stiffness *s)
 {
     return s->alike >= suspicious_tests;
@@ -211,14 +219,14 @@ static bool is_persistent(const struct ct_stiffness *s)
 
 static void compare_rates(struct ct_stiffness *s, double before)
 {
-    const double about = 2;
+    const double about = 2; // Chosen: rates that count as the same against modes that change
     const bool is_same = s->fast < about * before && before < about * s->fast;
     s->alike = is_same ? s->alike + 1 : 1;
 }
 
-// What is left of the fastest motion since it was last excited: decay over the time since then, of
-// which each test measures one value for the steps before it. Without friction, too, it dies and
-// grows at times as masses and stiffnesses change along the motion, at the pace of that.  (8.33)
+// Integrates the decay rate of the fastest mode since the last event; each test gives its value for
+// the steps before it. Without damping amplitudes change, too, because mass and stiffness change
+// along the motion, at the rate `pace`, which is subtracted.  (8.33)
 static void note_decay(struct ct_stiffness *s, bool is_known, double pace, double start,
                        double t)
 {
@@ -255,7 +263,7 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     return reach > unfollowed_step || (is_held_up && is_apart);
 }
 
-// Between tests: does the rate of the fastest motion last?
+// Between tests: is the rate of the fastest mode still about the same?
 static void look_again(struct ct_stiffness *s, double t, const double *y)
 {
     const double before = s->fast;
@@ -315,13 +323,14 @@ static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x
     return true;
 }
 
-// y'' (ny, out) = J f + df/dt. What follows a driver is carried along with the fastest motion at
-// rest: its rate is a part of f, and J f alone takes that for a vibration.
+// y'' (ny, out) = J f + df/dt. The second term is needed where coordinates follow a prescribed
+// motion: its rate is a part of f, which J f alone would take for a vibration.
 static bool find_second_derivative(struct ct_stiffness *s, double t, const double *y,
                                    double *out)
 {
-    const double dt
-        = 1e-3 / s->fast; // far above round-off, far below a period; back, where tables are
+    // Backwards in time, where tables are defined. Derived: the difference errs by dt fast/2, that
+    // is 5e-4, and by a round-off of 1e3 eps.
+    const double dt = 1e-3 / s->fast;
     if (s->p->rhs(s->p->user, t - dt, y, out) != CT_EVAL_OK)
         return false;
     double *along = s->quarter;
@@ -363,8 +372,7 @@ bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, dou
     return is_far && end - t > steps_worth_it * s->step;
 }
 
-// What a step leaves of the term of order p + 1 in exp(z): b' A^p 1 - 1/(p + 1)!, b the last row of
-// A.
+// The error constant of the stability function: b' A^p 1 - 1/(p + 1)!, b the last row of A.
 static double error_constant(const struct ct_method *m)
 {
     const struct ct_tableau *b = m->tableau;
@@ -394,6 +402,7 @@ void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
                            const struct ct_cost *cost)
 {
     const double steps = spent / fmax(1, s->evaluations * cost->evaluation);
+    // Limit: a count that a long of 32 bits holds.
     s->next_trial = s->count + (long)fmin(1e9, put_off_work * steps);
     if (s->next_trial < put_off_by * s->count)
         s->next_trial = put_off_by * s->count;
@@ -415,7 +424,7 @@ double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cos
 
 double ct_cost_step(const struct ct_cost *cost)
 {
-    const double residuals = 12; // four corrections
+    const double residuals = 12; // Chosen: four Newton corrections of three stages are usual
     return residuals * cost->residual + cost->tangent + 2 * cost->factorization;
 }
 

@@ -1,14 +1,13 @@
-// Stiffness detection: is an explicit run held up by stability? The fastest motion the equations
-// are capable of against the motion there is.
-//
-//     fast    |J^2 v|^(1/2), J = df/dy, v the result of the last test: the power method, one round each test
+// Stiffness detection: is the step size of an explicit method limited by stability? The test
+// compares the fastest mode of the equations with the motion.
+//     fast    |J^2 v|^(1/2), J = df/dy, v from the last test: one iteration of the power method
 //     slow    |change of the accelerations| / (h |accelerations|) over one step
 //     stiff   step * fast is near the limit of stability though fast is much more than slow, or
-//             step * slow is next to nothing and round-off errors of places, times fast^2, are felt in the accelerations
-//
-// What always holds: a test costs four evaluations and is made every hundred steps; it changes
-// nothing in the problem. Suspicion is no proof: a trial finds out whether an implicit method is
-// faster.
+//             step * slow is very small, and round-off of positions times fast^2 exceeds the
+//             tolerance of the accelerations
+// What always holds: a test takes four evaluations, is made every hundred steps, and changes
+// nothing in the problem. Positive tests only suggest stiffness: a trial measures whether an
+// implicit method is faster.
 #ifndef CT_INTEGRATE_STIFFNESS_H
 #define CT_INTEGRATE_STIFFNESS_H
 
@@ -20,31 +19,31 @@ struct ct_stiffness {
     int first, last;                                      // of y: the accelerations in f
     double *v, *w, *f, *f0, *point, *y0, *quarter, *once; // (ny)
     double t0;                                            // time of y0
-    long count, next_trial; // steps; when suspicion is next listened to
+    long count, next_trial; // steps so far; the number of steps before the next trial
+    // results of the last test
+    bool is_far;      // the fastest mode is far above the motion, and its speeds are no outputs
+    bool is_followed; // steps resolve the fastest mode, whose rate has stayed about the same
+    bool is_dead;     // the fastest mode has decayed below the tolerance
+    int in_a_row;     // positive tests in a row
     bool
-        is_far; // vibrations of that rate need not be followed for their speeds, at the last test
-    bool
-        is_followed; // steps follow vibrations of that rate, which has lasted, at the last test
-    bool is_dead;    // less than the tolerance is left of that motion since it was excited
-    int in_a_row;    // tests that were suspicious
-    bool
-        is_unstable; // steps are held up by stability, at the last test, and that rate has lasted
-    int alike;       // tests with about the rate of the one before
-    long test_at;    // step after which the rate is looked at again between tests; 0: none
-    double window_t; // where the last test was
+        is_unstable; // steps are limited by stability, at a rate that has stayed about the same
+
+    int alike;       // tests in a row with about the same rate
+    long test_at;    // number of steps at which the rate is estimated between tests; 0: none
+    double window_t; // time of the last test, with its counts
     long window_steps;
-    const struct ct_integrate_stats *stats; // of the run, live
+    const struct ct_integrate_stats *stats; // of the run, current
     long window_evaluations;
-    double fast, slow;  // of the last test [1/s]
-    double decay;       // rate at which the fastest motion dies, at the last test [1/s]
-    double died;        // its integral since `excited`
-    double excited;     // time of the last event, given
+    double fast, slow;  // [1/s]
+    double decay;       // decay rate of the fastest mode [1/s]
+    double died;        // integral of the decay rate since `excited`
+    double excited;     // time of the last event, set by the caller
     double step;        // mean step since the test before [s]
-    double evaluations; // for a step, since then
-    double other_pace;  // time for as much work as an evaluation, by the other method  [s]
+    double evaluations; // mean number for a step since then
+    double other_pace;  // time gained by the implicit method for the work of an evaluation  [s]
 };
 
-/// What the parts of a run cost, in common units.
+/// The work of operations, in common units.
 struct ct_cost {
     double evaluation;    // of f
     double residual;      // of r, phi, v, with its share of the solution for corrections
@@ -52,10 +51,10 @@ struct ct_cost {
     double factorization; // of the matrix of an iteration
 };
 
-/// What a usual step of the implicit method costs, with derivatives and factors of its own.
+/// The work of a usual step of the implicit method with new derivatives and factors.
 double ct_cost_step(const struct ct_cost *cost);
 
-/// A few steps of an implicit method, to see how far it gets for its work.
+/// A trial: a few steps of an implicit method, to measure the time gained for its work.
 struct ct_trial {
     struct ct_cost cost;
     const struct ct_integrate_stats *stats; // of the trial, while it runs
@@ -69,45 +68,45 @@ struct ct_trial {
     } window;            // of the last steps
 };
 
-/// rtol: what is asked of outputs; first, last: the range of y whose rates are accelerations,
-/// behind coordinates.
+/// rtol: the tolerance of outputs; first, last: the range of speeds in y, after the coordinates.
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
                                          const struct ct_integrate_stats *stats, double rtol,
                                          int first, int last);
 
-/// The speed, first to last - 1, that moves most in the fastest motion at t, y; its rate is `fast`
-/// then. -1: cannot be told.
+/// The index of the largest speed in the fastest mode at t, y, whose rate is in `fast`. -1: not
+/// found.
 int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
 /// After each accepted step to t, y; end: of the run. True if a trial is worth its work now: tests
-/// were suspicious and there are many steps to come.
+/// were positive and many steps are to come.
 bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end);
-/// Before the first step from t, y of an explicit method: would it make many steps because of
-/// vibrations that are far from the motion, if it follows them to rtol? Their pace is that of
-/// ct_stiffness_pace then.
+/// Before the first step from t, y of an explicit method: would it take many steps to resolve, to
+/// rtol, vibrations that are much faster than the motion? ct_stiffness_pace then refers to such
+/// steps.
 bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
                           const struct ct_method *method, double rtol);
-/// Was the step that ct_stiffness_detect saw last one with a test?
+/// Was there a test in the last call of ct_stiffness_detect?
 bool ct_stiffness_has_tested(const struct ct_stiffness *s);
-/// After a test, where such vibrations are followed: what is vibration of y (ny), and what it is a
-/// quarter of a period later. From y'', by J^(p-1)/fast^(p+1), p the order of the method: what is
-/// slower counts by as much less as it errs less. p + 1 evaluations.
+/// After a test, where steps resolve the fastest mode: the vibration in y (ny), and the same a
+/// quarter of a period later. They are J^(p-1) y''/fast^(p+1), with p the order of the method, so
+/// that slower modes count in proportion to their error. It takes p + 1 evaluations. False if not
+/// found.
 bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y, int order,
                                  const double **e, const double **later);
-/// Are steps, at the last test, held by the stability of the method alone, with a rate that lasts?
+/// At the last test, were steps limited by stability, at a rate that has stayed about the same?
 bool ct_stiffness_is_unstable(const struct ct_stiffness *s);
-/// The longest step that does not make errors in the fastest motion larger; INFINITY where its rate
-/// does not last.
+/// The longest step that does not amplify errors in the fastest mode; INFINITY where its rate
+/// changes between tests.
 double ct_stiffness_stable_step(const struct ct_stiffness *s, const struct ct_method *m);
-/// The longest step with which an explicit method follows a vibration of `fast` for a time so that
-/// its phase and size err by rtol at the end, when the errors of all steps have added up.  (8.14)
+/// The longest step with which an explicit method integrates a vibration of frequency `fast` over
+/// `time` with an error rtol of phase and amplitude at the end.  (8.14)
 double ct_stiffness_accurate_step(const struct ct_method *method, double fast, double time,
                                   double rtol);
-/// After a trial that was lost, at time t for the work `spent`: not again before the number of
-/// steps has doubled, nor before steps have cost many times as much.
+/// After a trial in which the implicit method was slower, at time t, with the work `spent`: no
+/// trial before the number of steps has doubled and their work is many times that of the trial.
 void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
                            const struct ct_cost *cost);
-/// When the implicit method has been left, which gained as much time for its work: a trial as soon
-/// as steps gain less.
+/// After the implicit method, which gained `pace` of time for its work, has been left: a trial is
+/// due as soon as explicit steps gain less.
 void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost);
 
 /// Time gained for the work of an explicit run between its last two tests.
@@ -119,12 +118,11 @@ bool ct_trial_step(struct ct_trial *r, double t);
 double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
 double ct_trial_pace(const struct ct_trial *r);
-/// After each step of a run that went over to the implicit method, begun as a trial that does not
-/// end: true if all of it since the last event has gained less than `pace`. A hard stretch, as where
-/// an iteration fails for a while, does not outweigh what was gained before, and no more is spent
-/// than the other method would have. An event may excite vibrations: what was gained before tells
-/// nothing then, and as long as they die out, so that the last hundred steps gain more than those
-/// since the event on average, nothing is lost.
+/// Called after each step with the implicit method; the run continues the trial. True if the time
+/// gained for its work since the last event has fallen below `pace`, that of the explicit method,
+/// and the last hundred steps gain no more than the average since the event. Events reset the
+/// count, because they may excite vibrations. While these decay the last steps gain more than the
+/// average, and the implicit method is kept.
 bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace);
 
 #endif

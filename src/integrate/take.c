@@ -7,27 +7,27 @@
 
 // Definition: Chebyshev interpolation of this degree.
 enum { DEGREE = 8, NODES = DEGREE + 1 };
-// Nodes asked for first, those of degree 4.
+// Nodes that are evaluated first, those of degree 4.
 // Default: evaluations against what is missed between nodes. Test: take.
 enum { COARSE = 5 };
 // Halvings of a step. Derived: as many as lead from 1 to the unit round-off.
 enum { LEVELS = DBL_MANT_DIG };
-// A kink takes one interval for each halving; a function that is noise would take any number.
+// Intervals in a step. A kink takes one for each halving; a noisy function would take any number.
 // Default: evaluations against the accuracy at several kinks in a step. Test: take.
 enum { MOST_INTERVALS = 400 };
-// Grid on which zeros and extremes of an interpolant are sought first: several points between any
-// two zeros of its derivative that are farther apart than those of T8 at the ends.
+// Points cos(pi i/32) at which zeros and extrema of an interpolant are first looked for.
+// Derived: four points between neighbouring extrema of the Chebyshev polynomial T8.
 enum { GRID = 32 };
 
-// The error of interpolants, as part of what is wanted of outputs.
+// The error of interpolants, as part of the tolerance of outputs.
 // Default: evaluations against accuracy. Test: take.
 static const double share = 0.1;
 
-// Of the largest value, in an interpolant: sums of nine terms, of functions that have some
-// themselves.
+// Round-off of an interpolant, as part of the largest value.
+// Derived: coefficients and values are sums of nine terms each, 18 eps; functions may err as much.
 static const double roundoff = 64 * DBL_EPSILON;
 
-// The order in which nodes are asked for: those of degree 4 first.
+// The order in which nodes are evaluated: those of degree 4 first.
 static const int order[NODES] = {0, 2, 4, 6, 8, 1, 3, 5, 7};
 
 // cos(pi k / 8)
@@ -53,12 +53,12 @@ struct ct_take_scan {
     struct state *state;
     struct interval {
         double a, b;
-        bool *is_open; // (n) what is not taken from it yet
+        bool *is_open; // (n) functions whose result does not include it yet
     } interval[LEVELS];
-    int depth;   // intervals that wait, the last one is looked at; 0: the step is done
-    int asked;   // nodes given of it
-    int nlooked; // intervals of the step
-    double *f;   // (NODES x n)
+    int depth;             // intervals that wait, the last one is next; 0: the step is done
+    int asked;             // nodes given of it
+    int nlooked;           // intervals of the step
+    double *f;             // (NODES x n)
     double grid[GRID + 1]; // from -1 to 1, denser at the ends
 };
 
@@ -118,7 +118,7 @@ bool ct_take_scan_wants(const struct ct_take_scan *s, double *t)
     return true;
 }
 
-// ---- interpolants -------------------------------------------------------------------------------------
+// ---- interpolants -------------------------------------------------------------------------------
 
 // c (NODES, out): coefficients of the Chebyshev polynomials that have the values f (NODES) in the
 // nodes.
@@ -155,15 +155,15 @@ static double integral(const double *c)
     return sum;
 }
 
-// What the interpolant errs by: coefficients of smooth functions fall, so those left out are less
-// than the last.
+// Estimated error of the interpolant: coefficients of smooth functions decrease, so those left out
+// are smaller than the last two.
 static double error_of(const double *c)
 {
     return fabs(c[DEGREE - 1]) + fabs(c[DEGREE]);
 }
 
-// The largest value of sign * p, by the golden section between neighbours of the largest on the
-// grid where that may come near to `record`.
+// The largest value of sign * p, by golden section search about the largest value on the grid, if
+// it may reach `record`.
 static double largest(const struct ct_take_scan *s, const double *c, double sign, double record)
 {
     const double golden = 0.61803398874989484820; // Definition: (sqrt(5) - 1)/2
@@ -191,7 +191,7 @@ static double largest(const struct ct_take_scan *s, const double *c, double sign
     return most;
 }
 
-// Where p, negative at a, has risen to zero, b being where it has.
+// The zero of p between a, where it is negative, and b, where it is not, by bisection.
 static double zero_between(const double *c, double a, double b)
 {
     for (;;) {
@@ -202,7 +202,7 @@ static double zero_between(const double *c, double a, double b)
     }
 }
 
-// ---- what is taken ------------------------------------------------------------------------------------
+// ---- what is taken ------------------------------------------------------------------------------
 
 static void take_extreme(const struct ct_take_scan *s, struct state *q, const double *c,
                          double sign)
@@ -223,12 +223,12 @@ static void take_zero(const struct ct_take_scan *s, struct state *q, const struc
             q->is_over = true;
             return;
         }
-        if (p < -unseen || p >= 0) // of a start on zero round-off tells nothing
+        if (p < -unseen || p >= 0) // at a start on zero the sign of round-off does not count
             q->is_below = p < 0;
     }
 }
 
-// All that function k has in an interval, as its interpolant c (NODES) has it.
+// Adds the interval to the result of function k, from its interpolant c (NODES).
 static void take(struct ct_take_scan *s, size_t k, const struct interval *v, const double *c)
 {
     struct state *q = &s->state[k];
@@ -262,8 +262,8 @@ static void bounds(const double *f, int step, double *least, double *most)
     }
 }
 
-// Is there nothing in the interval, as nodes tell? A function that steps resolve does not leave
-// what it has in them by more than they differ.
+// Can the interval not change the result of function k? A function that is resolved leaves the
+// range of its values at the nodes by no more than the length of that range.
 static bool is_idle(const struct ct_take_scan *s, size_t k, const double *f, int step)
 {
     const struct state *q = &s->state[k];
@@ -284,8 +284,7 @@ static bool is_idle(const struct ct_take_scan *s, size_t k, const double *f, int
     }
 }
 
-// Is the interpolant as good as is wanted? Errors of integrals count by the part of the step that
-// the interval is.
+// Is the interpolant accurate enough? Errors of integrals count in proportion to the interval.
 static bool is_resolved(const struct ct_take_scan *s, size_t k, const struct interval *v,
                         const double *f, const double *c)
 {
@@ -298,7 +297,7 @@ static bool is_resolved(const struct ct_take_scan *s, size_t k, const struct int
         return error * part <= allowed;
     case CT_TAKE_RMS:
         return error * part <= allowed * size;
-    case CT_TAKE_TIME: // where it stays on one side it may err
+    case CT_TAKE_TIME: // any error will do where the sign is certain
         bounds(f, 1, &least, &most);
         return error <= allowed || least - error > 0 || most + error < 0;
     default:
@@ -306,7 +305,7 @@ static bool is_resolved(const struct ct_take_scan *s, size_t k, const struct int
     }
 }
 
-// f (NODES, out): what is interpolated of function k.
+// f (NODES, out): the values of function k to interpolate, squared for rms.
 static const double *values_of(const struct ct_take_scan *s, size_t k, double *f)
 {
     for (int i = 0; i < NODES; i++) {
@@ -316,7 +315,7 @@ static const double *values_of(const struct ct_take_scan *s, size_t k, double *f
     return f;
 }
 
-// After the first nodes: what has nothing in the interval.
+// After the first nodes: drops functions whose result cannot change. True if any are left.
 static bool look_coarsely(struct ct_take_scan *s, struct interval *v)
 {
     bool any = false;
@@ -329,8 +328,8 @@ static bool look_coarsely(struct ct_take_scan *s, struct interval *v)
     return any;
 }
 
-// Half of the interval waits, the other one is next. False: it is as short as time can tell, or
-// enough have been looked at.
+// Halves the interval; the second half waits. False if it is as short as the round-off of time, or
+// at the limit of intervals.
 static bool halve(struct ct_take_scan *s, struct interval *v)
 {
     const double middle = v->a + (v->b - v->a) / 2;

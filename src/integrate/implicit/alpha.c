@@ -1,39 +1,41 @@
-// See alpha.h. One step is a simplified Newton iteration on the motion d of the places; speeds and accelerations follow
-// it linearly. Sources: Bruls, Cardona and Arnold (2012), key bruls2012; the error estimate and the rule for
-// step changes: formulation 8.2.
+// One step of the generalised-alpha family; see alpha.h. It is a simplified Newton iteration for
+// the increment d of positions, on which speeds and accelerations depend linearly.
 //
-// J' of the correction J' eta is that of the iteration matrix: eta vanishes with the error of a step, so its
-// direction matters to no order.
+// Sources: Bruls, Cardona and Arnold (2012), key bruls2012; error estimate and change of the step
+// size: theory 8.2. In the term J' eta the matrix J is that of the last derivatives. This does not
+// change the order, as eta is as small as the error of the step.
 #include "integrate/implicit/alpha.h"
 #include "integrate/implicit/newton_iteration.h"
 
 #include <math.h>
 #include <string.h>
 
-// What passes from step to step.
+// Data at the end of a step, for the next one.
 struct memory {
     double h;                // of the step that ends here
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
-    double *jerk;            // u'' amid that step  (nu)
+    double *jerk;            // u'' in the middle of that step  (nu)
     double *slope,
-        *bend; // divided differences of u': over that step; with the one before it  (nu)
+        *bend;                    // first and second divided differences of u'  (nu)
     double *lam_slope, *lam_bend; // the same of lam  (rows)
-    double *a_noise, *jerk_noise; // of a and `jerk`, where there are rows  (nu)
-    double *rate;                 // at that step's start, of quadratures alone  (ny)
+    double *a_noise, *jerk_noise; // round-off errors of a and `jerk`, with constraints  (nu)
+    double *rate;                 // rates of quadratures at the start of that step  (ny)
 };
 
-// What d(place) of a correction is worth in speeds, a, and accelerations, for steps of size h behind one of size `before`.
+// Coefficients of a step of size h after one of size `before`: derivatives of speeds, of a and of
+// accelerations by positions in a correction, and (8.1).
 struct factors {
     double h, before, by_speed, by_u_dot;
     double a_by_speed, u_dot_by_speed; // of a correction of speeds
     double pace, across, ratio;        // 1/h, 1/(h + before), h/before
     double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
     double a_then, a_now,
-        a_before;                // (8.1): a of u' at the end and at the start, and less of a0
-    double u_a0, u_a, d_a0, d_a; // speeds and places of a0 and a
+        // (8.1): a = a_then u' at the end + a_now u' at the start - a_before a0
+        a_before;
+    double u_a0, u_a, d_a0, d_a; // changes of speeds and positions by a0 and a
 };
 
-// A correction: of places, of speeds, of multipliers.
+// A correction of positions, of speeds and of multipliers.
 struct correction {
     const double *d, *u, *lam;
 };
@@ -45,16 +47,17 @@ struct state {
     struct factors f;
     double share;                          // 1/(1 - alpha_m)
     double by_places, by_speeds;           // (8.3) over h^2, (8.8) over h^3 u'''
-    bool is_fresh, has_jerk;               // nothing is known of the time before; but u'' is
+    bool is_fresh, has_jerk;               // there is no step before; u'' at the start is known
     struct memory memory[2], *start, *end; // of the step
     double *a0, *jerk;                     // (nu): a at the start, for this step's size; u''
-    double *d, *u, *q;                     // the step's motion (nu), its end (nu, nq)
-    double *noise;                         // what corrections leave of speeds  (nu)
-    double *dd, *du; // corrections (nu), one behind the other, zeros behind them (ny)
+    // increment of positions (nu), speeds (nu) and positions (nq) at the end
+    double *d, *u, *q;
+    double *noise;   // error of speeds that the Newton iteration leaves  (nu)
+    double *dd, *du; // corrections (nu each), stored in turn in (ny + nu), followed by zeros
     double *eta, *dlam;
-    double *r, *phi, *v; // behind each other
+    double *r, *phi, *v; // stored in turn
     struct correction last;
-    double *rate1, *out;      // for interpolation: d' at the end; a motion (nu)
+    double *rate1, *out;      // for dense output: d' at the end; an increment (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
 
@@ -167,9 +170,10 @@ static void find_factors(struct state *s, double h)
                             .d_a = h * h * c->beta};
 }
 
-// ---- the start of a step --------------------------------------------------------------------------
+// ---- the start of a step ------------------------------------------------------------------------
 
-// u'' by a difference along the motion; a hundredth of a step is far from round-off and from the step's error.
+// u'' at the start, by a difference along the motion over a hundredth of the step, where neither
+// round-off nor truncation error matters.
 static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, double t, double h,
                               const double *y, const double *dy, double *y1, double *dy1,
                               struct ct_integrate_stats *stats)
@@ -185,7 +189,7 @@ static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, doubl
     return e;
 }
 
-// Of rows that were not followed before.
+// Multipliers of newly selected rows.
 static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
 {
     for (int i = 0; i < s->it->m; i++)
@@ -193,7 +197,7 @@ static enum ct_eval start_multipliers(struct state *s, double t, const double *y
     return s->dae->start(s->dae->user, t, y, s->du, s->start->lam);
 }
 
-// a0 at the size of this step, and multipliers of the rows as they now are.
+// Sets a0 for the size of this step, and the multipliers of the present rows.
 static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t, double h,
                           const double *y, const double *dy,
                           const struct ct_tolerance *tolerance, double *y1, double *dy1,
@@ -226,10 +230,11 @@ static enum ct_eval begin(struct state *s, const struct ct_problem *p, double t,
     return CT_EVAL_OK;
 }
 
-// ---- the iteration ----------------------------------------------------------------------------------
+// ---- the iteration ------------------------------------------------------------------------------
 
-// Where the step would end with accelerations, and multipliers, that go on as the polynomial through their last values, one to three. Those of
-// the index-3 form have too much round-off in them for that.
+// Starting values of the iteration: accelerations and multipliers by extrapolation of their last
+// one to three values. Those of the index-3 form have too much round-off to be extrapolated and are
+// kept.
 static inline void predict_for(struct state *s, double h, const double *y, const int nu)
 {
     const struct ct_dae *dae = s->dae;
@@ -252,7 +257,8 @@ static inline void predict_for(struct state *s, double h, const double *y, const
     ct_newton_iteration_move(dae, y, s->d, s->q);
 }
 
-// One freedom, and planar loops of three coordinates, have code of their own: loops that may be of any length take longer to begin than to do its work.
+// Constant sizes let the compiler unroll loops for one degree of freedom and for planar loops of
+// three coordinates.
 static void predict(struct state *s, double h, const double *y)
 {
     if (s->dae->nu == 1)
@@ -272,11 +278,11 @@ static inline void solve(struct state *s, const int nu, const int m)
         s->du[k] = s->f.by_speed * s->dd[k];
     if (m)
         ct_newton_iteration_add_constraint_force(it, s->du, s->du, -s->f.by_speed, s->eta, nu,
-                                                 m); // eta moves places alone
+                                                 m); // eta changes positions alone
     s->last = (struct correction){s->dd, s->du, s->dlam};
 }
 
-// Adds it. Its size.
+// Adds the correction and returns its norm.
 static inline double add_correction(struct state *s, const int nu, const int m)
 {
     const struct factors f = s->f;
@@ -290,7 +296,7 @@ static inline double add_correction(struct state *s, const int nu, const int m)
     }
     for (int i = 0; i < m; i++)
         s->end->lam[i] += c.lam[i];
-    // in the index-3 form speeds have round-off over h in them: places alone decide
+    // index-3 form: speeds have round-off over h, so convergence is tested for positions
     return s->c->is_stabilised ? ct_newton_iteration_norm(s->it, c.d, c.u, nu, 1)
                                : ct_newton_iteration_norm_of_places(s->it, c.d, c.u, nu);
 }
@@ -301,8 +307,8 @@ static inline double solve_and_add(struct state *s, const int nu, const int m)
     return add_correction(s, nu, m);
 }
 
-// *size (out): that of the correction. Few freedoms, and planar loops of three coordinates, have code of their own: its
-// loops are known to be so long.
+// *size (out): the norm of the correction. Constant sizes let the compiler unroll loops for few
+// degrees of freedom.
 static enum ct_eval find_correction(struct state *s, double t1, const double *y, double *size)
 {
     const struct ct_dae *dae = s->dae;
@@ -331,7 +337,7 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     return e;
 }
 
-// What the last correction leaves of speeds: where it has come to round-off, as much as it was.
+// The error of speeds after the last correction; at round-off, the correction itself.
 static void note_roundoff(struct state *s)
 {
     const double left = ct_smaller(s->it->tail, 1);
@@ -365,10 +371,12 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
     return CT_EVAL_RETRY;
 }
 
-// ---- a step -----------------------------------------------------------------------------------------
+// ---- a step -------------------------------------------------------------------------------------
 
-// Beside singular configurations speeds that meet the constraints have round-off over the square of the distance, u' that over h
-// and (8.8) again as much as speeds themselves, however short the step is, more after a shorter one: it is no error of the step.
+// Subtracts round-off from the error estimate of speeds. Near singular configurations speeds have a
+// round-off error that grows with one over the square of the distance. Divided by h it enters u',
+// and (8.8) multiplies it by h again. So the estimate contains it however short the step is, and
+// shorter steps would not reduce it.
 static inline void subtract_roundoff(struct state *s, double h, const int nu)
 {
     const double back = s->f.back, pace = s->f.pace_of_a;
@@ -384,8 +392,9 @@ static inline void subtract_roundoff(struct state *s, double h, const int nu)
     }
 }
 
-// s->du of the model's states, for which the methods are of order 2 as for speeds, (8.8): their rates have no round-off of
-// constraints in them. Behind no step, where nothing is known of the third derivative, that of a step of order 1.
+// The error estimate s->du of state variables of the model, of order 2 as for speeds (8.8). They
+// have no round-off of constraints. In a first step the third derivative is not known, so an
+// estimate of order 1 serves.
 static void find_state_errors(struct state *s, double h)
 {
     const double speeds = h * h * h * 2 * s->f.across * s->by_speeds;
@@ -394,7 +403,8 @@ static void find_state_errors(struct state *s, double h)
                                : speeds * (s->end->jerk[k] - s->start->jerk[k]);
 }
 
-// s->dd and s->du become the errors of positions and speeds; the norm of the first, and of the model's states.
+// s->dd and s->du (out) = error estimates of positions and speeds. Returns the norm of errors of
+// positions and of state variables of the model.
 static inline double find_errors(struct state *s, double h, const int nu)
 {
     const double places = h * h * s->by_places, pace = s->f.pace;
@@ -415,9 +425,9 @@ static inline double find_errors(struct state *s, double h, const int nu)
     return ct_newton_iteration_norm_of_places(s->it, s->dd, s->du, nu);
 }
 
-// The leading errors: of places (8.3), and of speeds (8.8) with u''' from u'' amid this step and the one before, zero where
-// there is none and in the index-3 form, whose accelerations have round-off over h^2 in them. Those of speeds count in
-// outputs alone.
+// The error estimate: leading error terms of positions (8.3) and of speeds (8.8). u''' is a
+// difference of u'' in this step and the one before. The error of speeds is zero in a first step,
+// and in the index-3 form, whose accelerations have round-off over h^2. It counts in outputs only.
 static double estimate(struct state *s, const struct ct_problem *p,
                        const struct ct_tolerance *tolerance, double t1, double h,
                        const double *y1)
@@ -430,8 +440,8 @@ static double estimate(struct state *s, const struct ct_problem *p,
     return ct_newton_iteration_error(s->it, p, tolerance, t1, y1, s->dd, s->du, states);
 }
 
-// The error of the trapezoidal rule for quadratures, h^2/12 times the change of the slope of their rate; the slopes are
-// those of this step and of the one before, zero where there is none.
+// The error of the trapezoidal rule for quadratures: h^2/12 times the change of the slope of their
+// rate. Slopes are those of this step and of the one before, zero in a first step.
 static double estimate_quadratures(struct state *s, const struct ct_problem *p,
                                    const struct ct_tolerance *tolerance, double h,
                                    const double *y, const double *dy, const double *y1,
@@ -446,7 +456,7 @@ static double estimate_quadratures(struct state *s, const struct ct_problem *p,
     return ct_stepper_largest(p, tolerance, first, y, y1, s->error);
 }
 
-// y1 and dy1 from the iteration's end; quadratures by the trapezoidal rule.
+// y1 and dy1 from the converged iteration; quadratures by the trapezoidal rule.
 static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t1, double h,
                            const double *y, const double *dy, double *y1, double *dy1,
                            struct ct_integrate_stats *stats)
@@ -456,7 +466,7 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
     ct_stepper_copy(y1 + nq, s->u, nu);
     ct_stepper_copy(y1 + nq + nu, y + nq + nu, p->ny - nq - nu);
     enum ct_eval e = CT_EVAL_OK;
-    if (s->c->is_stabilised && p->project) // takes off what the iteration left
+    if (s->c->is_stabilised && p->project) // removes the error that the iteration leaves
         e = p->project(p->user, t1, y1);
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t1, y1, dy1, stats);
@@ -467,10 +477,10 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
     return e;
 }
 
-// For the prediction of the next step.
+// Divided differences of accelerations and multipliers, for the extrapolation in the next step.
 static inline void note_accelerations(struct state *s, double h, const int nu)
 {
-    const double pace = s->f.pace, across = s->f.across; // zero behind no step
+    const double pace = s->f.pace, across = s->f.across; // zero in a first step
     for (int k = 0; k < nu; k++) {
         const double slope = pace * (s->end->u_dot[k] - s->start->u_dot[k]);
         s->end->slope[k] = slope;
@@ -514,7 +524,8 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
     return CT_EVAL_OK;
 }
 
-// Cubic Hermite: places in the chart at the start of the step, speeds and quadratures.
+// Dense output by cubic Hermite interpolation of the increment of positions, of speeds and of
+// quadratures.
 void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const double *y,
                     const double *y1, void *work, double *out)
 {

@@ -1,11 +1,12 @@
-// The generalised-alpha family on Lie groups: what its members share.  (8.1), (8.4)
+// The generalised-alpha family of methods on Lie groups: the step that all members share.  (8.1),
+// (8.4)
 //
 //     r(t1, q1, u1, u1', lam1) = 0,   (1 - alpha_m) a1 + alpha_m a0 = (1 - alpha_f) u1' + alpha_f u0'
 //     q1 = q0 (+) h [ u0 + h (1/2 - beta) a0 + h beta a1 ] + J' eta
 //     u1 = u0 + h (1 - gamma) a0 + h gamma a1
 //
-// with Phi(q1) = 0 and, stabilised, v1 = 0; without stabilisation eta = 0. a is not the
-// acceleration but close to that at t + (alpha_m - alpha_f) h.
+// with Phi(q1) = 0 and, stabilised, v1 = 0; without stabilisation eta = 0. The variable a
+// approximates the acceleration at t + (alpha_m - alpha_f) h.
 #ifndef CT_INTEGRATE_IMPLICIT_ALPHA_H
 #define CT_INTEGRATE_IMPLICIT_ALPHA_H
 
@@ -15,8 +16,8 @@
 struct ct_alpha {
     double alpha_m, alpha_f, beta, gamma;
     bool is_stabilised;
-    /// Steps start from the acceleration that the equations of motion give, where a is just that
-    /// (alpha_m = alpha_f = 0).
+    /// Each step starts with a from the equations of motion; for alpha_m = alpha_f = 0, where a is
+    /// the acceleration.
     bool starts_anew;
 };
 
@@ -31,7 +32,7 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
 void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const double *y,
                     const double *y1, void *work, double *out);
 
-// Members of the family differ in the rest. Growth and the steady range are those of (8.3).
+// The entries of ct_method that all members share. Step size control as in (8.3).
 #define CT_ALPHA_METHOD                                                                        \
     .order = 2, .error_order = 2, .is_implicit = true, .most_growth = 2, .steady = {0.8, 1.3}, \
     .create = ct_alpha_create, .restart = ct_alpha_restart, .accept = ct_alpha_accept,         \

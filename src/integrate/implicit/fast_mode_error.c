@@ -1,16 +1,22 @@
-// Errors of fast modes and numerical dissipation: what errors of implicit methods mean where they are vibrations much faster than the motion: which part of a speed is slow, and what
-// energy a step of Radau takes from the rest, and what outputs miss of it then. See newton_iteration.h; (8.10), (8.13), (8.21).
+// Error of fast modes and numerical dissipation, for implicit methods; see newton_iteration.h and
+// theory (8.10), (8.13), (8.21).
+//
+// The error estimate of a step may consist of vibrations that are much faster than the motion. A
+// low-pass filter built from mass, damping and stiffness matrices separates the slow part from the
+// fast part. From the fast part follow the energy that a Radau step dissipates and the change of
+// the outputs without these vibrations.
 #include "integrate/implicit/newton_iteration.h"
 #include "numeric/dense.h"
 
 #include <math.h>
 #include <string.h>
 
-// Vibrations so many times as fast as the motion are not part of it.
+// The cutoff frequency of the filter, over the rate of the motion (8.10).
+// Chosen: vibrations that are resolved without need against a slow motion that is filtered out.
 static const double much_faster = 10;
 
-// How fast the motion is for its way: the largest |u|/|q|, without coordinates that are small as the tolerance sees them, and
-// of those that have gone further than a unit as after that.  [1/s]
+// The rate of the motion: the largest |u|/min(|q|, 1), where coordinates below the absolute
+// tolerance do not count.  [1/s]
 static double pace_of(const struct ct_newton_iteration *it, double small, const double *y)
 {
     const double *u = y + it->dae->nq;
@@ -25,7 +31,7 @@ static double pace_of(const struct ct_newton_iteration *it, double small, const 
     return pace;
 }
 
-// b (n) = the slow part of u, in its first nu entries.
+// b (n): its first nu entries become the low-pass filtered u.
 static void pass_slow(struct ct_newton_iteration *it, const double *u)
 {
     const int nu = it->nu, n = it->n;
@@ -38,7 +44,7 @@ static void pass_slow(struct ct_newton_iteration *it, const double *u)
         ct_lu_solve(b, it->H, it->pivot_slow, n, n, 1, n, false);
 }
 
-// How much of speed k is slow.
+// The part of a unit change of speed k that passes the low-pass filter.
 static double remains(struct ct_newton_iteration *it, int k)
 {
     memset(it->off, 0, (size_t)it->nu * sizeof *it->off);
@@ -65,14 +71,15 @@ static void find_masses(struct ct_newton_iteration *it)
 
 static void find_slow_speeds(struct ct_newton_iteration *it)
 {
-    const double half = 0.5;
+    const double half = 0.5; // Definition: the cutoff, where c^2/(c^2 + omega^2) is one half
     if (it->sparse)
         ct_newton_slow_parts(it->sparse, it->off);
     for (int k = 0; k < it->nu; k++)
         it->is_slow[k] = (it->sparse ? it->off[k] : remains(it, k)) > half;
 }
 
-// Factors that tell what is slower than c; those of up to twice or half of it will do.
+// Factors of the low-pass filter with cutoff frequency c. Those for up to twice or half of c are
+// used again.
 static bool factor_slow(struct ct_newton_iteration *it, double c)
 {
     if (it->slow > c / 2 && it->slow < 2 * c) {
@@ -87,8 +94,8 @@ static bool factor_slow(struct ct_newton_iteration *it, double c)
     return it->slow > 0;
 }
 
-// What the slow motion does not feel of speeds: as much as is ample of the largest slow one, in a mass as light as the
-// lightest slow one.
+// The square root of a kinetic energy that does not affect the slow motion: that of the smallest
+// slow mass at the largest `ample` of slow speeds.
 static double negligible_energy(const struct ct_newton_iteration *it, const double *ample)
 {
     double light = INFINITY, most = 0;
@@ -115,7 +122,7 @@ static double mass_form(const struct ct_newton_iteration *it, const double *x)
     return it->sparse ? ct_newton_mass_form(it->sparse, x) : form_of(it->M, x, it->nu);
 }
 
-// x' M x, and with K, of what is fast of x.
+// x' M x and x' K x of the fast part of x.
 static void measure_fast(struct ct_newton_iteration *it, const double *x, double *mass,
                          double *stiffness)
 {
@@ -207,7 +214,7 @@ double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struc
     return ct_newton_iteration_norm(it, d, speeds, nu, 1);
 }
 
-// out (nu) = x less what is slow of it; they may be one.
+// out (nu) = the fast part of x. out may be x.
 static void keep_fast(struct ct_newton_iteration *it, double *out, const double *x)
 {
     pass_slow(it, x);
@@ -215,7 +222,7 @@ static void keep_fast(struct ct_newton_iteration *it, double *out, const double 
         out[k] = x[k] - it->b[k];
 }
 
-// x (nu) <- times (1 - S) S^2 x, S what pass_slow leaves.
+// Band-pass filter: x (nu) <- times (1 - S) S^2 x, S the low-pass filter `pass_slow`.
 static void pass_band(struct ct_newton_iteration *it, double *x, double times)
 {
     for (int i = 0; i < 2; i++) {
@@ -227,7 +234,8 @@ static void pass_band(struct ct_newton_iteration *it, double *x, double times)
         x[k] *= times;
 }
 
-// A part of a way small enough for outputs to change in proportion, and far above their round-off.
+// The part of a predicted displacement at which outputs are evaluated, for a linear extrapolation.
+// Derived: its truncation error is 2^-14, its round-off 2^-38 of the extrapolated change.
 static const double sample = 0x1p-14;
 
 void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
@@ -259,7 +267,9 @@ void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
                          1 / sample);
 }
 
-// What changes of positions and speeds (nu) are of states that are outputs, over the largest of them so far or expected.
+// The largest relative change of states that are outputs, for changes `places` of positions and
+// `speeds` (nu). It is relative to the largest value of each so far, or the one predicted if that
+// is larger.
 static double output_change_of_states(const struct ct_newton_iteration *it,
                                       const struct ct_problem *p, const struct ct_band *b,
                                       const double *places, const double *speeds)
@@ -277,7 +287,7 @@ static double output_change_of_states(const struct ct_newton_iteration *it,
     return most;
 }
 
-// The vibration places, speeds (nu) a quarter of a period later.
+// A vibration with positions and speeds (nu), advanced by a quarter of its period.
 static void turn_quarter(double *places, double *speeds, double rate, int nu)
 {
     for (int k = 0; k < nu; k++) {

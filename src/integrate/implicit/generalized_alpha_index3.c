@@ -1,8 +1,8 @@
-// The generalised-alpha method with the constraints on places alone.  (8.1)
+// The generalised-alpha method with the constraints on positions alone (index 3).  (8.1)
 //
-// Damping at infinity rho = 4/5. Order 2 in q, u and lam; v = J u + Phi_t is of order h^2, not
-// zero, and is not projected: the error of u across the constraints is part of the method, taking
-// it off would cost an order of lam. Source: Arnold and Bruls (2007), key arnold2007.
+// Damping at infinity rho = 4/5. Order 2 in q, u and lam; v = J u + Phi_t is not zero but of order
+// h^2. It is not projected, as this would reduce the order of lam by one. Source: Arnold and Bruls
+// (2007), key arnold2007.
 #include "integrate/implicit/alpha.h"
 
 static const struct ct_alpha coefficients = {

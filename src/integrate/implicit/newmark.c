@@ -1,6 +1,5 @@
-// Newmark's method of average acceleration: the trapezoidal rule, without numerical damping.
-//
-// Nothing would damp errors of the multipliers, so each step starts from the acceleration of the
+// Newmark's method of average acceleration: the trapezoidal rule, without numerical damping. The
+// method does not damp errors of multipliers, so each step starts with the acceleration from the
 // equations of motion. Source: Newmark (1959), key newmark1959.
 #include "integrate/implicit/alpha.h"
 

@@ -1,19 +1,25 @@
-// Convergence of Newton's method: when an iteration has come near enough, or to round-off; see newton_iteration.h. The rules of convergence are those of Hairer and
-// Wanner (1996), IV.8, key hairer1996.
+// Convergence test of the simplified Newton iteration: has it met the tolerance, come to round-off,
+// or diverged? See newton_iteration.h.
+//
+// The test of the convergence rate is that of Hairer and Wanner (1996), IV.8, key hairer1996. Tests
+// for round-off are added, as neither more corrections nor shorter steps would help there.
 #include "integrate/implicit/newton_iteration.h"
 #include "numeric/dense.h"
 
 #include <float.h>
 #include <string.h>
 
-// The first corrections come from a guess and may grow; not so much, though.
+// A convergence rate above this is divergence at once; the first corrections may grow by less.
+// Chosen: corrections in vain against steps refused too early.
 static const double hopeless = 100;
-// Corrections that are to go on after convergence do until they are this much smaller.
+// The factor on the convergence limit for corrections that go on after convergence, where outputs
+// amplify errors of states (8.11). Chosen: corrections against the error of these outputs.
 static const double further = 1e-6;
-// After convergence corrections that are not halved have come to round-off.
+// Among those, a convergence rate above this means that corrections are round-off.
+// Chosen: corrections in vain against corrections missed.
 static const double halved = 0.5;
-// So much of what is seen of round-off errors may come together in a correction: stages add up three times as much, and no two looks are
-// alike.
+// A correction up to this many times the measured effect of round-off counts as round-off.
+// Chosen: three stages add their round-off, and a single measurement may find too little.
 static const double together = 8;
 
 void ct_newton_iteration_start(struct ct_newton_iteration *it)
@@ -22,7 +28,8 @@ void ct_newton_iteration_start(struct ct_newton_iteration *it)
     it->count = 0;
     it->is_further = false;
     it->rate = 0;
-    // the last step's, trusted less and less; not where there is no tolerance that says how far off it may be
+    // the value of the last step to the power 3/4, RADAU5 has 4/5; not used where iterations go
+    // down to round-off
     it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
 }
 
@@ -34,17 +41,18 @@ void ct_newton_iteration_continue(struct ct_newton_iteration *it)
     it->kappa_for = NAN; // in this step only
 }
 
-// Between 1 and 2 or -2 and -1 by chance, another for each k: a pattern would miss some motions.
+// A pseudo-random number in [1, 2) or (-2, -1] for each k. A regular pattern would miss some modes.
 static double toss(unsigned k)
 {
-    const double odd = 0x1p-24;
-    k = (k + 1) * 2654435769u; // 2^32 over the golden ratio
+    const double odd = 0x1p-24; // Definition: scales an integer of 24 bits to [0, 1)
+    k = (k + 1) * 2654435769u;  // 2^32 over the golden ratio
     k = (k ^ k >> 15) * 2246822519u;
     k = (k ^ k >> 13) * 3266489917u;
     return (k & 1 ? 1 : -1) * (1 + odd * (k >> 8));
 }
 
-// At q and speeds of the step's start: forces into r (nu), constraints into rows (m x 2); no accelerations, no multipliers.
+// r (nu), rows (m x 2), out: residuals of motion and of constraints at q, with the speeds at the
+// start of the step and zero accelerations and multipliers.
 static bool find_forces(struct ct_newton_iteration *it, const double *q, double *r,
                         double *rows)
 {
@@ -55,8 +63,9 @@ static bool find_forces(struct ct_newton_iteration *it, const double *q, double 
         == CT_EVAL_OK;
 }
 
-// p->r (nu), p->phi (m) = the round-off of forces and of constraints, and what that of places makes of them: by how much those at places
-// that cannot be told from these, d away, are not what K and J say. here (nu) is overwritten.
+// p->r (nu), p->phi (m) = round-off errors of forces and constraints. They are evaluated at
+// positions that differ by a few round-off errors d; what differs from the linear change K d and J
+// d is round-off. here (nu) is overwritten.
 static bool perturb_residuals(struct ct_newton_iteration *it, double *here)
 {
     const int nu = it->nu, m = it->m;
@@ -107,7 +116,8 @@ const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it)
     return d;
 }
 
-// Of the states of the model, whose size may be any, nothing is asked. d (nu x n)
+// Are all entries of d (nu x n) within `most`? State variables of the model, whose units are not
+// known, do not count.
 static bool is_within(const struct ct_newton_iteration *it, const double *d, int n, double most)
 {
     const int nmotion = it->nu - it->dae->nstate;
@@ -118,16 +128,17 @@ static bool is_within(const struct ct_newton_iteration *it, const double *d, int
     return true;
 }
 
-// Followed down to round-off, the second correction against the first says nothing yet, which is an error of the prediction
-// and in places above all: of angles of several turns in loops the second is as large and the third a thousandth of it, of a tumbling body,
-// with old derivatives, the second is a thousandth and the third, of speeds, a tenth of that.
+// In an iteration down to round-off the ratio of the second to the first correction is not yet a
+// convergence rate, since the first one is mostly the error of the prediction. In closed loops the
+// second one may be as large as the first, and the third a thousandth of it.
 static bool is_too_early(const struct ct_newton_iteration *it)
 {
     return it->is_finest && it->count == 2;
 }
 
-// A correction is `rate` times the one before. Two in turn are often uneven, so their mean says whether they converge. Followed
-// down to round-off the slowest one says what is left, but for the first, which says nothing.
+// The convergence rate, where a correction is `rate` times the one before. It is the geometric mean
+// of the last two, since they often alternate. In an iteration down to round-off the largest one
+// counts, without the first.
 static void take_rate(struct ct_newton_iteration *it, double rate)
 {
     it->slowest = it->count > 3 ? ct_larger(rate, it->slowest) : rate;
@@ -136,7 +147,7 @@ static void take_rate(struct ct_newton_iteration *it, double rate)
     it->tail = counts < 1 ? counts / (1 - counts) : INFINITY;
 }
 
-// Does a correction of this size, at this rate to the one before, show only round-off?
+// Is a correction of this size and convergence rate mere round-off?
 static bool is_roundoff(const struct ct_newton_iteration *it, double rate, double size)
 {
     if (it->is_further && rate >= halved && size <= 1)
@@ -144,8 +155,9 @@ static bool is_roundoff(const struct ct_newton_iteration *it, double rate, doubl
     return rate >= 1 && !is_too_early(it) && size <= it->roundoff_size;
 }
 
-// Nor does one that a round-off of the forces may be the reason of, where corrections shrink no more: stiff forces of places that
-// are large beside their own motion, as of a beam of many elements, are known no better, and in shorter steps hardly so.
+// Has the iteration stalled at a correction that round-off of the forces explains? Stiff forces at
+// large positions, as in a beam of many elements, have such round-off, and shorter steps hardly
+// reduce it.
 static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, double size,
                               bool has_speeds)
 {
@@ -159,8 +171,8 @@ static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, doubl
     return size <= together * ct_newton_iteration_norm(it, noise, u, it->nu, 1);
 }
 
-// Half a round-off of the largest place moves no place as large, and what is left of the constraints comes back in others,
-// halved perhaps from one correction to the next: neither more of them nor shorter steps make it less.
+// Are all corrections below half a unit round-off of the largest position and speed? What is left
+// is round-off of the constraints, which neither more corrections nor shorter steps reduce.
 static bool is_below_roundoff(const struct ct_newton_iteration *it, double size,
                               const double *d, const double *u, int n)
 {
@@ -169,7 +181,8 @@ static bool is_below_roundoff(const struct ct_newton_iteration *it, double size,
         && is_within(it, u, n, it->roundoff_speed);
 }
 
-// Small enough where corrections followed down to round-off shrink no more or have been many.
+// In an iteration down to round-off: is this correction small enough to accept where it stalls or
+// reaches the limit?
 static bool is_fine(const struct ct_newton_iteration *it, double size)
 {
     return it->is_finest && size <= it->roundoff_size;

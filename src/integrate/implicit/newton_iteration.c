@@ -1,4 +1,4 @@
-// See newton_iteration.h.
+// Matrices and linear systems of the simplified Newton iteration; see newton_iteration.h.
 #include "integrate/implicit/newton_iteration.h"
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
@@ -8,14 +8,22 @@
 #include <math.h>
 #include <string.h>
 
-// With a tolerance the iteration errs by a small part of it, smaller the tighter it is.
+// The iteration ends when its error is below kappa times the tolerance.
+// Derived: kappa = min(0.03, sqrt(tolerance)), as FNEWT of RADAU5, Hairer and Wanner (1996), IV.8.
 static const double kappa_most = 0.03;
-// Without one, corrections are followed until less than half a round-off of states is left, 1e-16 of them, and accepted at
-// 1e-10 where they stop to shrink or have been many. What is left in each step, and is the same in most, adds up over the steps.
+// Without a tolerance the iteration goes down to round-off, since errors that it leaves add up over
+// steps of fixed length. Derived: with the factor kappa_finest of 1e-4 this is 1e-16, half of the
+// unit round-off.
 static const struct ct_tolerance finest = {1e-12, 1e-12};
-static const double kappa_finest = 1e-4, rounding_finest = 100;
-// In the index-3 form places alone are judged, and speeds follow them divided by the step.
+static const double kappa_finest = 1e-4; // Derived: see above
+// It is accepted at this size, 1e-10 of the states, where it stalls or reaches the limit of
+// corrections. Chosen: steps refused for round-off against the error of the iteration.
+static const double rounding_finest = 100;
+// A factor on kappa in the index-3 form, which tests positions alone. Errors of speeds are those of
+// positions over the step. Chosen: corrections against the error of speeds.
 static const double kappa_index3 = 0.01;
+// The largest number of corrections, with a tolerance and without one.
+// Chosen: corrections against steps refused; RADAU5 has 7.
 enum { MOST = 10, MOST_FINEST = 30 };
 
 // For full matrices of m rows, n equations.
@@ -88,7 +96,7 @@ static inline double size_of(const struct ct_groups *g, int i, const double *y)
     return g && g->of[i] >= 0 ? g->size[g->of[i]] : fabs(y[i]);
 }
 
-// What positions and speeds are measured against; speeds need not be known better than least_speed.
+// Weights of positions and speeds in the norm. The weight of a speed is at most 1/least_speed.
 static void weigh(struct ct_newton_iteration *it, double rtol, double atol, double least_speed,
                   const double *y)
 {
@@ -104,7 +112,8 @@ static void weigh(struct ct_newton_iteration *it, double rtol, double atol, doub
     }
 }
 
-// The same where coordinate k moves with speed k and each counts for itself; nu is that of the iteration.
+// The same where speed k is the derivative of coordinate k and there are no groups. nu is that of
+// the iteration.
 static inline void weigh_plain(struct ct_newton_iteration *it, double rtol, double atol,
                                double least_speed, const double *y, const int nu)
 {
@@ -185,9 +194,9 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
     return true;
 }
 
-// ---- matrices -------------------------------------------------------------------------------------
+// ---- matrices -----------------------------------------------------------------------------------
 
-// -A J' into the columns of eta, A (rows x nu) at row `first` of B (n x n).
+// B (n x n): adds -A J' in the columns of eta from row `first` on, A (rows x nu).
 static void fill_eta(const struct ct_newton_iteration *it, double *B, const double *A, int rows,
                      int first)
 {
@@ -202,7 +211,7 @@ static void fill_eta(const struct ct_newton_iteration *it, double *B, const doub
     }
 }
 
-// A (rows x nu) at row `first` of B (n x n).
+// B (n x n): copies A (rows x nu) into the first columns from row `first` on.
 static void fill_place(const struct ct_newton_iteration *it, double *B, const double *A,
                        int rows, int first)
 {
@@ -225,7 +234,7 @@ void ct_newton_iteration_add_rotation(const struct ct_newton_iteration *it, doub
     }
 }
 
-// Less A N, A (rows x nu), at row `first` of B (n x n); N' = -N.
+// B (n x n): subtracts A N from row `first` on, A (rows x nu); N' = -N.
 static void fill_turn(const struct ct_newton_iteration *it, double *B, const double *A,
                       int rows, int first)
 {
@@ -256,7 +265,7 @@ static void assemble(struct ct_newton_iteration *it)
     fill_place(it, it->S, it->J, m, nu);
     fill_place(it, it->X, it->C, nu, 0);
     fill_place(it, it->W, it->K, nu, 0);
-    for (int j = 0; j < m; j++) // -J' behind all others
+    for (int j = 0; j < m; j++) // -J' in the last columns
         for (int k = 0; k < nu; k++)
             it->S[k + n * (n - m + j)] = -it->J[j + m * k];
     if (!it->is_stabilised)
@@ -273,7 +282,7 @@ static void assemble(struct ct_newton_iteration *it)
     fill_turn(it, it->W, it->J, m, nu + m);
 }
 
-// The derivatives at a point, and what matrices are made of.
+// The derivatives at a point, and from them the matrices S, X, W.
 static enum ct_eval evaluate(struct ct_newton_iteration *it, double t, const double *q,
                              const double *u, const double *a, const double *lam)
 {
@@ -326,13 +335,13 @@ void ct_newton_iteration_fill(struct ct_newton_iteration *it, double *A, int lda
     }
 }
 
-// A right-hand side of few equations is a product with the inverse: steps of a small mechanism are little else.
+// Small systems are solved with the inverse matrix, which is faster than two triangular solutions.
 static bool has_inverse(const struct ct_newton_iteration *it)
 {
     return it->n <= CT_MOST_INVERTED;
 }
 
-// The complex system with one over its c, w.
+// Factors of the complex system, w = 1/c.
 static bool factor_complex(struct ct_newton_iteration *it, double _Complex w)
 {
     const int n = it->n, nu = it->nu;
@@ -357,7 +366,7 @@ static bool factor_complex(struct ct_newton_iteration *it, double _Complex w)
                            : ct_lu_complex(it->Gc, it->pivotc, n, n);
 }
 
-// The real system.
+// Factors of the real system.
 static bool factor_real(struct ct_newton_iteration *it, double c, double e)
 {
     const int n = it->n;
@@ -437,7 +446,8 @@ static inline double _Complex product(double _Complex x, double _Complex y)
                  creal(x) * cimag(y) + cimag(x) * creal(y));
 }
 
-// The solution for it->b, real parts (n) before imaginary ones: those are returned, these stand *to_imaginary behind.
+// The solution for it->b, real parts (n) before imaginary ones: those are returned, these stand
+// *to_imaginary behind.
 static const double *solve_complex(struct ct_newton_iteration *it, int *to_imaginary)
 {
     const int n = it->n;
@@ -500,7 +510,7 @@ void ct_newton_iteration_solve_complex(struct ct_newton_iteration *it, double *d
     }
 }
 
-// ---- products ---------------------------------------------------------------------------------------
+// ---- products -----------------------------------------------------------------------------------
 
 void ct_newton_iteration_add_constraint_force_sparse(const struct ct_newton_iteration *it,
                                                      double *out, const double *x, double c,
@@ -525,7 +535,7 @@ void ct_newton_iteration_multiply_mass(const struct ct_newton_iteration *it, dou
             r[k] += it->M[k + nu * j] * x[j];
 }
 
-// ---- errors -----------------------------------------------------------------------------------------
+// ---- errors -------------------------------------------------------------------------------------
 
 const double *ct_newton_iteration_states(struct ct_newton_iteration *it, const double *y1,
                                          const double *d, const double *u)

@@ -1,4 +1,5 @@
-// See newton_sparse.h: which entries there are, and in which order they are factored.
+// Symbolic analysis of the sparse Newton matrix: sparsity pattern and elimination order; see
+// newton_sparse.h.
 #include "integrate/implicit/newton_pattern.h"
 
 #include "numeric/inverse.h"
@@ -7,9 +8,10 @@
 
 enum part { S, X, W };
 
-// ---- places and terms ---------------------------------------------------------------------------------
+// ---- entries and terms --------------------------------------------------------------------------
 
-// Places while they are found; a term's target is its place here until the pattern is known.
+// Entries in the order in which they are found, with repetitions. The target of a term is an index
+// into this list until the pattern is known.
 struct places {
     struct ct_arena *a;
     int *row, *column, *part;
@@ -124,7 +126,8 @@ static void add_turn(struct ct_newton_pattern *p, struct places *s, enum part pa
     CT_PUSH(s->a, p->rotation, p->nrotation, p->rotation_cap, t);
 }
 
-// -A N at row `first`: of a rotation's three columns a, b, c become (b w2 - c w1, c w0 - a w2, a w1 - b w0)/2.
+// -A N at row `first`: of a rotation's three columns a, b, c become (b w2 - c w1, c w0 - a w2, a w1
+// - b w0)/2.
 static void add_turns(struct ct_newton_pattern *p, struct places *s, const int *q_of,
                       enum part part, const struct ct_newton_list *A, int first)
 {
@@ -166,7 +169,7 @@ static void add_terms(struct ct_newton_pattern *p, struct places *s, const int *
     add_turns(p, s, q_of, W, &p->J, below);
 }
 
-// From places to the pattern: a target becomes part * nz + place.
+// Replaces targets by their index in the pattern: part * nz + entry.
 static void settle_targets(struct ct_newton_pattern *p, struct ct_arena *a,
                            const struct places *s)
 {
@@ -184,7 +187,7 @@ static void settle_targets(struct ct_newton_pattern *p, struct ct_arena *a,
         p->index[i] = place[p->index[i]];
 }
 
-// ---- numbers --------------------------------------------------------------------------------------------
+// ---- numbers ------------------------------------------------------------------------------------
 
 void ct_newton_pattern_assemble(const struct ct_newton_pattern *p, double *A, const double *v,
                                 const double *w)
@@ -211,7 +214,8 @@ void ct_newton_pattern_form(const struct ct_newton_pattern *p, double *G, const 
              + (ct_newton_pattern_is_force(p, row[i]) ? y : z) * A[i + 2 * nz];
 }
 
-// Numbers as they may be, to find out what factors cost: heavy diagonals, the rest at random, the same each time.
+// Random values with large diagonals, for the analysis of the pattern before real values are known.
+// They are the same each time.
 static void invent(const struct ct_newton_pattern *p, double *v)
 {
     unsigned long long seed = 1;
@@ -220,14 +224,15 @@ static void invent(const struct ct_newton_pattern *p, double *v)
         v[i] = (double)(seed >> 11) / (double)(1ull << 52) - 1;
     }
     const struct ct_newton_list *const heavy[] = {&p->M, &p->K};
-    const double much = 100;
+    const double much = 100; // Derived: outweighs a hundred other entries of its row
     for (size_t k = 0; k < COUNT(heavy); k++)
         for (int i = 0; i < heavy[k]->n; i++)
             if (heavy[k]->row[i] == heavy[k]->column[i])
                 v[heavy[k]->first + i] += much;
 }
 
-// Coordinates, inner values, and rows that touch coordinates, as nodes of a graph.
+// A graph whose nodes are speeds, auxiliary unknowns and constraint rows, for the elimination
+// order.
 static struct ct_pattern *find_graph(const struct ct_newton_pattern *p,
                                      struct ct_arena *scratch)
 {
@@ -246,8 +251,9 @@ static struct ct_pattern *find_graph(const struct ct_newton_pattern *p,
     return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, place);
 }
 
-// first (n, out): coordinates and inner values in an order of little fill, and behind the last coordinate that a row touches its
-// multipliers, where elimination has left a pivot on their diagonal: J H^-1 J' of what H there is of accelerations.
+// first (n, out): the elimination order of speeds and auxiliary unknowns with little fill. The
+// multipliers of a row follow the last speed in that row, where elimination has made their diagonal
+// entry nonzero.
 static bool find_first(const struct ct_newton_pattern *p, struct ct_arena *scratch, int *first)
 {
     const int most_rows = p->most_rows, nunknown = p->nu + p->nauxiliary;
@@ -292,7 +298,7 @@ static bool find_order(struct ct_newton_pattern *p, struct ct_arena *a,
     return ct_pattern_order(a, p->pattern, A, first);
 }
 
-// ---- is it worth it? ------------------------------------------------------------------------------------
+// ---- comparison with dense matrices -------------------------------------------------------------
 
 static struct ct_newton_work sparse_work(const struct ct_newton_pattern *p)
 {
@@ -316,14 +322,15 @@ struct ct_newton_work ct_newton_work(const struct ct_newton_pattern *plan, int n
     return plan ? sparse_work(plan) : full_work(n);
 }
 
-// Of a step with new derivatives and as many solutions as it usually needs.
+// Operations of a step with new derivatives and the usual number of solutions.
 static double work_of_step(struct ct_newton_work w)
 {
-    const double solutions = 8;
+    const double solutions = 8; // Chosen: four corrections, each of a real and a complex system
     return w.assembly + w.factorization + solutions * w.solution;
 }
 
-// Sums of more products than a full matrix takes are not even listed, nor are entries ordered that are most of a full one.
+// May the sparse form take fewer operations than the dense one? Found from counts alone, before
+// products are listed.
 static bool may_pay(const struct ct_newton_pattern *p, struct ct_arena *scratch)
 {
     const struct ct_newton_list *const lists[] = {&p->M, &p->C, &p->J};
@@ -345,7 +352,7 @@ static void *keep(struct ct_arena *a, const void *x, size_t n, size_t size)
     return n ? memcpy(kept, x, n * size) : kept;
 }
 
-// The plan, its terms in `scratch`.
+// The symbolic analysis, with temporary data in `scratch`.
 static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scratch,
                                       const struct ct_dae *dae, bool is_stabilised, bool anyway)
 {
@@ -366,9 +373,12 @@ static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scrat
     for (int i = 0; i < p->n - p->nu; i++)
         p->index[i] = add_place(&s, S, p->nu + i, p->nu + i);
     settle_targets(p, a, &s);
+    // Limit: patterns that are more than half full are not ordered, the dense matrix serves
+    // instead.
     const double n = p->first_auxiliary, most = 0.5;
     const bool is_dense
-        = p->pattern->nz > most * n * n && !p->nauxiliary; // those are looked for with a reason
+        // auxiliary unknowns are there to make it sparse
+        = p->pattern->nz > most * n * n && !p->nauxiliary;
     if ((!anyway && is_dense) || !find_order(p, a, scratch)
         || (!anyway && work_of_step(sparse_work(p)) > work_of_step(full_work(n))))
         return NULL;

@@ -1,11 +1,12 @@
-// What the plan of newton_sparse.h consists of: shared by the two files that know.
+// The symbolic analysis of the sparse Newton matrix, shared by newton_pattern.c and
+// newton_sparse.c.
 #ifndef CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
 #define CT_INTEGRATE_IMPLICIT_NEWTON_PATTERN_H
 
 #include "integrate/implicit/newton_sparse.h"
 #include "numeric/factors.h"
 
-// The matrix is S + x X + (y or z) W; numbers of the three stand one behind the other.
+// Definition: the matrix is S + x X + (y or z) W; the values of the three parts are stored in turn.
 enum { CT_NEWTON_PARTS = 3 };
 
 // Entries are sums of terms +-v[a], -v[a] v[b] and +-v[a] w[b]/2, for the list of values v.
@@ -30,23 +31,24 @@ struct ct_newton_list {
 struct ct_newton_pattern {
     const struct ct_slopes *slopes;
     struct ct_newton_list K, C, M, R, D,
-        J; // rows of K, C, M, R from nu on are those of inner values
+        J; // rows of K, C, M, R after nu belong to auxiliary unknowns
     int nu, most_rows, n, nvalue;
-    int nauxiliary, first_auxiliary; // unknowns: nu, rows twice or once, inner values
+    int nauxiliary, first_auxiliary; // unknowns in turn: nu, rows twice or once, auxiliary
     const int *M_start,
-        *M_entry; // with inner values: of M by column, from M_start[k] to M_start[k + 1]
+        *M_entry; // entries of M by column, with auxiliary unknowns
     bool is_stabilised;
     struct ct_pattern *pattern;
-    int *
-        index; // behind nu: of the ones of rows that do not count, for eta and for lam; of the -1 of inner values
+    // diagonal entries after nu: ones of unused constraint rows, for eta and for lam; the -1 of
+    // auxiliary unknowns
+    int *index;
     struct ct_newton_copy *copy; // those of M first
     struct ct_newton_product *product;
     struct ct_newton_rotation *rotation;
     size_t ncopy, nproduct, nrotation, copy_cap, product_cap, rotation_cap;
 };
 
-/// Is a row that of a force or of an inner value, in which K counts by y? Else it is of a
-/// constraint.
+/// Does a row belong to a speed or an auxiliary unknown, where K has the factor y? Else it belongs
+/// to a constraint.
 static inline bool ct_newton_pattern_is_force(const struct ct_newton_pattern *p, int row)
 {
     return row < p->nu || row >= p->first_auxiliary;

@@ -1,4 +1,4 @@
-// See newton_sparse.h: numbers and factors.
+// Numerical values and factors of the sparse Newton matrix; see newton_sparse.h.
 #include "integrate/implicit/newton_pattern.h"
 #include "integrate/stepper.h"
 
@@ -9,13 +9,13 @@ struct ct_newton {
     const struct ct_dae *dae;
     const int *active; // rows that count  (m)
     int m;
-    double *v;     // K, C, M, R, D, J, zeros in rows that do not count
+    double *v;     // K, C, M, R, D, J, with zeros in unused rows
     double *A;     // S, X, W
     double *G;     // the matrix, real or complex
     bool *counts;  // each row  (most_rows)
     int *rank_of;  // of rows that count  (most_rows)
     double *b;     // of all rows (n numbers or pairs)
-    double *k;     // variations of inner values  (ninner)
+    double *k;     // changes of auxiliary unknowns  (nauxiliary)
     double *x, *y; // of products  (nu)
     struct ct_factors *real, *pair, *slow;
 };
@@ -108,7 +108,7 @@ bool ct_newton_factor_complex(struct ct_newton *s, double _Complex w)
     return ct_factors_compute(s->pair, s->G);
 }
 
-// From rows that count to all, numbers `stride` apart, and back.
+// Scatters the selected rows into all rows, with values `stride` apart, and gathers them again.
 static void spread(const struct ct_newton *s, double *all, const double *b, int stride)
 {
     const struct ct_newton_pattern *p = s->p;
@@ -185,8 +185,7 @@ static inline double row_times(const struct ct_newton_list *A, const double *val
     return sum;
 }
 
-// y += c (A + R_r (1 - R_k)^-1 A_k) x: inner values, of which each depends on those before it, on
-// the way.
+// y += c (A + R_r (1 - R_k)^-1 A_k) x. The auxiliary unknowns k follow by forward substitution.
 static void add_product(const struct ct_newton *s, const struct ct_newton_list *A, double *y,
                         double c, const double *x)
 {
@@ -269,7 +268,7 @@ double ct_newton_stiffness_form(const struct ct_newton *s, const double *x)
     return form_of(s, &s->p->K, x);
 }
 
-// Of speed k, what inner values that it moves bring to its own row.
+// The part of the diagonal entry k of M that comes from auxiliary unknowns.
 static double mass_by_inner(const struct ct_newton *s, int k)
 {
     const struct ct_newton_pattern *p = s->p;

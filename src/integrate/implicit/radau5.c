@@ -2,23 +2,25 @@
 //
 //     d' = T^-1(d) u + J' eta,   r(t, q, u, u', lam) = 0,   Phi(q) = 0,   v(q, u) = 0,   q = q0 (+) d
 //
-// collocated at three points of the step; d and u are of order 5, lam of order 3. The stages are
-// found by simplified Newton: the inverse of the Runge-Kutta matrix has one real and two complex
-// eigenvalues, which leaves one real and one complex system to solve for a correction. Places are
-// charts d at the start of the step, so that quaternions stay of norm one and the order is kept. Of
-// T^-1 the iteration matrix knows 1 + d~/2: chains of many balls are sensitive to what it does not
-// know.
+// Collocation at three points of the step; d and u are of order 5, lam of order 3. Stages are found
+// by a simplified Newton iteration. The inverse of the Runge-Kutta matrix has one real and two
+// complex eigenvalues, so a correction takes one real and one complex linear system. Positions are
+// expressed by increments d from the start of the step, so that quaternions keep their norm and the
+// method its order. The Newton matrix approximates T^-1 by 1 + d~/2; chains of many spherical
+// joints converge slowly with less.
 //
-// The error of a step is that of an embedded formula of order 3 with the start as a further stage,
-// filtered by the real system; eta and lam take no part. Interpolated is the collocation
-// polynomial. Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
+// The error estimate is that of an embedded formula of order 3 that uses the start as an additional
+// stage, filtered by the real system; eta and lam do not count. Dense output is the collocation
+// polynomial.
+//
+// Source: Hairer and Wanner (1996), IV.8 and VII.4, key hairer1996; formulation 8.4.
 #include "integrate/implicit/radau.h"
 
 #include <complex.h>
 #include <math.h>
 #include <string.h>
 
-// One over c_i times its differences to the other two: the scales of Lagrange's polynomials.
+// Scales of the Lagrange polynomials: one over c_i times its differences to the other two nodes.
 static const double SCALE[STAGES]
     = {1 / (C1 * (C1 - C2) * (C1 - 1)), 1 / (C2 * (C2 - C1) * (C2 - 1)),
        1 / ((1 - C1) * (1 - C2))};
@@ -29,7 +31,7 @@ static const double INVERSE[STAGES][STAGES]
        {-6. / 5 - 29 * SQRT6 / 30, 2 - SQRT6 / 2, 2. / 5 + 4 * SQRT6 / 15},
        {-1 + 8 * SQRT6 / 3, -1 - 8 * SQRT6 / 3, 5}};
 
-// Weights of the stages in the error.
+// Weights of the stages in the error estimate.
 static const double E[STAGES] = {-(13 + 7 * SQRT6) / 3, (-13 + 7 * SQRT6) / 3, -1. / 3};
 
 static void create_stages(struct ct_arena *a, struct ct_radau_stages *s,
@@ -99,7 +101,8 @@ static void accept(void *work)
 
 // ---- the polynomial -----------------------------------------------------------------------------
 
-// w (out): weights of the stages at x of the step; at its start the value is zero.
+// w (out): weights of the stages in the collocation polynomial at x of the step, which is zero at x
+// = 0.
 static void lagrange(double *w, double x)
 {
     const double a = x - C[0], b = x - C[1], c = x - C[2];
@@ -108,7 +111,8 @@ static void lagrange(double *w, double x)
     w[2] = x * a * b * SCALE[2];
 }
 
-// The same of multipliers, of which nothing is known at the start: the parabola through the stages.
+// The same for multipliers: the parabola through the three stages, as there is no value at the
+// start.
 static void lagrange_inner(double *w, double x)
 {
     const double a = x - C[0], b = x - C[1], c = x - C[2];
@@ -135,7 +139,8 @@ static void find_weights(struct ct_radau *s, double h)
     s->ratio = ratio;
 }
 
-// First values of the stages: the last step's polynomial continued, or a straight line.
+// Starting values of the stages: by extrapolation of the last collocation polynomial, or along a
+// line.
 static void predict(struct ct_radau *s, double h, const double *u0, const double *u_dot0)
 {
     const int nu = s->dae->nu, m = s->it->m;
@@ -163,7 +168,7 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
 
 // ---- the iteration ------------------------------------------------------------------------------
 
-// Place and speed of stage i.
+// Position and speed of stage i.
 static inline void place_stage(struct ct_radau *s, const double *y, int i)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
@@ -200,7 +205,7 @@ static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y
     return CT_EVAL_OK;
 }
 
-// Stages z (n x 3) into the basis of eigenvectors by T^-1, and back by T.
+// Transforms stages z (n x 3) to the basis of eigenvectors (T^-1) or back (T).
 static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
 {
     for (int k = 0; k < n; k++) {
@@ -210,7 +215,7 @@ static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
     }
 }
 
-// What solve_complex takes off residuals, with matrices as lists.
+// The elimination of speeds in solve_complex, for sparse matrices.
 static void reduce_sparse(struct ct_radau *s, double a, double b)
 {
     const struct ct_newton *matrix = s->it->sparse;
@@ -223,7 +228,8 @@ static void reduce_sparse(struct ct_radau *s, double a, double b)
     ct_newton_add_rows(matrix, v + m, 1, G);
 }
 
-// The same for the other two: real and imaginary part of one, c = a + i b.
+// Solves the complex system, c = a + i b. Real and imaginary part are the second and third
+// component.
 static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
 {
     struct ct_newton_iteration *it = s->it;
@@ -267,7 +273,7 @@ static inline void add(double *z, const double *change, int n)
         z[i] += change[i];
 }
 
-// From residuals to corrections, which are added to the stages; their size.
+// Solves for corrections, adds them to the stages and returns their norm.
 static inline double change_stages(struct ct_radau *s, const int nu, const int m)
 {
     turn_basis(s->F, T_INVERSE, nu);
@@ -296,8 +302,8 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     const enum ct_eval e = find_residuals(s, t, y, stats);
     if (e != CT_EVAL_OK)
         return e;
-    // one and two freedoms without loops have code of their own: matrices are numbers there; and so
-    // has a planar loop of three coordinates
+    // constant sizes let the compiler unroll loops for one and two degrees of freedom and for a
+    // planar loop of three coordinates
     const double size = nu == 3 && m == 2 ? change_stages(s, 3, 2)
                       : m || nu > 2       ? change_stages(s, nu, m)
                       : nu == 1           ? change_stages(s, 1, 0)
@@ -307,8 +313,8 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
     return CT_EVAL_OK;
 }
 
-// Derivatives, where they are too old: at the second stage as predicted, nearer to all stages than
-// the start is; on a first step, whose prediction is a straight line, at the start.
+// New derivatives, if they are too old. They are evaluated at the predicted second stage, in the
+// middle of the step; in a first step, which has no good prediction, at the start.
 static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double *y,
                             const double *dy, struct ct_integrate_stats *stats)
 {
@@ -323,7 +329,7 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
                                        stats);
 }
 
-// Corrections from e on, until the verdict is another.
+// Newton corrections until convergence or divergence.
 static enum ct_eval correct_until(struct ct_radau *s, double t, const double *y, enum ct_eval e,
                                   enum ct_convergence *verdict,
                                   struct ct_integrate_stats *stats)
@@ -354,7 +360,7 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     return CT_EVAL_RETRY;
 }
 
-// Further corrections after convergence, as far as they lead.
+// Further corrections after convergence, down to round-off if necessary.
 static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
                                struct ct_integrate_stats *stats)
 {
@@ -367,7 +373,7 @@ static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
 
 // ---- a step -------------------------------------------------------------------------------------
 
-// Rates of quadratures at stage i, whose derivatives dy1 are.
+// Adds the rates of quadratures at stage i, from its derivative dy1.
 static void add_power(struct ct_radau *s, int ny, int i, const double *dy1)
 {
     for (int k = s->dae->nq + s->dae->nu; k < ny; k++) {
@@ -394,7 +400,7 @@ static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, doubl
         place_stage(s, y, i);
         ct_stepper_copy(y1, s->q, nq);
         ct_stepper_copy(y1 + nq, s->u, nu);
-        if (i == last && p->project) // takes off what the iteration left
+        if (i == last && p->project) // removes the error that the iteration leaves
             e = p->project(p->user, t + h, y1);
         if (e == CT_EVAL_OK)
             e = ct_stepper_rhs(p, t + C[i] * h, y1, dy1, stats);
@@ -408,7 +414,7 @@ static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, doubl
     return e;
 }
 
-// Multipliers to begin with: those at the end of the step before, or of the start.
+// Starting values of multipliers: those at the end of the last step, or computed at the start.
 static enum ct_eval find_multipliers(struct ct_radau *s, double t, const double *y, bool is_new)
 {
     const int m = s->it->m;
@@ -434,7 +440,8 @@ static enum ct_eval conclude(struct ct_radau *s, const struct ct_problem *p, dou
     return e;
 }
 
-// The iteration may leave this part of the tolerance in outputs that amplify, as it may in states.
+// The error that the iteration may leave in sensitive outputs (8.11), as part of the tolerance.
+// Derived: the same as for states, kappa of RADAU5.
 static const double left_over = 0.03;
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,

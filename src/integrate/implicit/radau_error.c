@@ -1,59 +1,64 @@
-// Error estimate of a step of Radau IIA: of the states, of the outputs.  (section 8.4)
+// Error estimate of a step of Radau IIA, for states and for outputs.  (theory 8.4)
 //
-// That of the states is the one of an embedded formula of order 3, filtered by the real system of
-// the iteration. An error of speeds is one of the motion, which goes on in them, or one of
-// vibrations, which leaves places by that error over their frequency, and so is in the error of
-// places, too. Where no output is made of speeds, those of vibrations much faster than the motion
-// need not count again: undamped, they would have to be followed for their rates alone.
+// The error of states is that of an embedded formula of order 3, filtered by the real system of the
+// Newton iteration. The error of a speed belongs to the slow motion or to a fast vibration. In a
+// vibration it is the frequency times the error of position, which counts already. So where no
+// output depends on speeds, the error of fast vibrations in speeds is left out. Otherwise undamped
+// vibrations would have to be resolved for their speeds alone.
 //
 //     counted   s = (c^2 M + c C + K)^-1 c^2 M e_u,   c = 10 max (|u| + a)/(min(|q|, 1) + a)          (8.10)
 //
-// with the places e_d. Of a vibration of omega it leaves c^2/(c^2 + omega^2). The motion feels the
-// energy of the rest, so that is held to the root of the tolerance. Where outputs would not feel it
-// if all of the vibration were lost, the same is done with places.
+// counts, together with the error of positions e_d. This low-pass filter leaves c^2/(c^2 + omega^2)
+// of a vibration of frequency omega. The energy of the fast part acts on the motion, so that part
+// is held to the square root of the tolerance. Where outputs would not change without the
+// vibration, positions are filtered, too.
 //
-// What outputs do feel of vibrations adds up over all steps, which no error of a single one tells:
-// what steps like this one take of them up to the end is an error as well.  (8.21), (8.22)
+// The dissipation of vibrations adds up over all steps. Where outputs depend on them, the
+// dissipation of steps like this one up to the end of the run is an error of this step.  (8.21),
+// (8.22)
 //
-// Outputs that amplify errors of states, as forces of stiff springs do, (8.11), have errors of
-// their own: at the end of the step, of what the iteration has left, and between steps.
-// Source: Hairer and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
+// Sensitive outputs (8.11), such as forces of stiff springs, amplify errors of states. Their errors
+// are estimated at the end of the step, for the Newton iteration, and between steps. Source: Hairer
+// and Wanner (1996), IV.8, key hairer1996; formulation 8.4.
 #include "integrate/implicit/radau.h"
 
 #include <math.h>
 #include <string.h>
 
-// Outputs near zero are held to this part of the absolute tolerance: of a vibration that is damped
-// because the estimate does not see it, over 1e5 radians, less than ten times that tolerance is
-// lost.  (8.7)
+// The factor on the absolute tolerance of outputs. Derived: Radau damps small vibrations that the
+// error estimate does not see. By (8.7) less than ten absolute tolerances are lost in 1e5 radians.
 static const double near_zero = 0.05;
 
-// Outputs that amplify see what the step before has left of speeds, not what this one leaves: its
-// error counts for at least so much, (0.9/1.5)^4, so that steps grow by no more than half.
+// The least error of a step where outputs are sensitive (8.11). Their error contains the error of
+// speeds from the step before, not from this one, so steps may grow by half at most.
+// Derived: (0.9/1.5)^4, with the safety factor 0.9 and an error of order 4.
 static const double growing = 0.13;
 
-// What is promised of outputs, in parts of what is wanted: vibrations of less energy may be lost
-// altogether.
+// Vibrations of less energy than this many tolerances may be damped altogether.
+// Definition: outputs are promised within ten tolerances, docs/cli.md.
 static const double promised = 10;
-// Nor are they missed where all of them is this part of it in places, (8.10): the other half is for
-// all other errors.
+// Vibrations are damped where the loss of all of them changes outputs by less than this part of the
+// promised error (8.10). Chosen: the other half is left to all other errors.
 static const double unfelt = 0.5;
-// What is lost of them, (8.22), is known better: the largest of many looks.
+// The same for the loss over the run (8.22). Chosen: more than half, as it is the largest of many
+// estimates.
 static const double unmissed = 0.75;
 
-// Of a vibration of z = omega h, a step takes z^6/7200, and the filtered error is z^4/(60 gamma).
-// (8.21)
+// Derived: a step dissipates z^6/7200 of a vibration with z = omega h < 1, and its filtered error
+// estimate is z^4/(60 gamma), from the stability function of the method.  (8.21)
 static const double of_vibration = 7200, of_error = 60 * GAMMA;
-// All steps take 1 - 1/e of a vibration of z0. `lost` looks at `apart` z0 and `all` at z0 over
-// that: nearer to it less than a third of what is lost is seen there.
+// All steps of a run dissipate 1 - 1/e of a vibration with z = z0. `lost` is estimated at `apart`
+// z0 and `all` at z0/`apart`. Chosen: nearer to z0 less than a third of the loss is seen.
 static const double apart = 2;
-// Phases of several vibrations come together only now and then: so much of what was missed at a
-// look counts still at the next one.
+// The part of the last estimate of a loss that counts at least in the next one, as vibrations of
+// several frequencies are in phase only now and then. Chosen: steps against errors of outputs.
 static const double fading = 0.9;
 
-// Speeds are eased where less than this part of the error is left then; looked at every so many
-// steps where they were not, and where they are too large.
+// The filtered error of speeds is used where it is below this part of the whole error.
+// Chosen: steps that grow against new derivatives.
 static const double worth_it = 0.5;
+// Steps between estimates of fast modes where they did not help, and between estimates of losses.
+// Chosen: the work of estimates against steps that stay short.
 enum { STEPS_BETWEEN = 15 };
 
 // The filtered error of the embedded formula at the start y, whose rates are u and u_dot.
@@ -90,8 +95,8 @@ static double filter(struct ct_radau *s, const double *u, const double *u_dot)
                        : filter_few(s, u, u_dot, 2, 0);
 }
 
-// The motion feels the energy of vibrations, the square of their speeds: against that of the
-// largest speeds so far.
+// The scale of errors in fast speeds. Vibrations act on the motion by their energy, the square of
+// their speeds. So the scale is the square root of the accuracy times the largest speed so far.
 static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
                                  const double *u)
 {
@@ -103,18 +108,19 @@ static void find_vibration_scale(struct ct_radau *s, const struct ct_problem *p,
     }
 }
 
-// What is lost of vibrations, as an error of order 3. The share of a step that is taken in every
-// step, `rate`, is one of h^5. All there is does not grow with the step, so that holds steps up less
-// before it counts.  (8.13), (8.22)
+// The dissipation of vibrations as an error of order 3. Dissipation over the run, `rate`, grows
+// with h^5. The loss of the whole vibration, `all`, does not depend on h, so it enters with a power
+// that limits steps less while it is small.  (8.13), (8.22)
 static double as_error(double rate, double all)
 {
-    const double order = 4. / 5;
+    const double order = 4. / 5; // Derived: an error estimate of h^4, a loss rate of h^5
     return ct_smaller(pow(rate, order), pow(all, 1 / order));
 }
 
-// What the step takes from vibrations, as an error of order 3: 1 where as much in every step up to
-// the end of the run, or all there is if that is less, would be felt. The work put in errs by what
-// dampers would have had of it, and may be much less than the energy of the motion.
+// The energy that a step dissipates from vibrations, as an error of order 3. It is 1 where the same
+// dissipation up to the end of the run, or the loss of all vibrations if that is less, reaches the
+// accuracy. If the work is an output, the energy counts against the work, which may be much less
+// than the energy of the motion.
 static double find_loss(struct ct_radau *s, const struct ct_problem *p,
                         const struct ct_vibration *v, const double *y, const double *u_dot)
 {
@@ -133,8 +139,8 @@ static double find_loss(struct ct_radau *s, const struct ct_problem *p,
     return as_error(pace / least, v->present / least);
 }
 
-// Less of the error where it is one of vibrations: of speeds, and of places where outputs would not
-// feel it if there were none.
+// Reduces the error estimate by its fast modes: in speeds, and in positions where outputs would not
+// change without the vibrations.
 static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
                                 const struct ct_tolerance *tol, double t, const double *y,
                                 const double *dy, double *err, double *loss)
@@ -160,7 +166,7 @@ static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
     s->unchecked = STEPS_BETWEEN;
     if (s->counts_slow_only && eased > 1 && !s->it->is_new)
         ct_newton_iteration_forget(
-            s->it); // modes turn with the motion: those of before take vibrations for slow
+            s->it); // modes change with the motion: old derivatives take fast modes for slow
     *err = ct_smaller(*err, eased);
 }
 
@@ -175,8 +181,8 @@ static void note_sizes(struct ct_radau *s, const double *y)
     }
 }
 
-// What outputs would miss of vibrations of about this rate that are `times` their errors, in parts
-// of what they may miss.
+// The change of outputs without the vibrations of about this frequency, whose amplitude is `times`
+// their error estimate, over the change allowed.
 static double missing(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                       double rate, double times)
 {
@@ -194,19 +200,20 @@ static double missing(struct ct_radau *s, const struct ct_problem *p, double t, 
          / (may * p->accuracy);
 }
 
-// The amplitude of a vibration of z in parts of the filtered error.
+// The amplitude of a vibration with z = omega h over its filtered error estimate.
 static double of_amplitude(double z)
 {
     return of_error / (z * z * z * z);
 }
 
-// What steps like this one take from vibrations up to the end of the run, and all there is, each no
-// less than what is remembered. (8.21)
+// The change of outputs by the dissipation of steps like this one up to the end of the run, and by
+// the loss of all vibrations. Both decrease only slowly from one estimate to the next.  (8.21)
 static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_problem *p,
                                           double t, const double *y)
 {
     const double h = s->now.h, steps = ct_larger(p->duration / h, 1), h5 = h * h * h * h * h;
-    const double harmless = 1e-3; // an error of 1.8e-4: steps may grow eightfold
+    // Derived: by `as_error` an error of 1.8e-4, with which a step eight times as long is accepted.
+    const double harmless = 1e-3;
     const double z0 = pow(of_vibration / steps, 1. / 6), above = apart * z0, below = z0 / apart;
     const double apart6 = apart * apart * apart * apart * apart * apart;
     const double all = missing(s, p, t, y, below / h, of_amplitude(below));
@@ -217,9 +224,10 @@ static struct ct_lost_vibration find_lost(struct ct_radau *s, const struct ct_pr
     return m;
 }
 
-// It is looked at where steps have become longer, where the last look has refused one, and every so
-// many steps, and follows their length in between. Of a step that was refused for it, and may be far
-// longer, vibrations that it does not resolve have no such law.
+// The error of a step by dissipation of vibrations. It is estimated where steps have become longer,
+// after a refusal for this error, and at regular intervals; in between it is scaled with the length
+// of the step. After a refusal it is not scaled, because vibrations that a much longer step does
+// not resolve follow no power of h.
 static double miss(struct ct_radau *s, const struct ct_problem *p, double t, const double *y,
                    const double *dy)
 {
@@ -246,9 +254,9 @@ static double miss(struct ct_radau *s, const struct ct_problem *p, double t, con
     return s->vibration_check.error;
 }
 
-// Error of the step. Where it is too large at first, on a first step or after a refusal, it is
-// filtered once more, which takes off what stiff components that start off their slow motion add to
-// it.
+// The error estimate of the step. If it is too large in a first step or after a refusal it is
+// filtered once more, as in RADAU5. This removes the error of stiff components that do not start on
+// their slow motion.
 enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
                                const struct ct_tolerance *tol, double t, const double *y,
                                const double *dy, double *y1, double *dy1, double *err,
@@ -275,8 +283,8 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
     return CT_EVAL_OK;
 }
 
-// The error estimate is that of order 3, but the step is better: a tolerance tol of the step is one
-// of 0.1 tol^(2/3) of the estimate, as in the program of the source.
+// The error estimate is of order 3, but the step of order 5. So a tolerance tol of the step is a
+// tolerance 0.1 tol^(2/3) of the estimate, as in RADAU5.
 static struct ct_tolerance loosen(const struct ct_tolerance *tolerance)
 {
     const double tol = tolerance->rtol > 0 ? tolerance->rtol : tolerance->atol;
@@ -293,8 +301,9 @@ const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
     return &s->estimate_tolerance;
 }
 
-// What a defect of accelerations, off (nu), is as an error of positions and speeds, which goes
-// behind those of the step: what the stiff forces that balance it are changed by.
+// The error of positions and speeds that corresponds to a defect off (nu) of accelerations, by the
+// real system: their change balances the defect by stiff forces. It is stored after the error
+// estimate of the step.
 static struct ct_radau_stages answer(struct ct_radau *s, const double *off)
 {
     const struct ct_newton_iteration *it = s->it;
@@ -361,8 +370,7 @@ double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p,
         = ct_newton_iteration_sensitive_error(s->it, p, &outputs, t1, y1, e->d, e->u, err);
     if (!(amplified > 0))
         return err;
-    // what is left of speeds is a force that is the larger the shorter the step is, gone in the
-    // next one
+    // an error of speeds from the last step acts as a force that grows with 1/h, for one step
     const double part = s->is_fresh ? 1 : ct_smaller(1, s->now.h / s->before.h);
     return ct_larger(err, ct_larger(part * amplified, growing));
 }
