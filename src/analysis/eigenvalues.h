@@ -12,19 +12,14 @@ struct ct_motion_mode {
     double *shape; // 2 nu: real parts, then imaginary parts; largest entry 1
 };
 
-/// Computes all modes of the reduced equations of l, in ascending order of
-/// s
-/// ; of equal
-/// s
-/// the growing mode comes first. The list lives in a. *how describes the method used. Errors:
-/// CT_E_SINGULAR if the equations do not determine the motion.
+/// Computes all modes of the reduced equations of l, in ascending order of |s|;
+/// of equal |s| the growing mode comes first. The list lives in a. *how describes the method
+/// used. Errors: CT_E_SINGULAR if the equations do not determine the motion.
 bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_linear *l,
                     struct ct_motion_mode **mode, size_t *nmode, const char **how);
 
 /// Returns a bound of the round-off in the real parts of the modes of a system [1/s] (theory
-/// 9.3), and the largest of their rates
-/// s
-/// in *fastest [1/s].
+/// 9.3), and the largest of their rates |s| in *fastest [1/s].
 double ct_modes_roundoff(const struct ct_motion_mode *mode, size_t nmode, double *fastest);
 
 /// Adds the mode of an eigenvalue w2 [1/s^2] of K y = w2 M y, or two modes (growing and

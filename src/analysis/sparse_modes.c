@@ -30,9 +30,7 @@ static const double absent = 1e-12;
 // eigenvalue below `zero` times the shift is zero: this is what round-off of 1/theta leaves.
 // Derived: eps / 1e-9 = 2e-7 is the relative error of 1/theta, and 1e-6 is a few times that.
 static const double small_shift = 1e-9, zero = 1e-6;
-// Limit of asymmetry
-// K x - K' x
-// relative to the largest entries.
+// Limit of asymmetry |K x - K' x| relative to the largest entries.
 // Chosen: 4500 eps, far above round-off of the entries.
 static const double symmetric = 1e-12;
 
@@ -165,9 +163,7 @@ static bool is_of_this_kind(struct large *g)
 
 // ---- eigenvalues ----------------------------------------------------------------------------
 
-// n eigenvalues theta of OP,
-// theta
-// descending, and eigenvectors (nu x n) of unit size in the metric.
+// n eigenvalues theta of OP, |theta| descending, and eigenvectors (nu x n) of unit size in the metric.
 struct pairs {
     double *theta, *vector;
     size_t n;
