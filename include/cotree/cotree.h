@@ -21,14 +21,17 @@
  *
  * What always holds:
  *
- * - A function that fails returns NULL or false and has put at least one diagnostic into the context.
- * - A function that gets a NULL context, system, run or state fails without a diagnostic; it returns
- *   NaN for numbers and 0 for counts. A chain of calls needs only one check at its end.
- * - Options are structs in which zero selects the default. Words in them (methods, formats, trees) are
- *   those of the command line. Their first member is the size of the struct; 0 stands for the size in
- *   this header. Programs therefore run with later libraries whose structs have more members.
- * - A loaded system does not change. Any number of threads may use it, each with its own context, runs
- *   and states. A system must live as long as everything that was created from it.
+ * - A function that fails returns NULL or false and has put at least one diagnostic into the
+ *   context.
+ * - A function that gets a NULL context, system, run or state fails without a diagnostic; it
+ *   returns NaN for numbers and 0 for counts. A chain of calls needs only one check at its end.
+ * - Options are structs in which zero selects the default. Words in them (methods, formats,
+ *   trees) are those of the command line. Their first member is the size of the struct; 0
+ *   stands for the size in this header. Programs therefore run with later libraries whose
+ *   structs have more members.
+ * - A loaded system does not change. Any number of threads may use it, each with its own
+ *   context, runs and states. A system must live as long as everything that was created from
+ *   it.
  * - The locale of the program has no effect on what is read or written.
  */
 #ifndef COTREE_COTREE_H
@@ -45,7 +48,7 @@
 extern "C" {
 #endif
 
-/* ---- the context: where diagnostics go ------------------------------------------------------- */
+/* ---- the context: where diagnostics go ------------------------------------------------------ */
 
 struct ct_ctx;
 
@@ -110,7 +113,7 @@ CT_API const char *ct_version(void);
  */
 CT_API const char *ct_did_you_mean(const char *name, const char *const *names, size_t n);
 
-/* ---- files ------------------------------------------------------------------------------------- */
+/* ---- files ---------------------------------------------------------------------------------- */
 
 enum ct_contents {
     CT_CONTENTS_TABLE,   /* results: .csv, .csv.gz, .json, .npz (NumPy), .mat (version 4) */
@@ -153,7 +156,7 @@ CT_API bool ct_output_close(struct ct_ctx *ctx, struct ct_output *o, bool ok);
  */
 CT_API char *ct_import_urdf(struct ct_ctx *ctx, const char *path, const char *model);
 
-/* ---- systems: a model and its equations ------------------------------------------------------- */
+/* ---- systems: a model and its equations ----------------------------------------------------- */
 
 struct ct_system;
 
@@ -170,17 +173,18 @@ struct ct_system_options {
     const char *const *set; /* "NAME=VALUE": values that replace those of parameters */
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
-    bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
+    bool keep_all;    /* planar mechanisms keep their spatial equations */
     enum ct_columns_more columns;
-    bool
-        for_analysis; /* modes, equilibria, buckling, no runs: beams keep all that their sections allow, also what the
-                         scene does not excite, and large systems are made in less time */
-    long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
+    /** For modes, equilibria and buckling, not for runs. Beams keep all deformations of their
+     *  sections, also those that no load excites, and large systems are derived faster. */
+    bool for_analysis;
+    long beam_elements; /* > 0: number of equal elements of every beam, instead of the file's */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
-    const char *
-        input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
-    bool hold_input; /* a row of it counts from its t on; else it is linear between rows */
+    /** CSV file with the inputs of all runs as functions of time: a column `t` [s] and columns by
+     *  name. NULL: inputs are constant. */
+    const char *input;
+    bool hold_input; /* values are held from each row to the next; else linear interpolation */
     const char *const *output; /* "NAME=EXPRESSION": outputs behind those of the file */
     size_t noutput;
 };
@@ -265,8 +269,9 @@ struct ct_item {
     const char *name;    /* belongs to the system, as the other texts */
     const char *unit;    /* "rad", "N*m", "" for a pure number; NULL: not known */
     const char *meaning; /* a few words */
-    double
-        value; /* default of a parameter or input, start of a coordinate, speed or output; else NaN */
+    /** Default of a parameter or input, value of a coordinate, speed or output at the start; else
+     *  NaN. SI units. */
+    double value;
     size_t line, column; /* where the file says it, from 1; 0: nowhere */
 };
 
@@ -277,7 +282,7 @@ CT_API bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_
 /** Index of a name; -1 if it does not exist. */
 CT_API long ct_system_find(const struct ct_system *sys, enum ct_kind kind, const char *name);
 
-/* ---- runs -------------------------------------------------------------------------------------- */
+/* ---- runs ----------------------------------------------------------------------------------- */
 
 struct ct_sim;
 
@@ -290,7 +295,7 @@ struct ct_sim_options {
     double step;     /* fixed step [s] */
     double until;    /* end time [s]; the spacing of samples stays that of the model */
     long samples;    /* number of samples, both ends included */
-    bool verify; /* after the run another one, and from both the global error of each output */
+    bool verify;     /* a second run estimates the global error of each output */
     const char *
         backend; /* what evaluates the equations: "auto", "native" or "tape"; same to round-off */
     const char *solver; /* what finds the accelerations of closed loops: "auto", "unrolled",
@@ -404,7 +409,7 @@ CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *fo
 CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                                 const char *place, long lanes);
 
-/* ---- one state of a system, step by step ------------------------------------------------------------ */
+/* ---- one state of a system, step by step ---------------------------------------------------- */
 
 /**
  * A state: time, coordinates q, speeds u, inputs, parameters, and the quantities that follow
@@ -516,7 +521,7 @@ CT_API bool ct_data_inverse(struct ct_ctx *ctx, struct ct_data *data,
 CT_API bool ct_data_pose(struct ct_ctx *ctx, struct ct_data *data, size_t frame, double R[9],
                          double p[3]);
 
-/* ---- speed against error ------------------------------------------------------------------------- */
+/* ---- speed against error -------------------------------------------------------------------- */
 
 struct ct_accuracy;
 
@@ -540,8 +545,10 @@ struct ct_accuracy_options {
     } * variant;
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
-    int per_decade; /* tolerances, or steps from run.step on, in a power of ten, at most 10; 0: powers of ten, the other tolerances begin at 1e-2 */
-    FILE *bar;      /* progress is shown there if it is a terminal */
+    /** How many tolerances, or steps beginning with run.step, are tried in each decade; at most 10.
+     *  0: powers of ten. If it is given, the tolerances begin at 1e-2. */
+    int per_decade;
+    FILE *bar; /* progress is shown there if it is a terminal */
 };
 
 /**
@@ -570,7 +577,7 @@ CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
 /** The same as a text, to be freed by ct_free. */
 CT_API char *ct_accuracy_summary(const struct ct_accuracy *a);
 
-/* ---- parameter studies ---------------------------------------------------------------------------- */
+/* ---- parameter studies ---------------------------------------------------------------------- */
 
 struct ct_study;
 
@@ -584,10 +591,10 @@ struct ct_study_options {
      */
     const char *const *vary;
     size_t nvary;
-    long sample;             /* > 0: so many random members instead of the grid */
+    long sample;             /* > 0: number of random members instead of the grid */
     unsigned long long seed; /* of the random numbers: same seed, same members */
-    long threads;            /* at most; 0: all cores. One without OpenMP. */
-    long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
+    long threads;            /* at most; 0: all cores. 1 without OpenMP. */
+    long lanes;              /* members in a SIMD batch: 1, 4, or 8; 0: 4 if possible */
     const char
         *members; /* a CSV file of members instead of `vary`: its columns are parameters */
     /**
@@ -612,7 +619,7 @@ struct ct_study_results {
     size_t size; /* 0, or sizeof (struct ct_study_results) */
     const char
         *path;   /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
-    bool resume; /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    bool resume; /* continues an interrupted sweep, whose rows are in PATH.partial */
     FILE *bar;   /* progress is shown there if it is a terminal */
     /**
      * Called after each member, from any thread but not concurrently, with the number of
@@ -686,7 +693,7 @@ CT_API char *ct_study_summary_json(const struct ct_study *study);
 CT_API bool ct_study_merge(struct ct_ctx *ctx, const char *path, const char *const *part,
                            size_t n);
 
-/* ---- analyses about a configuration ------------------------------------------------------------------ */
+/* ---- analyses about a configuration --------------------------------------------------------- */
 
 struct ct_equilibrium;
 
@@ -872,7 +879,7 @@ CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
 /** The same as a text, to be freed by ct_free. */
 CT_API char *ct_buckling_summary(const struct ct_buckling *s);
 
-/* ---- parameter variation of analyses --- */
+/* ---- parameter variation of analyses -------------------------------------------------------- */
 
 /** Zero selects defaults. */
 struct ct_vary_options {
@@ -909,15 +916,16 @@ CT_API bool ct_vary(struct ct_ctx *ctx, const char *path,
                     const struct ct_system_options *system,
                     const struct ct_vary_options *options, const char *out);
 
-/* ---- pictures -------------------------------------------------------------------------------------- */
+/* ---- pictures ------------------------------------------------------------------------------- */
 
 /** Zero draws the start in the default view. */
 struct ct_draw_options {
     size_t size; /* 0, or sizeof (struct ct_draw_options) */
-    const char *
-        view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
-    double time; /* [s]; > 0: the motion is followed up to there first */
-    bool trace;  /* the start, with the paths of points and of beams' ends over the run */
+    /** "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism,
+     *  otherwise "iso". */
+    const char *view;
+    double time; /* [s]; > 0: the configuration at this time of a run is drawn */
+    bool trace;  /* draws the start and the paths of points and beam ends over the run */
     struct ct_sim_options run;
     const char *path; /* FILE.svg; NULL: standard output */
     FILE *bar;        /* progress is shown there if it is a terminal */
@@ -980,7 +988,7 @@ CT_API bool ct_plot_row(void *plot, double t, const double *value, size_t n);
 /** Writes the plot as SVG with one panel for each unit. Errors: E002. */
 CT_API bool ct_plot_write(struct ct_ctx *ctx, struct ct_plot *plot, const char *path);
 
-/* ---- what there is ------------------------------------------------------------------------------- */
+/* ---- what there is -------------------------------------------------------------------------- */
 
 /** Prints the component types with their terminal equations and keys. */
 CT_API void ct_components_print(FILE *out);

@@ -163,7 +163,8 @@ static bool is_of_this_kind(struct large *g)
 
 // ---- eigenvalues ----------------------------------------------------------------------------
 
-// n eigenvalues theta of OP, |theta| descending, and eigenvectors (nu x n) of unit size in the metric.
+// n eigenvalues theta of OP, |theta| descending, and eigenvectors (nu x n) of unit size in the
+// metric.
 struct pairs {
     double *theta, *vector;
     size_t n;
