@@ -77,7 +77,7 @@ static void list_loops(struct ct_arena *a, struct ct_loops *out)
     }
 }
 
-// ---- singular values ----------------------------------------------------------------------------
+// ---- singular values -----------------------------------------------------------------------
 
 static double entry(const struct ct_loops *l, size_t k)
 {

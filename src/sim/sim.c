@@ -41,7 +41,7 @@ static const double high_order_up_to = 1e-2;
 // Limit: of the time to read the clock.
 static const long steps_between_looks = 32; // reading the clock, for runs with a deadline
 
-// ---- options -------------------------------------------------------------------------------------------
+// ---- options -------------------------------------------------------------------------------
 
 static bool wrong_option(struct ct_sim *sim, const char *name, double value)
 {
@@ -203,7 +203,7 @@ bool ct_sim_choose_backend(struct ct_sim *sim, const char *name)
                     "there is no back end '%s'; there are auto, native, tape", name);
 }
 
-// ---- the start ---------------------------------------------------------------------------------------
+// ---- the start -----------------------------------------------------------------------------
 
 struct create {
     struct ct_sim *sim;
@@ -331,7 +331,7 @@ void ct_sim_destroy(struct ct_sim *sim)
     free(sim);
 }
 
-// ---- the run -------------------------------------------------------------------------------------------
+// ---- the run -------------------------------------------------------------------------------
 
 static bool at_row(void *user, double t, const double *value, size_t n)
 {

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- lists --------------------------------------------------------------------------------------------
+// ---- lists ---------------------------------------------------------------------------------
 
 // A list with a title, broken into lines of limited width.
 struct list {
@@ -40,7 +40,7 @@ static void end_list(struct list *l)
         fputc('\n', l->out);
 }
 
-// ---- what a run did -----------------------------------------------------------------------------------
+// ---- what a run did ------------------------------------------------------------------------
 
 static bool same_trees(const struct ct_equations *e)
 {
@@ -341,7 +341,7 @@ char *ct_sim_summary(const struct ct_sim *sim)
     return ct_print_text(print_summary, sim);
 }
 
-// ---- what a system is ----------------------------------------------------------------------------------
+// ---- what a system is ----------------------------------------------------------------------
 
 struct part {
     long n;

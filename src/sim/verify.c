@@ -115,7 +115,7 @@ static struct companion choose(const struct ct_sim *sim)
     return held < least_gain * least ? choose_looser(sim) : choose_tighter(sim, least);
 }
 
-// ---- comparing ----------------------------------------------------------------------------------
+// ---- comparing -----------------------------------------------------------------------------
 
 struct comparison {
     const struct ct_sim *sim;
@@ -204,7 +204,7 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
                 e->holds_until = k ? c->time[k - 1] : 0;
 }
 
-// ---- the second run -----------------------------------------------------------------------------
+// ---- the second run ------------------------------------------------------------------------
 
 static const char *describe(struct ct_arena *a, const struct companion *c)
 {
