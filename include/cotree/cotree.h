@@ -230,7 +230,8 @@ CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, con
  * Prints the derivation of the equations of motion.
  *
  * stages  in   a list of "terminal,graph,tree,cutset,circuit,reduced", or "all"; NULL: tree,reduced
- * format  in   "text", "latex", "html", "c" or "json"; NULL: text. C has only the reduced equations.
+ * format  in   "text", "latex", "html", "c" or "json"; NULL: text. "c" has only the reduced
+ *              equations.
  *
  * Systems of more than 100 speeds are printed in recursive form, except in C
  * (docs/equations.md).

@@ -3,8 +3,8 @@
 //
 //     tighter tolerance     its error is small, so that the difference is the error of the first
 //     half the fixed step   its error is 2^-order times that of the first (Richardson)
-//     looser tolerance      if double precision does not allow a tighter one: its error is larger, and
-//                           so is the difference
+//     looser tolerance      if double precision does not allow a tighter one: its error is larger,
+//                           and so is the difference
 //
 // A second run with nearly the same steps has nearly the same errors, round-off included, and
 // the difference says nothing about them: see is_other, (8.31).

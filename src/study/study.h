@@ -108,8 +108,7 @@ bool ct_study_close(struct ct_study *s, bool ok);
 /// Returns the settings that the rows of a study depend on, one line for each; in s->own.model.
 const char *ct_study_settings(struct ct_study *s);
 /// The first setting that differs between two such texts; NULL: a text lacks it.
-/// ct_study_find_difference returns false
-/// if none differs.
+/// ct_study_find_difference returns false if none differs.
 struct ct_setting_difference {
     const char *name, *before, *now;
 };
