@@ -1,4 +1,4 @@
-// Samples packed as text: what the page of a report carries.
+// Samples packed as text, for the page of a report.
 //
 //     numbers -> multiples k of a step -> second differences -> bytes, plane by plane -> deflate -> base64
 //
@@ -21,12 +21,12 @@
 size_t ct_pack_write(struct ct_json *j, struct ct_arena *a, const char *key,
                      const double *value, size_t nrow, size_t ncolumn);
 
-/// The same where less than resolution[c] of column c is of no use: a step is no shorter. NULL: 0.
+/// The same with a step not smaller than resolution[c] in column c. NULL: 0.
 size_t ct_pack_write_rounded(struct ct_json *j, struct ct_arena *a, const char *key,
                              const double *value, size_t nrow, size_t ncolumn,
                              const double *resolution);
 
-/// n bytes as base64 (RFC 4648), in arena a.
+/// Encodes n bytes in base64 (RFC 4648), in arena a.
 char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n);
 
 #endif

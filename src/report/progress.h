@@ -19,9 +19,9 @@ struct ct_progress {
 
 /// out is stderr except in tests.
 void ct_progress_init(struct ct_progress *p, FILE *out, const char *label);
-/// Show the fraction done, 0 to 1; others are clipped, NaN is ignored.
+/// Shows the fraction done, 0 to 1; other values are clipped, NaN is ignored.
 void ct_progress_update(struct ct_progress *p, double fraction);
-/// Erase the bar. Accepts all zeros.
+/// Erases the bar. Accepts all zeros.
 void ct_progress_finish(struct ct_progress *p);
 
 #endif

@@ -15,12 +15,12 @@
 #include <math.h>
 #include <string.h>
 
-// Beyond this many operators and operands a side is not multiplied out: where it is written by definitions, bodies
-// that are tidied have fewer than 1000 (reduced.c).
-// Limit: of the time to expand; beyond, a side has no table of terms
+// Above this number of operators and operands a side is not expanded. If a side uses
+// definitions, collected definitions have fewer than 1000 (reduced.c).
+// Limit: of the time to expand; beyond it a side has no table of terms.
 static const double longest = 20000;
 
-// ---- sets of origins ----------------------------------------------------------------------------
+// ---- sets of origins -----------------------------------------------------------------------
 
 // Each set has a number; 0 is the empty one.
 struct sets {
@@ -95,7 +95,7 @@ static uint32_t unite(struct sets *s, uint32_t a, uint32_t b)
     return intern(s);
 }
 
-// ---- the marked equations -----------------------------------------------------------------------
+// ---- the marked equations ------------------------------------------------------------------
 
 struct finder {
     struct ct_derivation *d;
@@ -118,7 +118,7 @@ struct finder {
     uint32_t *with; // by origin: one that is named with it, the body of a frame; itself: none
 };
 
-// The same equations from the marked model, on the same trees.
+// Derives the same equations from the marked model on the same trees.
 static struct ct_build *derive_marked(struct finder *f)
 {
     const struct ct_build *like = f->d->e->build;
@@ -228,7 +228,7 @@ static void take_marked(struct finder *f, struct ct_build *b)
     f->x = b->x;
 }
 
-// ---- marks of nodes -----------------------------------------------------------------------------
+// ---- marks of nodes ------------------------------------------------------------------------
 
 static ct_ex label_of(struct finder *f, uint32_t set)
 {
@@ -286,7 +286,7 @@ static uint32_t *origin_of_symbols(struct finder *f)
     return origin;
 }
 
-// ---- definitions --------------------------------------------------------------------------------
+// ---- definitions ---------------------------------------------------------------------------
 
 // A definition by the values of what it names.
 struct named {
@@ -326,9 +326,10 @@ static double value_of(const struct finder *f, uint32_t id, int point)
                        narg > 2 ? f->value[n.c][point] : 0);
 }
 
-// Sums of some hundred products differ by that much of their size where they are written in another order; that two
-// different expressions agree as well at two points is not to be expected.
-// Derived: n eps, n of some hundred, of products of some factors
+// Two values are equal if their relative difference is below this. Sums of some hundred
+// products in a different order differ by less; different expressions are not expected to agree
+// at two points.
+// Derived: n eps, n of some hundred, of products of some factors.
 static const double same_value = 1e-10;
 
 static bool is_same(double a, double b)
@@ -429,7 +430,7 @@ static void mark_nodes(struct finder *f)
     }
 }
 
-// ---- origins of terms ---------------------------------------------------------------------------
+// ---- origins of terms ----------------------------------------------------------------------
 
 // A side of an equation: what is printed, and what of the marked equations is the same.
 struct side {
@@ -573,7 +574,7 @@ static void match(struct finder *f, const struct side *side, const ct_ex *term, 
     ct_arena_destroy(a);
 }
 
-// ---- sides --------------------------------------------------------------------------------------
+// ---- sides ---------------------------------------------------------------------------------
 
 static ct_ex expression_of(struct ct_equations *e, const struct ct_reduced *r,
                            enum ct_equation_kind kind, size_t i, bool is_right)
@@ -655,7 +656,7 @@ static void find_full(struct finder *f)
         p->term[i].full = full[i];
 }
 
-// ---- symbols ------------------------------------------------------------------------------------
+// ---- symbols -------------------------------------------------------------------------------
 
 static void name_symbol(uint32_t *of, const struct ct_exs *x, ct_ex symbol, uint32_t origin)
 {
@@ -737,7 +738,7 @@ static void find_bodies_of_frames(struct finder *f)
         f->with[f->marked.of_frame[i]] = f->marked.of_body[m->frame[i].body];
 }
 
-// ---- the entry ----------------------------------------------------------------------------------
+// ---- the entry -----------------------------------------------------------------------------
 
 static bool has(const struct sets *s, uint32_t set, uint32_t origin)
 {
