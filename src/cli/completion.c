@@ -1,7 +1,7 @@
 // cotree completion: scripts that complete command lines, from the tables of commands and options.
 //
-// Each script completes the command first, then the options of that command; after an option its words, or files where its
-// value is one.
+// Each script completes the command first, then the options of that command; after an option
+// its words, or files where its value is one.
 #include "cli/cli.h"
 
 #include <string.h>

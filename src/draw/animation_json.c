@@ -8,7 +8,8 @@
 //     traces   [{body, at: [pose, x, y, z]}], and ends of beams
 //     times, samples: packed
 //
-// Axes are unit vectors: the first one moves with the pose of `from`, the second one with that of `to`.
+// Axes are unit vectors: the first one moves with the pose of `from`, the second one with that
+// of `to`.
 #include "draw/animation.h"
 
 #include "draw/view.h"

@@ -1,5 +1,5 @@
-// Section `equations`: the equations of motion and of the constraints, a row per term with its value, the components that each
-// term comes from, and the named expressions that they use.
+// Section `equations`: the equations of motion and of the constraints, a row per term with its
+// value, the components that each term comes from, and the named expressions that they use.
 #include "html/components.h"
 #include "html/html.h"
 #include "html/terms.h"
@@ -218,8 +218,8 @@ static void put_text(struct ct_html *h, struct ct_derivation *plain)
     fputs("</pre></details>\n", h->out);
 }
 
-// Plain text for readers without scripts; a script replaces it by the same typeset, equation by equation (web/equations.js). False: too long
-// for that.
+// Plain text for readers without scripts; a script replaces it by the same typeset, equation by
+// equation (web/equations.js). False: too long for that.
 static bool put_packed(struct ct_html *h, struct ct_derivation *plain)
 {
     const char *text = write_all(h, NULL, true);

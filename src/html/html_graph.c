@@ -1,5 +1,5 @@
-// Section `graph`: the linear graph as a picture, a list of its edges, and the cutset or circuit equation of each edge in each
-// tree.
+// Section `graph`: the linear graph as a picture, a list of its edges, and the cutset or
+// circuit equation of each edge in each tree.
 #include "html/components.h"
 #include "html/html.h"
 #include "formulate/build.h"

@@ -1,9 +1,11 @@
-// Named arrays in one file, for other programs: FILE.npz for NumPy, FILE.mat for MATLAB, Octave and SciPy.
+// Named arrays in one file, for other programs: FILE.npz for NumPy, FILE.mat for MATLAB, Octave
+// and SciPy.
 //
 //     numpy.load("file.npz")["A"]        load("file.mat"); A
 //
-// .npz is a ZIP archive with one compressed .npy file for each array; .mat is of version 4. Matrices are column-major
-// in memory and in both files. What always holds: the same arrays give the same bytes.
+// .npz is a ZIP archive with one compressed .npy file for each array; .mat is of version 4.
+// Matrices are column-major in memory and in both files. What always holds: the same arrays
+// give the same bytes.
 #ifndef CT_REPORT_ARCHIVE_H
 #define CT_REPORT_ARCHIVE_H
 

@@ -10,8 +10,8 @@
 //     om_rod.x            angular velocity of the frame in its own axes, in which forces and torques stand
 //     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f where that is linear (4.11)
 //
-// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation with its parts put in is the
-// equation without them, up to round-off.
+// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation
+// with its parts put in is the equation without them, up to round-off.
 #ifndef CT_REPORT_BEAM_PARTS_H
 #define CT_REPORT_BEAM_PARTS_H
 

@@ -3,8 +3,9 @@
 //     t,crank.q,"atan2(y, x)"         header: quoted where a comma, quote or line end asks for it
 //     0,0.5,1.25                      numbers: fewest digits that read back to the same bits
 //
-// What always holds: each row has as many fields as the header (asserted); what has reached the system ends with a
-// whole row; the file appears under its name only when it is complete (outfile.h).
+// What always holds: each row has as many fields as the header (asserted); what has reached the
+// system ends with a whole row; the file appears under its name only when it is complete
+// (outfile.h).
 #ifndef CT_REPORT_CSV_H
 #define CT_REPORT_CSV_H
 

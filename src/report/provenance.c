@@ -250,7 +250,8 @@ static ct_ex with_label(struct finder *f, ct_ex e, uint32_t set)
     return set ? ct_ex_mul(f->x, e, label_of(f, set)) : e;
 }
 
-// Products and sums are multiplied out; whatever else is in a denominator or a function has its marks outside.
+// Products and sums are multiplied out; whatever else is in a denominator or a function has its
+// marks outside.
 static ct_ex labelled(struct finder *f, uint32_t id, const struct ct_exnode *n)
 {
     struct ct_exs *x = f->x;
@@ -358,7 +359,8 @@ static ct_ex definition_with(struct finder *f, const struct named *list, size_t 
     return CT_EX_ZERO;
 }
 
-// Definitions of nodes that the marked equations have but for marks, by node; the others by value, in *out.
+// Definitions of nodes that the marked equations have but for marks, by node; the others by
+// value, in *out.
 static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struct named **out)
 {
     const struct ct_definitions *list = &f->r->definitions;
@@ -442,7 +444,8 @@ struct side {
     uint32_t set; // of all its marks
 };
 
-// An expression of f->x in a store of its own, so that work on it does not depend on the size of that one.
+// An expression of f->x in a store of its own, so that work on it does not depend on the size
+// of that one.
 struct small {
     struct ct_exs x;
     struct ct_exs *from;
@@ -488,7 +491,8 @@ static size_t copy_quaternions(struct finder *f, struct small *s, struct ct_aren
     return n;
 }
 
-// Marks of an acceleration's or multiplier's coefficient where a term is such a product; of the whole side otherwise.
+// Marks of an acceleration's or multiplier's coefficient where a term is such a product; of the
+// whole side otherwise.
 static uint32_t marks_of_coefficient(const struct finder *f, const struct side *side,
                                      ct_ex term)
 {
@@ -673,7 +677,8 @@ static uint32_t owner_of_edge(const struct finder *f, int edge, bool *is_known)
                                    : 0;
 }
 
-// By symbol of the equations: the component whose coordinate, speed or multiplier it is, or the parameter; plus one.
+// By symbol of the equations: the component whose coordinate, speed or multiplier it is, or the
+// parameter; plus one.
 static uint32_t *owners_of_symbols(const struct finder *f)
 {
     const struct ct_equations *e = f->d->e;
@@ -828,7 +833,8 @@ static void find_marks(struct finder *f, struct side *side, size_t nside, uint32
     }
 }
 
-// Outputs that are reactions or accelerations, collected as the equations are; others have no terms to list. NULL: none.
+// Outputs that are reactions or accelerations, collected as the equations are; others have no
+// terms to list. NULL: none.
 static ct_ex *list_outputs(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const unsigned wanted = 1u << CT_SYM_A | 1u << CT_SYM_LAM;

@@ -133,7 +133,8 @@ static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
     return size;
 }
 
-// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and gears do on it.
+// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and
+// gears do on it.
 static void find_efforts(struct ct_equations *e, ct_ex *effort)
 {
     struct ct_build *b = e->build;

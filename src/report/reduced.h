@@ -87,8 +87,9 @@ ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, si
 ///     d_pin.x, v_pin.x, a_pin.x   vector from the previous joint to pin; its rates with all u' = 0
 ///     F_pin.x, T_rod.x        force and torque that the branch must supply, with all u' = 0
 ///
-/// At CT_FULL these are those of the recursive form, with the symbols u'. There a is less gravity, and F is the force
-/// that all outboard of pin needs beyond m*a. What is lumped has names, too:
+/// At CT_FULL these are those of the recursive form, with the symbols u'. There a is less
+/// gravity, and F is the force that all outboard of pin needs beyond m*a. What is lumped has
+/// names, too:
 ///
 ///     m_pin, h_rod.x, I_rod.zz    mass outboard of pin; first moment and inertia of rod with what hangs on it
 void ct_reduced_label(struct ct_equations *e, enum ct_level level);
