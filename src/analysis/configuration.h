@@ -1,4 +1,4 @@
-// Analyses about a configuration: static equilibrium, linearisation to state-space matrices,
+// Analyses about a configuration: equilibrium, linearisation to state-space matrices,
 // natural modes, static buckling, and a survey of loops. Files command_*.c implement the
 // commands of the public interface; the others are the numerical methods below them.
 //

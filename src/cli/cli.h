@@ -160,7 +160,7 @@ bool cli_vary(struct ct_ctx *ctx, const struct cli_command *command,
 /// the system.
 bool cli_summarize(struct ct_ctx *ctx, struct ct_system *sys, const struct cli_args *args);
 
-/// Integrates (ct_sim_run) or does a kinematic analysis (ct_sim_follow).
+/// Integrates (ct_sim_run) or follows a motion prescribed by drivers (ct_sim_follow).
 typedef bool cli_motion(struct ct_ctx *ctx, struct ct_sim *sim,
                         const struct ct_sim_results *results);
 /// Receives each sample, as `row` of struct ct_sim_results.

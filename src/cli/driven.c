@@ -1,4 +1,4 @@
-// cotree kinematics, cotree inverse: kinematic analysis and inverse dynamics of a motion
+// cotree kinematics, cotree inverse: kinematics and inverse dynamics of a motion
 // prescribed by drivers.
 #include "cli/cli.h"
 

@@ -186,7 +186,7 @@ static bool write(void *task)
 static bool make(struct report *r)
 {
     struct ct_sim_options run = r->options->run;
-    run.verify = true; // the page shows the error estimate
+    run.verify = true; // the page shows the estimate of the error
     r->sim = ct_sim_create(r->ctx, r->moved, &run);
     if (!r->sim)
         return false;

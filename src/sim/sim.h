@@ -5,7 +5,7 @@
 //     sim.c           options, the start, the motion
 //     solver.c        the linear solver of closed loops
 //     sim_beams.c     warnings about beams
-//     verify.c        error estimate by a second run
+//     verify.c        estimate of the error by a second run
 //     result_file.c   the file of results
 //     summary.h       figures for the summaries
 //
@@ -31,7 +31,7 @@ struct ct_output_error_estimate {
     double relative; // absolute / scale; NaN: the output is zero up to round-off
 };
 
-/// The error estimate from a second run; see verify.c.
+/// The estimate of the error from a second run; see verify.c.
 struct ct_estimate {
     const char *how;     // description of the second run; NULL: there was none
     const char *why_not; // reason why the second run failed
