@@ -19,14 +19,20 @@
  *     printf("%g\n", ct_data_value(d, CT_COORDINATE, 0));
  *     ct_data_destroy(d);
  *
- * What always holds: a function that fails returns NULL or false and has put at least one diagnostic
- * into the context. Functions that take a NULL context, system, run or state fail quietly (numbers are
- * NaN, counts 0), so that a chain of calls needs one check at its end. Options are structs in which zero
- * means the default; words in them (methods, formats, trees) are those of the command line. They begin
- * with their size, 0 for that of this header, so that programs run with libraries whose structs have
- * grown. A system does not change once it is loaded: any number of threads may use it, each with a context,
- * runs and states of its own. A system must live as long as what was made from it. The locale of the
- * program has no effect on what is read or written.
+ * What always holds:
+ *
+ * - A function that fails returns NULL or false and has put at least one diagnostic into the
+ *   context.
+ * - A function that gets a NULL context, system, run or state fails without a diagnostic; it
+ *   returns NaN for numbers and 0 for counts. A chain of calls needs only one check at its end.
+ * - Options are structs in which zero selects the default. Words in them (methods, formats,
+ *   trees) are those of the command line. Their first member is the size of the struct; 0
+ *   stands for the size in this header. Programs therefore run with later libraries whose
+ *   structs have more members.
+ * - A loaded system does not change. Any number of threads may use it, each with its own
+ *   context, runs and states. A system must live as long as everything that was created from
+ *   it.
+ * - The locale of the program has no effect on what is read or written.
  */
 #ifndef COTREE_COTREE_H
 #define COTREE_COTREE_H
@@ -42,103 +48,124 @@
 extern "C" {
 #endif
 
-/* ---- the context: where diagnostics go ------------------------------------------------------- */
+/* ---- the context: where diagnostics go ------------------------------------------------------ */
 
 struct ct_ctx;
 
-/** Whose mistake it was, in the numbers of exit statuses. */
+/** Whose mistake an error was; the values are exit statuses. */
 enum ct_fault {
     CT_FAULT_NONE = 0,  /* no error so far */
     CT_FAULT_MODEL = 1, /* the model or the run failed */
     CT_FAULT_OPTION = 2 /* an option has a value that cannot be used */
 };
 
-/** A new context, or NULL without memory. */
+/** Creates a context. NULL if memory is exhausted. */
 CT_API struct ct_ctx *ct_ctx_create(void);
-/** Accepts NULL. Systems and runs do not need the context they were made with any more. */
+/** Accepts NULL. Systems and runs stay valid without the context they were created with. */
 CT_API void ct_ctx_destroy(struct ct_ctx *ctx);
-/** Errors, warnings and notes so far, as FILE:LINE:COLUMN: error: MESSAGE with the source line. */
+/**
+ * Prints all errors, warnings and notes as FILE:LINE:COLUMN: error: MESSAGE, with the source
+ * line.
+ */
 CT_API void ct_ctx_print_diagnostics(const struct ct_ctx *ctx, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_ctx_diagnostics(const struct ct_ctx *ctx);
-/** The gravest fault among the diagnostics. */
+/** The most serious fault among the diagnostics. */
 CT_API enum ct_fault ct_ctx_fault(const struct ct_ctx *ctx);
 
 /**
- * Diagnostics one by one: errors and warnings in the order in which they came, notes with what they belong to. False
- * beyond the last one.
+ * Diagnostics one by one. Errors and warnings come in the order of their creation, notes after
+ * the diagnostic they belong to. ct_ctx_diagnostic returns false for an index beyond the last
+ * one.
  */
 CT_API size_t ct_ctx_count(const struct ct_ctx *ctx);
 CT_API bool ct_ctx_diagnostic(struct ct_ctx *ctx, size_t i, struct ct_diagnostic *diagnostic);
-/** Forget all diagnostics, and that a cancellation was asked for. */
+/** Removes all diagnostics and resets a cancellation. */
 CT_API void ct_ctx_clear(struct ct_ctx *ctx);
-/** Call back for each error and warning before the function that made it returns; NULL: no more. Not from within the callback. */
+/**
+ * Calls back for each error and warning before the function that caused it returns; NULL: no
+ * callback. Do not call this from the callback.
+ */
 CT_API void ct_ctx_on_diagnostic(struct ct_ctx *ctx,
                                  void (*callback)(void *user,
                                                   const struct ct_diagnostic *diagnostic),
                                  void *user);
 /**
- * From any thread or signal handler: all work with this context ends at its next accepted step, or between parts of an
- * analysis, with E005, and so does what begins after it, until ct_ctx_clear. Rows that are complete stay in PATH.partial.
+ * Cancels all work with this context; may be called from any thread or signal handler. A run
+ * ends at its next accepted step and an analysis at its next part, with error E005. Work that
+ * begins later ends in the same way until ct_ctx_clear. Complete rows stay in PATH.partial.
  */
 CT_API void ct_ctx_cancel(struct ct_ctx *ctx);
-/** Has something been cancelled? */
+/** True if work with this context was cancelled. */
 CT_API bool ct_ctx_was_interrupted(const struct ct_ctx *ctx);
 
-/** Free a text that the library has made. Accepts NULL. */
+/** Frees a text that the library has returned. Accepts NULL. */
 CT_API void ct_free(void *text);
 
-/** The version of this header; of the library, as in "0.1.0". */
+/** Version of this header; ct_version returns that of the library, such as "0.1.0". */
 #define CT_VERSION_MAJOR 0
 #define CT_VERSION_MINOR 1
 #define CT_VERSION_PATCH 0
 CT_API const char *ct_version(void);
-/** The name of n that is nearest to a misspelt one, or NULL if none is near. */
+/**
+ * Returns the one of n names that is most similar to a misspelt one, or NULL if none is
+ * similar.
+ */
 CT_API const char *ct_did_you_mean(const char *name, const char *const *names, size_t n);
 
-/* ---- files ------------------------------------------------------------------------------------- */
+/* ---- files ---------------------------------------------------------------------------------- */
 
 enum ct_contents {
     CT_CONTENTS_TABLE,   /* results: .csv, .csv.gz, .json, .npz (NumPy), .mat (version 4) */
     CT_CONTENTS_SUMMARY, /* .json */
     CT_CONTENTS_PLOT     /* .svg */
 };
-/** Is there a format for the suffix of path? Without a suffix it is the first one. Errors: E007. */
+/**
+ * True if a format belongs to the suffix of path. A path without a suffix gets the first
+ * format. Errors: E007.
+ */
 CT_API bool ct_can_write(struct ct_ctx *ctx, enum ct_contents contents, const char *path);
 
 /**
- * A text file that appears under its name when it is complete, for what is printed to streams.
+ * Opens a text file for printing to its stream. The file appears under its name when it is
+ * complete.
  *
  * path    in    NULL or "-": standard output
  *
- * Errors  E002; E006 while another process is writing it
+ * Errors  E002; E006 if another process is writing the file
  * Owner   the caller, until ct_output_close
  */
 CT_API struct ct_output *ct_output_open(struct ct_ctx *ctx, const char *path);
 CT_API FILE *ct_output_stream(const struct ct_output *o);
-/** ok: what was written is whole; else nothing of it stays. True if it is there. Accepts NULL. Errors: E002. */
+/**
+ * Closes the file. ok: its contents are complete; otherwise it is deleted. Returns true if the
+ * file exists under its name. Accepts NULL. Errors: E002.
+ */
 CT_API bool ct_output_close(struct ct_ctx *ctx, struct ct_output *o, bool ok);
 
 /**
- * The text of a model file for a robot description (URDF): links are bodies, joints joints, mimic a gear, visuals shapes.
- * What is not used is a warning (E574) with its line.
+ * Converts a robot description (URDF) to the text of a model file. Links become bodies, joints
+ * become joints, `mimic` becomes a gear, visuals become shapes. Each element that is not used
+ * gives a warning (E574) with its line.
  *
- * model   in    the file that the text is for, which decides how it names meshes; NULL: in full
+ * model   in    path of the model file to be written; meshes are named relative to it. NULL: full
+ *               paths
  *
  * Errors  E571 to E573, E002
  * Owner   the caller, until ct_free
  */
 CT_API char *ct_import_urdf(struct ct_ctx *ctx, const char *path, const char *model);
 
-/* ---- systems: a model and its equations ------------------------------------------------------- */
+/* ---- systems: a model and its equations ----------------------------------------------------- */
 
 struct ct_system;
 
-/** Columns beside the model's outputs. */
+/** Columns of results in addition to the model's outputs. */
 enum ct_columns_more {
     CT_COLUMNS_OF_MODEL = 0,
-    CT_COLUMNS_COORDINATES, /* if it lists none: coordinates, speeds and accelerations of all joints */
-    CT_COLUMNS_EFFORTS /* efforts of motions, forces and torques of all joints */
+    /* if the model lists no outputs: coordinates, speeds and accelerations of all joints */
+    CT_COLUMNS_COORDINATES,
+    CT_COLUMNS_EFFORTS /* efforts of drivers; forces and torques of all joints */
 };
 
 struct ct_system_options {
@@ -146,25 +173,26 @@ struct ct_system_options {
     const char *const *set; /* "NAME=VALUE": values that replace those of parameters */
     size_t nset;
     const char *tree; /* "auto", "joints", "absolute", or a YAML file that names the branches */
-    bool keep_all;    /* leave nothing out: planar mechanisms keep their spatial rows */
+    bool keep_all;    /* planar mechanisms keep their spatial equations */
     enum ct_columns_more columns;
-    bool
-        for_analysis; /* modes, equilibria, buckling, no runs: beams keep all that their sections allow, also what the
-                         scene does not excite, and large systems are made in less time */
-    long beam_elements; /* > 0: of every beam, equally long, whatever the file says */
+    /** For modes, equilibria and buckling, not for runs. Beams keep all deformations of their
+     *  sections, also those that no load excites, and large systems are derived faster. */
+    bool for_analysis;
+    long beam_elements; /* > 0: number of equal elements of every beam, instead of the file's */
     const char *
         beam_formulation; /* of every beam: "linear", "foreshortening" ...; NULL: as in the file */
-    const char *
-        input; /* a CSV file that plays inputs in all runs, columns by name and `t`; NULL: they are constant */
-    bool hold_input; /* a row of it counts from its t on; else it is linear between rows */
+    /** CSV file with the inputs of all runs as functions of time: a column `t` [s] and columns by
+     *  name. NULL: inputs are constant. */
+    const char *input;
+    bool hold_input; /* values are held from each row to the next; else linear interpolation */
     const char *const *output; /* "NAME=EXPRESSION": outputs behind those of the file */
     size_t noutput;
 };
 
 /**
- * Read a model file and derive its equations of motion.
+ * Reads a model file and derives its equations of motion.
  *
- * options  in   NULL: all defaults
+ * options  in   NULL: defaults
  *
  * Errors   E002, E003 and those of the file, E1xx and E2xx
  * Owner    the caller, until ct_system_destroy
@@ -172,53 +200,60 @@ struct ct_system_options {
 CT_API struct ct_system *ct_system_load(struct ct_ctx *ctx, const char *path,
                                         const struct ct_system_options *options);
 /**
- * The same for n bytes of text. name stands for the file in diagnostics; tables are sought beside it. NULL: "model".
+ * The same for n bytes of text. name stands for the file in diagnostics, and tables are
+ * searched in its folder. NULL: "model".
  */
 CT_API struct ct_system *ct_system_load_text(struct ct_ctx *ctx, const char *text, size_t n,
                                              const char *name,
                                              const struct ct_system_options *options);
-/** Accepts NULL. Its runs must be destroyed before. */
+/** Accepts NULL. Destroy its runs first. */
 CT_API void ct_system_destroy(struct ct_system *sys);
 
-/** Name of the model; columns of results without the first one, `t`. */
+/** Name of the model; names of the result columns without the first one, `t`. */
 CT_API const char *ct_system_name(const struct ct_system *sys);
 CT_API size_t ct_system_column_count(const struct ct_system *sys);
 CT_API const char *ct_system_column(const struct ct_system *sys, size_t i);
 
 /**
- * The cheapest pairs of trees that were weighed, ten at most, and why one was chosen. format: "text" or "json".
- * Number N is chosen by the option `tree` "N". Errors: E003.
+ * Prints the cheapest pairs of trees that were compared, at most ten, and the reason for the
+ * choice. format: "text" or "json". Option `tree` "N" of ct_system_load selects pair N. Errors:
+ * E003.
  */
 CT_API bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
 
-/** The linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
+/** Prints the linear graph and its trees. format: "text", "dot" or "json". Errors: E003. */
 CT_API bool ct_system_print_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format,
                                   FILE *out);
 
 /**
- * The derivation of the equations of motion.
+ * Prints the derivation of the equations of motion.
  *
- * stages  in   "terminal,graph,tree,cutset,circuit,reduced", some of them, or "all"; NULL: tree,reduced
- * format  in   "text", "latex", "html", "c" or "json"; NULL: text. C has the reduced equations only.
+ * stages  in   a list of "terminal,graph,tree,cutset,circuit,reduced", or "all"; NULL: tree,reduced
+ * format  in   "text", "latex", "html", "c" or "json"; NULL: text. "c" has only the reduced
+ *              equations.
  *
- * Systems of more than 100 speeds are in recursive form but in C (docs/equations.md).
+ * Systems of more than 100 speeds are printed in recursive form, except in C
+ * (docs/equations.md).
  *
  * Errors: E002 for the stream, E003.
  */
 CT_API bool ct_system_print_equations(struct ct_ctx *ctx, struct ct_system *sys,
                                       const char *stages, const char *format, FILE *out);
 
-/** The same for reading: of such systems lists in text, LaTeX and HTML show their first and last lines. */
+/**
+ * The same for reading: text, LaTeX and HTML show only the first and last lines of long lists
+ * of recursive equations.
+ */
 CT_API bool ct_system_summarize_equations(struct ct_ctx *ctx, struct ct_system *sys,
                                           const char *stages, const char *format, FILE *out);
 
-/** The same as texts, which ct_free frees; NULL where they fail. */
+/** The same as texts, to be freed by ct_free; NULL on failure. */
 CT_API char *ct_system_graph(struct ct_ctx *ctx, struct ct_system *sys, const char *format);
 CT_API char *ct_system_equations(struct ct_ctx *ctx, struct ct_system *sys, const char *stages,
                                  const char *format);
 
-/** What a system has names for. */
+/** Kinds of named items of a system. */
 enum ct_kind {
     CT_PARAMETER,
     CT_INPUT,      /* set from outside, held in between */
@@ -235,23 +270,24 @@ struct ct_item {
     const char *name;    /* belongs to the system, as the other texts */
     const char *unit;    /* "rad", "N*m", "" for a pure number; NULL: not known */
     const char *meaning; /* a few words */
-    double
-        value; /* default of a parameter or input, start of a coordinate, speed or output; else NaN */
+    /** Default of a parameter or input, value of a coordinate, speed or output at the start; else
+     *  NaN. SI units. */
+    double value;
     size_t line, column; /* where the file says it, from 1; 0: nowhere */
 };
 
 CT_API size_t ct_system_count(const struct ct_system *sys, enum ct_kind kind);
-/** False beyond the last one. */
+/** Describes item i of a kind. False if i is beyond the last one. */
 CT_API bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
                            struct ct_item *item);
-/** The number of a name; -1: there is none. */
+/** Index of a name; -1 if it does not exist. */
 CT_API long ct_system_find(const struct ct_system *sys, enum ct_kind kind, const char *name);
 
-/* ---- runs -------------------------------------------------------------------------------------- */
+/* ---- runs ----------------------------------------------------------------------------------- */
 
 struct ct_sim;
 
-/** Zero: what the model's `simulation` says. */
+/** Options of runs. Zero selects what the model's `simulation` says. */
 struct ct_sim_options {
     size_t size;        /* 0, or sizeof (struct ct_sim_options) */
     const char *method; /* a name that ct_methods_print lists, or "auto" */
@@ -260,30 +296,33 @@ struct ct_sim_options {
     double step;     /* fixed step [s] */
     double until;    /* end time [s]; the spacing of samples stays that of the model */
     long samples;    /* number of samples, both ends included */
-    bool verify; /* after the run another one, and from both the global error of each output */
+    bool verify;     /* a second run estimates the global error of each output */
     const char *
         backend; /* what evaluates the equations: "auto", "native" or "tape"; same to round-off */
     const char *solver; /* what finds the accelerations of closed loops: "auto", "unrolled",
                            "one-system", "sparse" or "dense"; not of studies */
 };
 
-/** Where results go. All of it may be zero. */
+/** Where results go. Each member may be zero. */
 struct ct_sim_results {
     size_t size; /* 0, or sizeof (struct ct_sim_results) */
     const char
         *path; /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
     FILE *bar; /* progress is shown there if it is a terminal */
-    /** Called at each accepted step; return false to stop the run there, which is no failure. */
+    /** Called at each accepted step. Return false to stop the run there; this is no failure. */
     bool (*progress)(void *user, double t, double end);
-    /** Called for each sample; return false to stop the run there, which is no failure. */
+    /**
+     * Called for each sample, with n values. Return false to stop the run there; this is no
+     * failure.
+     */
     bool (*row)(void *user, double t, const double *value, size_t n);
     void *user;
 };
 
 /**
- * A run of a system, assembled at t = 0 and ready to go.
+ * Creates a run of a system, assembled at t = 0.
  *
- * Errors   E003 for options; E4xx when the mechanism cannot be assembled
+ * Errors   E003 for options; E4xx if the mechanism cannot be assembled
  * Owner    the caller, until ct_sim_destroy
  */
 CT_API struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -292,162 +331,214 @@ CT_API struct ct_sim *ct_sim_create(struct ct_ctx *ctx, struct ct_system *sys,
 CT_API void ct_sim_destroy(struct ct_sim *sim);
 
 /**
- * Integrate to the end, once per run. results may be NULL.
+ * Integrates to the end time; once per run. results may be NULL.
  *
- * The file appears under its name when it is complete. When the run fails, the rows so far stay in
- * PATH.partial.
+ * The results file appears under its name when it is complete. If the run fails, the rows so
+ * far stay in PATH.partial.
  *
- * Errors: E002 for the file, E003 when there is no end time, E3xx and E4xx with the time reached.
+ * Errors: E002 for the file, E003 if there is no end time, E3xx and E4xx with the time reached.
  */
 CT_API bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim,
                        const struct ct_sim_results *results);
 
 /**
- * The samples of a run whose freedoms are all driven, without integration: kinematics and inverse dynamics. Otherwise as
- * ct_sim_run.
+ * Kinematic analysis and inverse dynamics: computes the samples of a run in which drivers
+ * prescribe all freedoms, without integration. Otherwise as ct_sim_run.
  *
- * Errors: as there; E411 when a freedom has no driver.
+ * Errors: those of ct_sim_run; E411 if a freedom has no driver.
  */
 CT_API bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim,
                           const struct ct_sim_results *results);
 
-/** Time of the last sample, and the value of a column there; NaN for a column that does not exist. */
+/**
+ * Time of the last sample [s], and the value of a column at that time; NaN for a column that
+ * does not exist.
+ */
 CT_API double ct_sim_time(const struct ct_sim *sim);
 CT_API double ct_sim_value(const struct ct_sim *sim, const char *column);
-/** The global error of a column against its largest value, estimated by a run with `verify`; NaN where it is not known. */
+/**
+ * The global error of a column relative to its largest value, estimated by a run with `verify`;
+ * NaN if it is not known.
+ */
 CT_API double ct_sim_error(const struct ct_sim *sim, const char *column);
 
-/** The texts of ct_sim_print_summary and ct_sim_print_check, and that of ct_sim_write_summary; ct_free frees them. */
+/**
+ * The output of ct_sim_print_summary, ct_sim_print_check and ct_sim_write_summary as texts, to
+ * be freed by ct_free.
+ */
 CT_API char *ct_sim_summary(const struct ct_sim *sim);
 CT_API char *ct_sim_check(const struct ct_sim *sim);
 CT_API char *ct_sim_summary_json(const struct ct_sim *sim);
-/** What the run did and how well it kept energy and constraints, for people. */
+/** Prints what the run did and how well it conserved energy and satisfied the constraints. */
 CT_API void ct_sim_print_summary(const struct ct_sim *sim, FILE *out);
-/** The same for programs: a JSON object. Errors: E002. */
+/** The same as a JSON object in a file. Errors: E002. */
 CT_API bool ct_sim_write_summary(struct ct_ctx *ctx, const struct ct_sim *sim,
                                  const char *path);
-/** What the system is: freedoms, trees and how they were chosen, redundant constraints, costs. */
+/**
+ * Prints the properties of the system: freedoms, trees and the reason for their choice,
+ * redundant constraints, costs.
+ */
 CT_API void ct_sim_print_check(const struct ct_sim *sim, FILE *out);
 /**
- * Its loops, before the run: what closes each, the rank of its constraints, which of them are redundant and what they
- * leave open, how near it is to a singular configuration, and which freedoms take the redundancy away.
+ * Surveys the loops of the mechanism, before the run: the joint that closes each loop, the rank
+ * of its constraints, which constraints are redundant and which reactions are not unique, the
+ * distance from a singular configuration, and the joint freedoms that would remove the
+ * redundancy.
  *
- * out      in  for people; NULL: no text
- * summary  in  path of a file as that of ct_sim_write_summary, with the loops for programs; NULL: no file
+ * out      in  text is printed there; NULL: no text
+ * summary  in  path of a JSON file as ct_sim_write_summary writes it, with the loops; NULL: no
+ *              file
  *
  * Errors: E002.
  */
 CT_API bool ct_sim_print_loops(struct ct_ctx *ctx, struct ct_sim *sim, FILE *out,
                                const char *summary);
 /**
- * The model as source code in a folder, which is made if need be, or as an FMU. Before the run.
+ * Exports the model as source code in a folder, which is created if needed, or as an FMU.
+ * Before the run.
  *
- * format: "c" or NULL: NAME.h, NAME.c, NAME_test.c, which compares with values computed here, and NAME.json; NAME is
- * that of the model. "fmu2", "fmu3": one file, `place`. Errors: E002, E003, E405, E560. Warning: E561 without a compiler.
+ * format "c" or NULL writes NAME.h, NAME.c, NAME_test.c and NAME.json, where NAME is that of
+ * the model. NAME_test.c compares results with values computed here. format "fmu2" or "fmu3"
+ * writes one file, `place`. Errors: E002, E003, E405, E560. Warning: E561 without a compiler.
  */
 CT_API bool ct_sim_export(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                           const char *place);
-/** The same, with M, Q, J, gam and phi, v for 4 or 8 inputs side by side, too; 1 or 0: without. */
+/**
+ * The same; lanes = 4 or 8 adds functions that evaluate M, Q, J, gam, phi and v for that many
+ * inputs at once (SIMD). 1 or 0: without.
+ */
 CT_API bool ct_sim_export_lanes(struct ct_ctx *ctx, struct ct_sim *sim, const char *format,
                                 const char *place, long lanes);
 
-/* ---- one state of a system, step by step ------------------------------------------------------------ */
+/* ---- one state of a system, step by step ---------------------------------------------------- */
 
 /**
- * A state: time, coordinates q, speeds u, inputs, parameters, and all that follows from them:
+ * A state: time, coordinates q, speeds u, inputs, parameters, and the quantities that follow
+ * from them:
  *
  *     M u' = Q + J' lambda,    J u' + gamma = 0,    phi = 0
  *
- * It belongs to one thread at a time. Nothing allocates memory once each call has been made: get, value, set, step.
+ * Only one thread may use a state at a time. After the first call of each, get, value, set and
+ * step do not allocate memory.
  */
 struct ct_data;
 
-/** Quantities at the state; nu speeds, nq coordinates, m constraints. Matrices row by row, a vector has one column. */
+/**
+ * Quantities at a state, for nu speeds, nq coordinates and m constraints. Matrices are stored
+ * row by row; a vector has one column.
+ */
 enum ct_quantity {
     CT_Q_M,            /* nu x nu, mass matrix */
-    CT_Q_FORCE,        /* nu, Q: applied forces less what depends on speeds */
+    CT_Q_FORCE,        /* nu, Q: applied forces minus inertia forces of the speeds */
     CT_Q_J,            /* m x nu */
     CT_Q_GAMMA,        /* m */
-    CT_Q_PHI,          /* m: how far loops are open */
+    CT_Q_PHI,          /* m, position constraints: 0 for closed loops */
     CT_Q_ACCELERATION, /* nu, u' */
     CT_Q_MULTIPLIERS,  /* m, of least norm where constraints are redundant */
     CT_Q_OUTPUTS,      /* as CT_OUTPUT */
-    CT_Q_ENERGY, /* 5: kinetic, potential, strain, work put in, total = kinetic + potential + strain - work */
+    /* 5 [J]: kinetic, potential, strain, external work, kinetic + potential + strain - work */
+    CT_Q_ENERGY,
     CT_Q_COORDINATES, /* nq */
     CT_Q_SPEEDS,      /* nu */
     CT_Q_RATE,        /* nq, q' */
-    CT_Q_PHI_RATE,    /* m, d phi/dt = J u + the part by time */
+    CT_Q_PHI_RATE,    /* m, d phi/dt = J u + partial derivative by time */
     CT_Q_STATES,      /* as CT_STATE */
-    CT_Q_STATE_RATES  /* their rates */
+    CT_Q_STATE_RATES  /* rates of CT_Q_STATES */
 };
 
 /**
- * A state at t = 0, assembled as a run starts. Of the options `method`, `tolerance`, `absolute`, `step`, `backend` and `solver` count;
- * method "auto" is "dopri5", or what the model says. Stiff systems want "radau5". options may be NULL.
+ * Creates a state at t = 0, assembled as a run is at its start. The options `method`,
+ * `tolerance`, `absolute`, `step`, `backend` and `solver` are used. Method "auto" is "dopri5",
+ * or the method of the model; use "radau5" for stiff systems. options may be NULL.
  *
- * Errors   E003 for options; E4xx when the mechanism cannot be assembled
+ * Errors   E003 for options; E4xx if the mechanism cannot be assembled
  * Owner    the caller, until ct_data_destroy; the system must live as long
  */
 CT_API struct ct_data *ct_data_create(struct ct_ctx *ctx, const struct ct_system *sys,
                                       const struct ct_sim_options *options);
-/** Another one in the same state, with the same values. */
+/** Creates a copy of a state with the same values. */
 CT_API struct ct_data *ct_data_clone(struct ct_ctx *ctx, const struct ct_data *data);
 /** Accepts NULL. */
 CT_API void ct_data_destroy(struct ct_data *data);
 
-/** The start again, with parameters and inputs as they are now. Errors: E4xx, and the state is not changed. */
+/**
+ * Returns to the start, with the present parameters and inputs. Errors: E4xx; then the state
+ * does not change.
+ */
 CT_API bool ct_data_reset(struct ct_ctx *ctx, struct ct_data *data);
 /**
- * All n values of a kind in its order: parameters, inputs, coordinates, speeds. What parameters are derived from others follows; one whose
- * value differs from the one it has is independent from then on. Nothing is assembled.
+ * Sets all n values of a kind in its order: parameters, inputs, coordinates or speeds.
+ * Parameters defined by others are updated. A defined parameter that is set to a value other
+ * than its present one no longer follows its definition. The state is not assembled.
  *
- * Errors   E500 for a wrong number or a value that is not finite; E501 for a kind that cannot be set; E502 for a parameter whose value
- *          has decided about the equations. The state is not changed then.
+ * Errors   E500 for a wrong number of values or a value that is not finite; E501 for a kind that
+ *          cannot be set; E502 for a parameter whose value has determined the form of the
+ *          equations. On an error the state does not change.
  */
 CT_API bool ct_data_set(struct ct_ctx *ctx, struct ct_data *data, enum ct_kind kind,
                         const double *value, size_t n);
-/** One of them. Errors: the same; E503 for a name that there is not. */
+/** Sets one value. Errors: those of ct_data_set; E503 for a name that does not exist. */
 CT_API bool ct_data_set_one(struct ct_ctx *ctx, struct ct_data *data, enum ct_kind kind,
                             const char *name, double value);
 CT_API bool ct_data_set_time(struct ct_ctx *ctx, struct ct_data *data, double t);
-/** The nearest coordinates and speeds that meet the constraints. Errors: E504 names those that cannot be met. */
+/**
+ * Moves the state to the nearest coordinates and speeds that satisfy the constraints. Errors:
+ * E504 names the constraints that cannot be satisfied.
+ */
 CT_API bool ct_data_assemble(struct ct_ctx *ctx, struct ct_data *data);
 
-/** Computed on demand, valid until the next set or step. NULL where that fails. Errors: E405. rows, columns may be NULL. */
+/**
+ * Returns a quantity and its size. It is computed on demand and valid until the next set or
+ * step. NULL on failure. Errors: E405. rows and columns may be NULL.
+ */
 CT_API const double *ct_data_get(struct ct_ctx *ctx, struct ct_data *data,
                                  enum ct_quantity quantity, size_t *rows, size_t *columns);
-/** A parameter, input, coordinate, speed, multiplier or output; NaN where there is none, or it cannot be computed. */
+/**
+ * Value of a parameter, input, coordinate, speed, multiplier or output; NaN if it does not
+ * exist or cannot be computed.
+ */
 CT_API double ct_data_value(const struct ct_data *data, enum ct_kind kind, size_t i);
 CT_API double ct_data_time(const struct ct_data *data);
 /**
- * To t + dt exactly, within the tolerance, events on the way, inputs held. A state that is off the constraints is assembled before.
+ * Integrates to exactly t + dt [s] within the tolerance, with constant inputs; events are
+ * located on the way. A state that violates the constraints is assembled first.
  *
- * Errors   E3xx, E4xx, E504; the state is then where it got to. E500 unless dt >= 0.
+ * Errors   E3xx, E4xx, E504; the state is then at the time reached. E500 unless dt >= 0.
  */
 CT_API bool ct_data_step(struct ct_ctx *ctx, struct ct_data *data, double dt);
 /**
- * Efforts (nu, out) that give the accelerations u' (nu): M u' - Q in open systems. In loops those of the joints that have an effort in
- * the model, of all joints if none has, in the sense of least squares and of least size; others are 0. A warning says where they are
- * not unique. Errors: E405; E505 where they do not give these accelerations.
+ * Inverse dynamics: efforts (nu, out) that give the accelerations u' (nu). In a system without
+ * loops they are M u' - Q. In a system with loops, efforts act at the joints that have an
+ * effort in the model, or at all joints if none has; other entries are 0. The efforts are the
+ * least-squares solution of least norm. A warning tells if they are not unique. Errors: E405;
+ * E505 if they cannot give these accelerations.
  */
 CT_API bool ct_data_inverse(struct ct_ctx *ctx, struct ct_data *data,
                             const double *acceleration, double *effort);
-/** Axes R (row by row: R v is in ground axes for v in axes of the frame) and origin p [m] of a frame. Errors: E500. */
+/**
+ * Rotation matrix R (3 x 3, row by row) and origin p [m] of a frame. R v has ground components
+ * if v has components in the frame. Errors: E500.
+ */
 CT_API bool ct_data_pose(struct ct_ctx *ctx, struct ct_data *data, size_t frame, double R[9],
                          double p[3]);
 
-/* ---- speed against error ------------------------------------------------------------------------- */
+/* ---- speed against error -------------------------------------------------------------------- */
 
 struct ct_accuracy;
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_accuracy_options {
     size_t size; /* 0, or sizeof (struct ct_accuracy_options) */
-    /** Of all runs. method: names separated by commas, NULL or "auto" for the usual ones; tolerance and
-     *  step, where they are given, are the only ones tried. */
+    /**
+     * Options of all runs. method: names separated by commas; NULL or "auto": a standard list.
+     * If tolerance or step is given, only this value is tried.
+     */
     struct ct_sim_options run;
-    double error; /* wanted; 1e-6 */
-    /** Systems to run, the same model with other beams each; NULL: the system itself. It is the reference then. */
+    double error; /* relative error that is wanted; 0: 1e-6 */
+    /**
+     * Systems to compare: the same model with different beams in each. NULL: only the system
+     * itself. With variants the system itself is the reference.
+     */
     const struct ct_accuracy_variant {
         struct ct_system *system;
         long elements;           /* for the table; 0: none */
@@ -455,17 +546,21 @@ struct ct_accuracy_options {
     } * variant;
     size_t nvariant;
     const char *reference; /* CSV as simulate writes it; NULL: found by tight runs that agree */
-    int per_decade; /* tolerances, or steps from run.step on, in a power of ten, at most 10; 0: powers of ten, the other tolerances begin at 1e-2 */
-    FILE *bar;      /* progress is shown there if it is a terminal */
+    /** How many tolerances, or steps beginning with run.step, are tried in each decade; at most 10.
+     *  0: powers of ten. If it is given, the tolerances begin at 1e-2. */
+    int per_decade;
+    FILE *bar; /* progress is shown there if it is a terminal */
 };
 
 /**
- * Run a system with methods x tolerances and compare each run with a converged reference.
+ * Runs a system with several methods and tolerances and compares each run with a converged
+ * reference.
  *
- * The error of a run is the largest over outputs and samples of |difference to the reference| / largest
- * |reference output|. Runs are timed three times in place, short ones up to 101 times; methods get a share of about a minute each.
+ * The error of a run is the largest of |difference from the reference| / largest |reference
+ * output| over outputs and samples. Each run is timed three times, short ones up to 101 times.
+ * Each method gets about a minute.
  *
- * Errors   E003 for options; E134, E135 for the reference; E309 when none is found; those of runs
+ * Errors   E003 for options; E134, E135 for the reference; E309 if none is found; those of runs
  * Owner    the caller, until ct_accuracy_destroy
  */
 CT_API struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_system *sys,
@@ -473,39 +568,46 @@ CT_API struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_syst
 /** Accepts NULL. */
 CT_API void ct_accuracy_destroy(struct ct_accuracy *a);
 
-/** The table (ct_contents); NULL or "-": CSV on standard output. Errors: E002. */
+/** Writes the table (ct_contents); NULL or "-": CSV on standard output. Errors: E002. */
 CT_API bool ct_accuracy_write(struct ct_ctx *ctx, const struct ct_accuracy *a,
                               const char *path);
-/** The work-precision plot as SVG. Errors: E002. */
+/** Draws the work-precision plot as SVG. Errors: E002. */
 CT_API bool ct_accuracy_draw(struct ct_ctx *ctx, const struct ct_accuracy *a, const char *path);
-/** How good the reference is, and the cheapest setting that meets the wanted error, for people. */
+/** Prints the error of the reference and the cheapest setting with the wanted error. */
 CT_API void ct_accuracy_print_summary(const struct ct_accuracy *a, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_accuracy_summary(const struct ct_accuracy *a);
 
-/* ---- parameter studies ---------------------------------------------------------------------------- */
+/* ---- parameter studies ---------------------------------------------------------------------- */
 
 struct ct_study;
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_study_options {
     size_t size;               /* 0, or sizeof (struct ct_study_options) */
     struct ct_sim_options run; /* of all members */
-    /** "NAME=FROM:TO:N" each: a grid whose last axis runs fastest. With sample also "NAME=FROM:TO" (uniform) and
-     *  "NAME=normal:MEAN:DEVIATION"; N is of no use then. */
+    /**
+     * "NAME=FROM:TO:N" each: a grid whose last axis varies fastest. With `sample` also
+     * "NAME=FROM:TO" (uniform) and "NAME=normal:MEAN:DEVIATION"; then N is ignored.
+     */
     const char *const *vary;
     size_t nvary;
-    long sample;             /* > 0: so many random members instead of the grid */
+    long sample;             /* > 0: number of random members instead of the grid */
     unsigned long long seed; /* of the random numbers: same seed, same members */
-    long threads;            /* at most; 0: all cores. One without OpenMP. */
-    long lanes; /* members side by side in a core: 1, 4, or 8; 0: 4 where possible */
+    long threads;            /* at most; 0: all cores. 1 without OpenMP. */
+    long lanes;              /* members in a SIMD batch: 1, 4, or 8; 0: 4 if possible */
     const char
         *members; /* a CSV file of members instead of `vary`: its columns are parameters */
-    /** Of so many shards this one, from 1: every shards-th member from it on, with the rows and run numbers that it has in
-     *  the whole sweep. 0: all of it. */
+    /**
+     * Runs only shard number `shard` (from 1) of `shards`: every shards-th member, beginning
+     * with member `shard`. Rows and run numbers are those of the whole sweep. 0: all members.
+     */
     long shard, shards;
-    /** "NAME=FUNCTION(EXPRESSION)" each: a column behind the outputs, of what the expression, one of outputs, does over the
-     *  run: max, min, mean, rms, final, or time [s], when it first rises through zero (NaN: it does not). */
+    /**
+     * "NAME=FUNCTION(EXPRESSION)" each: a column after the outputs that evaluates an expression
+     * of outputs over the run. FUNCTION is max, min, mean, rms, final, or time: the time [s] at
+     * which the expression first rises through zero (NaN if it does not).
+     */
     const char *const *take;
     size_t ntake;
     const char
@@ -513,31 +615,38 @@ struct ct_study_options {
     size_t ntext;
 };
 
-/** Where rows go. All of it may be zero. */
+/** Where rows go. Each member may be zero. */
 struct ct_study_results {
     size_t size; /* 0, or sizeof (struct ct_study_results) */
     const char
         *path;   /* a table, see ct_contents; "-" is standard output as CSV; NULL: no file */
-    bool resume; /* go on with the rows of an interrupted sweep, which are in PATH.partial */
+    bool resume; /* continues an interrupted sweep, whose rows are in PATH.partial */
     FILE *bar;   /* progress is shown there if it is a terminal */
-    /** Called after each member, one at a time but from any thread: so many of all are over. Return false to stop. */
+    /**
+     * Called after each member, from any thread but not concurrently, with the number of
+     * finished members. Return false to stop.
+     */
     bool (*progress)(void *user, double done, double all);
-    /** Called for each member in order, one at a time but from any thread: run from 1, what varies, the outputs at the
-     *  end time, or value NULL and why it failed. Return false to stop, which is no failure. */
+    /**
+     * Called for each member in order, from any thread but not concurrently: run number from 1,
+     * values of the varied parameters, outputs at the end time. If the run failed, value is
+     * NULL and message says why. Return false to stop; this is no failure.
+     */
     bool (*row)(void *user, long run, const double *varied, const double *value,
                 const char *message);
     void *user;
 };
 
 /**
- * Read a model and derive its equations once, for all members of a study.
+ * Reads a model and derives its equations once for all members of a study.
  *
- * What a member gives depends neither on threads nor on other members. Where the value of a parameter decides about the
- * equations (whether a mechanism is planar), members that vary it are derived one by one.
+ * The results of a member do not depend on threads or on other members. If the value of a
+ * varied parameter determines the form of the equations (whether a mechanism is planar), the
+ * equations are derived for each member.
  *
- * system  in   NULL: all defaults. What varies replaces values that are set here.
+ * system  in   NULL: defaults. Varied parameters replace values that are set here.
  *
- * Errors   those of ct_system_load and of the options of runs; E003 for what varies
+ * Errors   those of ct_system_load and of the options of runs; E003 for the varied parameters
  * Owner    the caller, until ct_study_destroy
  */
 CT_API struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
@@ -546,56 +655,63 @@ CT_API struct ct_study *ct_study_create(struct ct_ctx *ctx, const char *path,
 /** Accepts NULL. */
 CT_API void ct_study_destroy(struct ct_study *study);
 /**
- * Run all members, once per sweep. results may be NULL.
+ * Runs all members; once for each study. results may be NULL.
  *
- * A member that fails is a row; the sweep fails when rows cannot be written. The file appears under its name when
- * it is complete; until then rows are in PATH.partial, in order, and what they depend on in PATH.partial.settings. With
- * `resume` the latter stays as PATH.settings.
+ * A member that fails still has a row. The sweep fails if rows cannot be written. The file
+ * appears under its name when it is complete. Until then the rows are in PATH.partial in order,
+ * and the settings they depend on in PATH.partial.settings. With `resume` the settings file
+ * stays as PATH.settings.
  *
- * Errors: E002 for the file, E003 when it cannot be resumed, as when settings or the model are others.
+ * Errors: E002 for the file; E003 if it cannot be resumed, for example because settings or the
+ * model have changed.
  */
 CT_API bool ct_study_run(struct ct_ctx *ctx, struct ct_study *study,
                          const struct ct_study_results *results);
-/** Members in all, and of those that are over, the failed ones. */
+/** Number of members; number of finished members that failed. */
 CT_API long ct_study_count(const struct ct_study *study);
 CT_API long ct_study_failed(const struct ct_study *study);
-/** Columns of rows: `run`, what varies, then outputs at the end time. */
+/** Columns of a row: `run`, the varied parameters, then the outputs at the end time. */
 CT_API size_t ct_study_column_count(const struct ct_study *study);
 CT_API const char *ct_study_column(const struct ct_study *study, size_t i);
-/** What was done and which members failed, for people. */
+/** Prints what was done and which members failed. */
 CT_API void ct_study_print_summary(const struct ct_study *study, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_study_summary(const struct ct_study *study);
-/** The same for programs: a JSON object. Errors: E002. */
+/** The same as a JSON object in a file. Errors: E002. */
 CT_API bool ct_study_write_summary(struct ct_ctx *ctx, const struct ct_study *study,
                                    const char *path);
 CT_API char *ct_study_summary_json(const struct ct_study *study);
 
 /**
- * Join the shards of a sweep, in any order, to the file that the whole sweep would have written, byte by byte.
+ * Joins the shards of a sweep, in any order, to the file that the whole sweep would have
+ * written, byte for byte.
  *
  * path  in   FILE.csv; NULL or "-": standard output
- * part  in   (n) the files of all shards; beside each is PART.settings
+ * part  in   (n) the files of all shards; PART.settings must be beside each
  *
- * Nothing is written where it fails. Errors: E002, E003, E006; E580 to E582.
+ * On an error nothing is written. Errors: E002, E003, E006; E580 to E582.
  */
 CT_API bool ct_study_merge(struct ct_ctx *ctx, const char *path, const char *const *part,
                            size_t n);
 
-/* ---- analyses about a configuration ------------------------------------------------------------------ */
+/* ---- analyses about a configuration --------------------------------------------------------- */
 
 struct ct_equilibrium;
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_equilibrium_options {
     size_t size; /* 0, or sizeof (struct ct_equilibrium_options) */
-    /** Motions stand still where they are at t = 0. Else those with a constant rate that turn the system as a whole go
-     *  on, and the equilibrium is one in the turning frame; others stand still in any case. */
+    /**
+     * True: all drivers are held at their values at t = 0. False: drivers of constant rate that
+     * turn the system as a whole continue, and the equilibrium is one in the turning frame;
+     * other drivers are held.
+     */
     bool hold_drivers;
 };
 
 /**
- * The equilibrium that a system comes to from its assembled start, without inertia: at t = 0, speeds zero.
+ * Finds the static equilibrium that is reached from the assembled start at t = 0 by descending
+ * the potential, with zero speeds.
  *
  * Errors   E401, E405, E410; those of assembly
  * Owner    the caller, until ct_equilibrium_destroy
@@ -605,21 +721,24 @@ ct_equilibrium_create(struct ct_ctx *ctx, struct ct_system *sys,
                       const struct ct_equilibrium_options *options);
 /** Accepts NULL. */
 CT_API void ct_equilibrium_destroy(struct ct_equilibrium *q);
-/** Value of a column; NaN for one that does not exist. */
+/** Value of a column; NaN if it does not exist. */
 CT_API double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column);
-/** Does no small motion about it grow? */
+/** True if no small motion about the equilibrium grows. */
 CT_API bool ct_equilibrium_is_stable(const struct ct_equilibrium *q);
-/** One row of outputs, t = 0, as a table (ct_contents); NULL or "-": standard output. Errors: E002. */
+/**
+ * Writes one row of outputs, t = 0, as a table (ct_contents); NULL or "-": standard output.
+ * Errors: E002.
+ */
 CT_API bool ct_equilibrium_write(struct ct_ctx *ctx, const struct ct_equilibrium *q,
                                  const char *path);
-/** How good it is and whether it is stable, for people. */
+/** Prints the residual of the equilibrium and its stability. */
 CT_API void ct_equilibrium_print_summary(const struct ct_equilibrium *q, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_equilibrium_summary(const struct ct_equilibrium *q);
 
 struct ct_modes;
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_modes_options {
     size_t size;       /* 0, or sizeof (struct ct_modes_options) */
     const char *about; /* "initial" (NULL), "equilibrium", or a time [s] of the motion */
@@ -628,7 +747,7 @@ struct ct_modes_options {
     struct ct_sim_options run; /* of the motion up to a time */
 };
 
-/** A natural motion exp(s t): a pair of complex eigenvalues, or a real one. */
+/** A natural motion exp(s t): a pair of complex eigenvalues, or one real eigenvalue. */
 struct ct_mode_info {
     double frequency_hz; /* |s| / (2 pi) */
     double omega;        /* |s| [rad/s] */
@@ -637,7 +756,7 @@ struct ct_mode_info {
 };
 
 /**
- * Natural motions of a system linearised about a configuration.
+ * Computes the natural modes of a system linearised about a configuration.
  *
  * Errors   E003 for options; E401, E405, E410; those of assembly and of runs
  * Owner    the caller, until ct_modes_destroy
@@ -646,39 +765,57 @@ CT_API struct ct_modes *ct_modes_create(struct ct_ctx *ctx, struct ct_system *sy
                                         const struct ct_modes_options *options);
 /** Accepts NULL. */
 CT_API void ct_modes_destroy(struct ct_modes *modes);
-/** Modes by |s|, as many as asked for or as there are; mode i, or all zeros. */
+/**
+ * Number of modes: as many as requested, or all if there are fewer. Modes ascend
+ * with |s|; ct_modes_info returns mode i, or zeros if it does not exist.
+ */
 CT_API size_t ct_modes_count(const struct ct_modes *modes);
 CT_API struct ct_mode_info ct_modes_info(const struct ct_modes *modes, size_t i);
-/** Entry of a mode's shape: how the coordinate of that name moves; the largest entry is 1. False: no such name. */
+/**
+ * Entry of a mode's shape: complex amplitude of the named coordinate; the largest entry is 1.
+ * False: no such name.
+ */
 CT_API bool ct_modes_shape(const struct ct_modes *modes, size_t i, const char *coordinate,
                            double *re, double *im);
-/** The table (ct_contents), but for CSV with shapes; NULL or "-": standard output. Errors: E002. */
+/**
+ * Writes the table (ct_contents); formats other than CSV also contain the shapes. NULL or "-":
+ * standard output. Errors: E002.
+ */
 CT_API bool ct_modes_write(struct ct_ctx *ctx, const struct ct_modes *modes, const char *path);
-/** The shapes of the first modes as SVG: frames and the lines between them, at rest and displaced. Errors: E002. */
+/**
+ * Draws the shapes of the first modes as SVG: frames and the lines between them, at rest and
+ * displaced. Errors: E002.
+ */
 CT_API bool ct_modes_draw(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
-/** The modes animated, as one HTML file that needs nothing else; path NULL: standard output. Errors: E002; E530 where the
- *  library was built without pages. */
+/**
+ * Writes the modes as an animation: one HTML file without external resources. path NULL:
+ * standard output. Errors: E002; E530 if the library was built without pages.
+ */
 CT_API bool ct_modes_report(struct ct_ctx *ctx, struct ct_modes *modes, const char *path);
-/** What the modes are about, for people. */
+/** Prints the configuration and the modes. */
 CT_API void ct_modes_print_summary(const struct ct_modes *modes, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_modes_summary(const struct ct_modes *modes);
 
 struct ct_linearization;
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_linearize_options {
     size_t size;       /* 0, or sizeof (struct ct_linearize_options) */
     const char *about; /* as for modes */
-    /** Names separated by commas: "J.effort", "F.force.x", "T.torque.z" add to what the model says, others are its
-     *  parameters. NULL: the efforts that the model gives and the components of its forces and torques. */
+    /**
+     * Names separated by commas. "J.effort", "F.force.x" and "T.torque.z" are added to the
+     * values in the model; other names are parameters. NULL: the efforts that the model gives
+     * and the components of its forces and torques.
+     */
     const char *inputs;
     bool hold_drivers;         /* as for equilibria */
     struct ct_sim_options run; /* of the motion up to a time */
 };
 
 /**
- * x' = A x + B u, y = C x + D u for small deviations from a configuration; y are the outputs of the model.
+ * Linearises a system: x' = A x + B u, y = C x + D u for small deviations from a configuration.
+ * y are the outputs of the model.
  *
  * Errors   E003 for options; E401, E405, E410, E412; those of assembly and of runs
  * Owner    the caller, until ct_linearization_destroy
@@ -687,18 +824,23 @@ CT_API struct ct_linearization *ct_linearize(struct ct_ctx *ctx, struct ct_syste
                                              const struct ct_linearize_options *options);
 /** Accepts NULL. */
 CT_API void ct_linearization_destroy(struct ct_linearization *s);
-/** 'A', 'B', 'C', 'D' (column-major), 'x', 'y', 'r': states, outputs and rates of the states at the configuration.
- *  NULL for other names. */
+/**
+ * Matrices 'A', 'B', 'C', 'D' (column-major) and vectors at the configuration: 'x' states, 'y'
+ * outputs, 'r' rates of the states. NULL for other names.
+ */
 CT_API const double *ct_linearization_matrix(const struct ct_linearization *s, char name,
                                              size_t *rows, size_t *columns);
 /** Name of state ('x'), input ('u') or output ('y') i; NULL beyond the last one. */
 CT_API const char *ct_linearization_name(const struct ct_linearization *s, char what, size_t i);
-/** The matrices (ct_contents), CSV of [A B; C D]; NULL or "-": CSV on standard output. Errors: E002. */
+/**
+ * Writes the matrices (ct_contents); CSV contains [A B; C D]. NULL or "-": CSV on standard
+ * output. Errors: E002.
+ */
 CT_API bool ct_linearization_write(struct ct_ctx *ctx, const struct ct_linearization *s,
                                    const char *path);
-/** Where, and the names, for people. */
+/** Prints the configuration and the names. */
 CT_API void ct_linearization_print_summary(const struct ct_linearization *s, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_linearization_summary(const struct ct_linearization *s);
 
 struct ct_buckling;
@@ -711,7 +853,8 @@ struct ct_buckling_options {
 };
 
 /**
- * Factors by which a load must be multiplied until the stiffness of the equilibrium vanishes, all other loads constant.
+ * Finds the factors of a load at which the stiffness of the equilibrium becomes singular, while
+ * all other loads stay constant (static buckling).
  *
  * Errors   E003 without a load; E405, E410, E413, E414; those of assembly
  * Owner    the caller, until ct_buckling_destroy
@@ -720,23 +863,26 @@ CT_API struct ct_buckling *ct_buckling_create(struct ct_ctx *ctx, struct ct_syst
                                               const struct ct_buckling_options *options);
 /** Accepts NULL. */
 CT_API void ct_buckling_destroy(struct ct_buckling *s);
-/** Positive factors, ascending; NaN beyond the last one. */
+/** Number of positive factors, and factor i in ascending order; NaN beyond the last one. */
 CT_API size_t ct_buckling_count(const struct ct_buckling *s);
 CT_API double ct_buckling_factor(const struct ct_buckling *s, size_t i);
-/** The table (ct_contents); NULL or "-": standard output. Errors: E002. */
+/** Writes the table (ct_contents); NULL or "-": standard output. Errors: E002. */
 CT_API bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *path);
-/** The lowest frequencies (count of them; 3) at 21 factors from 0 to the first one; negative where a motion grows
- *  without oscillating. Files as above. */
+/**
+ * Writes the lowest frequencies (`count` of them; 0: 3) at 21 load factors from 0 to the first
+ * critical one. A frequency is negative if the motion grows without oscillating. Files as
+ * above.
+ */
 CT_API bool ct_buckling_write_curve(struct ct_ctx *ctx, struct ct_buckling *s, const char *path,
                                     long count);
-/** How the factors were found, for people. */
+/** Prints how the factors were found. */
 CT_API void ct_buckling_print_summary(const struct ct_buckling *s, FILE *out);
-/** The same as a text, which ct_free frees. */
+/** The same as a text, to be freed by ct_free. */
 CT_API char *ct_buckling_summary(const struct ct_buckling *s);
 
-/* ---- analyses that vary --------------------------------------------------------------------------------- */
+/* ---- parameter variation of analyses -------------------------------------------------------- */
 
-/** Zero: the default. */
+/** Zero selects defaults. */
 struct ct_vary_options {
     size_t size; /* 0, or sizeof (struct ct_vary_options) */
     enum ct_vary_analysis {
@@ -744,7 +890,7 @@ struct ct_vary_options {
         CT_VARY_EQUILIBRIUM, /* by `equilibrium` */
         CT_VARY_DRIVEN       /* ct_sim_follow, by `run`: kinematics and inverse dynamics */
     } analysis;
-    /** Members as those of a study. */
+    /** The members, as for a study. */
     const char *const *vary;
     size_t nvary;
     long sample;
@@ -757,59 +903,68 @@ struct ct_vary_options {
 };
 
 /**
- * An analysis of each member of a plan as one table: `run`, what varies, then the columns of the analysis.
+ * Repeats an analysis for each member of a plan and writes one table: `run`, the varied
+ * parameters, then the columns of the analysis.
  *
- * Each member is a system of its own. One that fails is a row without results, and a warning (E583).
+ * Each member is a system of its own. A member that fails has a row without results and a
+ * warning (E583).
  *
  * out  in   a table (ct_contents); NULL or "-": CSV on standard output
  *
- * Errors   those of ct_system_load and of the options; E583 where all members fail
+ * Errors   those of ct_system_load and of the options; E583 if all members fail
  */
 CT_API bool ct_vary(struct ct_ctx *ctx, const char *path,
                     const struct ct_system_options *system,
                     const struct ct_vary_options *options, const char *out);
 
-/* ---- pictures -------------------------------------------------------------------------------------- */
+/* ---- pictures ------------------------------------------------------------------------------- */
 
-/** Zero: the start, as it suits the system. */
+/** Zero draws the start in the default view. */
 struct ct_draw_options {
     size_t size; /* 0, or sizeof (struct ct_draw_options) */
-    const char *
-        view; /* "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism, else iso */
-    double time; /* [s]; > 0: the motion is followed up to there first */
-    bool trace;  /* the start, with the paths of points and of beams' ends over the run */
+    /** "x", "y", "z" (along an axis) or "iso"; NULL: along the normal of a planar mechanism,
+     *  otherwise "iso". */
+    const char *view;
+    double time; /* [s]; > 0: the configuration at this time of a run is drawn */
+    bool trace;  /* draws the start and the paths of points and beam ends over the run */
     struct ct_sim_options run;
     const char *path; /* FILE.svg; NULL: standard output */
     FILE *bar;        /* progress is shown there if it is a terminal */
 };
 
 /**
- * A mechanism as a line drawing, SVG: bodies by their shapes, or by what holds them, joints by symbols, beams as they bend.
+ * Draws a mechanism as a line drawing in SVG: bodies by their shapes, or by lines between their
+ * joints, joints by symbols, beams deformed.
  *
- * The same system and options give the same bytes. Errors: E002, E003; those of assembly and of runs.
+ * The same system and options give the same bytes. Errors: E002, E003; those of assembly and of
+ * runs.
  */
 CT_API bool ct_system_draw(struct ct_ctx *ctx, struct ct_system *sys,
                            const struct ct_draw_options *options);
 
-/** Zero: the run that the model asks for. */
+/** Zero selects the run of the model. */
 struct ct_report_options {
     size_t size; /* 0, or sizeof (struct ct_report_options) */
     struct ct_sim_options run;
     const char *path; /* FILE.html; NULL: standard output */
     FILE *bar;        /* progress is shown there if it is a terminal */
-    /** The words of a command that makes the page again, without its file; it is shown on the page. NULL: none. */
+    /**
+     * The words of the command that makes the page again, without the output file; shown on the
+     * page. NULL: none.
+     */
     const char *const *command;
     size_t ncommand;
     const struct ct_accuracy *accuracy; /* its work-precision plot is shown; NULL: none */
 };
 
 /**
- * A system, its equations and its motion as one HTML file that needs nothing else. docs/report.md says what is on it.
+ * Writes a report: a system, its equations and its motion as one HTML file without external
+ * resources. docs/report.md describes its contents.
  *
- * The run is always verified. Without an end time the page shows the start. The same system and options give the same
- * bytes, but for the times in a work-precision plot.
+ * The run is always verified. Without an end time the report shows the start. The same system
+ * and options give the same bytes, except for the times in a work-precision plot.
  *
- * Errors: E002; E530 where the library was built without the page; those of assembly and of runs.
+ * Errors: E002; E530 if the library was built without pages; those of assembly and of runs.
  */
 CT_API bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,
                              const struct ct_report_options *options);
@@ -817,7 +972,8 @@ CT_API bool ct_system_report(struct ct_ctx *ctx, struct ct_system *sys,
 struct ct_plot;
 
 /**
- * Outputs over time as a picture: pass ct_plot_row and the plot as `row` and `user` of a run's results, then write it.
+ * Creates a plot of outputs over time. Pass ct_plot_row and the plot as `row` and `user` of a run's
+ * results, then call ct_plot_write.
  *
  * columns  in   names of columns, separated by commas; NULL: all
  *
@@ -828,20 +984,20 @@ CT_API struct ct_plot *ct_plot_create(struct ct_ctx *ctx, struct ct_system *sys,
                                       const char *columns);
 /** Accepts NULL. */
 CT_API void ct_plot_destroy(struct ct_plot *plot);
-/** A sample; value as a run gives it. Always true. */
+/** Adds a sample; value as a run passes it. Returns true. */
 CT_API bool ct_plot_row(void *plot, double t, const double *value, size_t n);
-/** As SVG; a panel for each unit. Errors: E002. */
+/** Writes the plot as SVG with one panel for each unit. Errors: E002. */
 CT_API bool ct_plot_write(struct ct_ctx *ctx, struct ct_plot *plot, const char *path);
 
-/* ---- what there is ------------------------------------------------------------------------------- */
+/* ---- what there is -------------------------------------------------------------------------- */
 
-/** Component types with their terminal equations and keys. */
+/** Prints the component types with their terminal equations and keys. */
 CT_API void ct_components_print(FILE *out);
-/** Methods of integration. */
+/** Prints the methods of integration. */
 CT_API void ct_methods_print(FILE *out);
-/** JSON Schema (draft 2020-12) of the model file. */
+/** Prints the JSON Schema (draft 2020-12) of the model file. */
 CT_API void ct_schema_print(FILE *out);
-/** The same as texts, which ct_free frees. */
+/** The same as texts, to be freed by ct_free. */
 CT_API char *ct_components_text(void);
 CT_API char *ct_methods_text(void);
 CT_API char *ct_schema_text(void);

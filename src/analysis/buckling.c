@@ -1,17 +1,19 @@
 // See buckling.h.
 //
-// The stiffness K along the path of equilibria decides. Of small systems it is a dense matrix
-// in the coordinates of factor 0, with all its eigenvalues. Of large ones it is sparse, and its
-// eigenvalues next to zero are those of K y = w2 M y: they change their signs where those of K
-// do (Sylvester's law of inertia). All else is the same for both.
+// The method follows the path of equilibria as the load grows and watches the eigenvalues of
+// the stiffness K. An equilibrium buckles where an eigenvalue of K changes its sign. For small
+// systems K is dense, in the independent coordinates of the equilibrium at load factor 0, and
+// all its eigenvalues are computed. For large systems K is sparse, and the eigenvalues w2 of K
+// y = w2 M y closest to zero are computed instead: they have the signs of those of K
+// (Sylvester's law of inertia).
 //
-// Where sparse K follows the load in proportion, so that the linear problem gives the factors
-// of the path but for little, the path needs not be searched: each factor is refined from its
-// estimate c and shape x by
+// If a sparse K changes nearly in proportion to the load, the path is not searched. Each load
+// factor is then refined from the solution of the linear problem. With the present estimate c
+// of the factor and x of the shape, one step solves
 //
 //     K y - J' mu = K1 x,  J y = 0,    d = -y' K1 x/(y' K1 y),    K1 = (K - K_0)/c
 //
-// which takes the factor from c to c + d and the shape from x to y; once K is singular, d vanishes.
+// and replaces c by c + d and x by y. The correction d vanishes when K is singular.
 #include "analysis/buckling.h"
 #include "analysis/sparse_modes.h"
 #include "base/sort.h"
@@ -21,41 +23,45 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: n eps, n up to some ten thousand
-static const double none = 1e-11; // of the largest eigenvalue: a direction without stiffness
-// Derived: the slope of K is a difference, which has half the digits
-static const double symmetric = 1e-8; // relative
-// Derived: 450 units of round-off
-static const double refined = 1e-13; // of a factor
-// Of the first factor: the second load level, for dense and for sparse stiffness. The slope of
-// K is a difference, and round-off of K is large beside it where elements are short: cond(K)
-// eps of the first factor, 1e-4 for 1000 elements.
-// Chosen: a short step has less curvature and more round-off.
+// Derived: n eps for n up to some ten thousand coordinates.
+// relative to the largest eigenvalue: below it a direction has no stiffness
+static const double none = 1e-11;
+// Derived: the slope of K is a difference quotient, which has half the digits of K.
+static const double symmetric = 1e-8; // relative to the largest entry: limit of asymmetry
+// Chosen: 450 eps, above the round-off that the iteration leaves.
+static const double refined = 1e-13; // relative to the load factor: refinement has converged
+// The second load level at which K is evaluated to find its slope, relative to the estimate of
+// the first load factor; for dense and for sparse stiffness. The slope is a difference
+// quotient. Its relative error from round-off of K is cond(K) eps at the first factor, 1e-4 for
+// 1000 elements.
+// Chosen: a smaller step has less curvature and more round-off.
 static const double small_load = 1e-2, half_load = 0.5;
-// [rad] An axis that the square of the slope shortens is half as long as it was; what comes
-// beyond is none of a beam's.
-// Definition: of the shortened axis
+// Largest slope of a beam axis [rad] at which the search continues. The beam model shortens the
+// axis by half the square of the slope, which is half of its length at a slope of 1.
+// Definition: of the second-order shortening of the beam axis.
 static const double steepest = 1;
-// Derived: the root of the unit round-off
-static const double straight = 1e-8; // [rad] round-off of an axis that does not bend
-// Next to a fold the eigenvalue falls with the root of what is left of the path: of its value a
-// step before. Where it is larger at the end, Newton's method has lost the path.
-// Chosen: by trial
+// Derived: the square root of eps.
+static const double straight = 1e-8; // [rad] below it the axis is straight but for round-off
+// At a limit point the eigenvalue falls to zero with the square root of the remaining path. If
+// the eigenvalue at the end of the path is larger than this fraction of its value one step
+// before, Newton's method has left the path and the end is no limit point.
+// Chosen: by trial.
 static const double folded = 1e-2;
-// Derived: a step of 1/16, as the first
-static const double behind
-    = 1 + 1. / 16; // of the last estimate: its round-off, and a little more
-// Of a factor: from here on a step that is not shorter than half the last one is round-off.
-// Derived: the root of what Newton's method leaves
+// Derived: first_step, 1/16, beyond the estimate.
+static const double behind = 1 + 1. / 16; // of the last estimate: where the search may end
+// Relative to the load factor: a correction below this that is not less than half the last one
+// is round-off.
+// Derived: the square root of the error that Newton's method leaves.
 static const double nearly = 1e-6;
-// Of a factor: by which those of path and linear problem may differ, so that one leads to the
-// other.
-// Limit: of what is refined instead of searched along the path
+// Largest relative difference of a load factor from its linear estimate for which the estimate
+// is refined directly.
+// Limit: beyond it the path is searched.
 static const double in_proportion = 0.1;
-// Steps along the path: the first against the first estimate, the shortest against the place.
-// Limit: of the steps along the path
+// Steps along the path: the first relative to the estimated factor, the shortest relative to
+// the present factor.
+// Limit: of the number of steps.
 static const double first_step = 1. / 16, shortest_step = 1. / 64;
-// Limit: of the time of the search; what is not found then is told.
+// Limit: of the time of the search. Factors that are not found then are reported as missing.
 enum {
     MOST_LEVELS = 40,
     MOST_HALVINGS = 30,
@@ -69,22 +75,25 @@ struct search {
     struct ct_linear *l;
     struct ct_arena *a;
     size_t at, count;
-    int n; // eigenvalues: of all directions that have a stiffness with some load, or next to zero
-    int f;            // free speeds
-    int *independent; // of factor 0
-    double *P;        // f x n
+    // number of eigenvalues (directions with stiffness at some load; sparse: those nearest
+    // zero)
+    int n;
+    int f;            // number of independent speeds
+    int *independent; // independent speeds at load factor 0  (f)
+    double *P;        // basis of the directions with stiffness  (f x n)
     double *K0, *K1, *K, *work, *B, *value, *T;
     int *pivot;
     struct ct_buckling_factor *found;
     size_t nfound, cap;
-    double searched;                // the path up to this factor
-    bool is_large;                  // sparse
-    struct ct_point *free, *loaded; // sparse stiffness with factor 0 and with others
-    double *shape, *b, *y, *K0x;    // of the linear factors: nu x (count + 1); nu + nrow each
-    bool is_steep;                  // beyond it beams bend too far
+    double searched;                // largest load factor that the search has reached
+    bool is_large;                  // the stiffness is sparse
+    struct ct_point *free, *loaded; // sparse stiffness without and with load
+    // shapes of the linear problem, nu x (count + 1); workspace, nu + nrow each
+    double *shape, *b, *y, *K0x;
+    bool is_steep; // a beam has exceeded `steepest`: the search ended there
 };
 
-// A place on the path.
+// A point on the path of equilibria.
 struct place {
     double factor, *y, *lam, *memory;
 };
@@ -151,9 +160,9 @@ bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
     return last.factor == factor;
 }
 
-// ---- stiffness in the coordinates of factor 0 -----------------------------------------------
+// ---- stiffness in the independent coordinates of load factor 0 -----------------------------
 
-// K (f x f, out): y0 = T y, so that K = T^-T Kr T^-1
+// K (f x f, out) = T^-T Kr T^-1, the stiffness in the coordinates y0 = T y of factor 0.
 static bool stiffness(struct search *s, double *K)
 {
     const struct ct_linear *l = s->l;
@@ -196,7 +205,8 @@ static bool is_symmetric(const double *K, int n)
     return worst <= symmetric * ct_vector_largest(K, (size_t)n * (size_t)n);
 }
 
-// Directions without stiffness whatever the load (rigid-body motions) are left out.
+// Finds a basis P of the directions that have stiffness at some load. Rigid-body motions, which
+// have none at any load, are left out.
 static void find_directions(struct search *s)
 {
     const int f = s->f;
@@ -252,7 +262,7 @@ static int linear_factors(struct search *s, double *c)
     return found;
 }
 
-// K1 from factors 0 and c; false where the path does not reach c.
+// K1 = (K(c) - K0)/c in s->K1. False if no equilibrium is found at factor c.
 static bool slope(struct search *s, const struct place *start, double c)
 {
     const size_t ff = (size_t)s->f * (size_t)s->f;
@@ -265,7 +275,8 @@ static bool slope(struct search *s, const struct place *start, double c)
     return true;
 }
 
-// The same of a sparse stiffness; it finds `count` and the next one, which tells how far to search.
+// Load factors of the linear problem with sparse stiffness. Finds `count` of them and one more,
+// which tells how far to search.
 static bool sparse_factors(struct search *s, const struct place *start, double level, double *c,
                            int *n)
 {
@@ -287,8 +298,8 @@ static bool dense_factors(struct search *s, const struct place *start, double le
     return true;
 }
 
-// Factors c of the linear problem; first with the load as it is, or less of it, then with a
-// part of what buckles.
+// Load factors c of the linear problem. The slope of K is first taken at the given load or a
+// part of it, then at a fraction of the factor that the first estimate gives.
 static int estimate(struct search *s, const struct place *start, double *c)
 {
     bool (*const factors)(struct search *, const struct place *, double, double *, int *)
@@ -304,15 +315,15 @@ static int estimate(struct search *s, const struct place *start, double *c)
     return n;
 }
 
-// ---- on the path ----------------------------------------------------------------------------
+// ---- search along the path -----------------------------------------------------------------
 
-// Eigenvalues of the stiffness here, ascending, in s->value.
+// Eigenvalues of the stiffness at the present equilibrium, ascending, in s->value.
 static bool eigenvalues(struct search *s)
 {
     const int n = s->n;
     if (s->is_large)
         return ct_sparse_modes_stiffness(s->l, (size_t)n, s->value);
-    double *H = s->K0; // no longer needed
+    double *H = s->K0; // workspace: K0 is no longer needed
     if (!stiffness(s, s->K))
         return false;
     restrict_to(s, H, s->K);
@@ -322,8 +333,8 @@ static bool eigenvalues(struct search *s)
     return ct_symmetric_eigenvalues(s->value, H, n, n, s->work);
 }
 
-// The k-th eigenvalue at a factor between two, from the lower place; false beyond the end of
-// the path.
+// Eigenvalue k at a load factor above that of `from`, by continuation from there. False if the
+// path ends before the factor.
 static bool eigenvalue_at(struct search *s, const struct place *from, double factor, int k,
                           double *value)
 {
@@ -334,9 +345,10 @@ static bool eigenvalue_at(struct search *s, const struct place *from, double fac
     return true;
 }
 
-// The factor in (a, b) where eigenvalue k falls through zero: the Illinois method, and
-// bisection where the path ends before b. va > 0 at a; vb <= 0 at b, or b cannot be reached.
-// Returns the eigenvalue at the last place before.
+// Finds the factor in (a, b) at which eigenvalue k falls through zero, by the Illinois method,
+// or by bisection if the path ends before b. va > 0 is the eigenvalue at a; at b it is vb <= 0,
+// or b cannot be reached. On return `a` is the last point before the zero, and the eigenvalue
+// there is returned.
 static double refine(struct search *s, struct place *a, double va, double b, double vb,
                      bool reached, int k, struct ct_buckling_factor *out)
 {
@@ -347,7 +359,8 @@ static double refine(struct search *s, struct place *a, double va, double b, dou
             c = low + (b - low) / 2;
         if (!(c > low && c < b))
             break;
-        // towards a fold the eigenvalue falls: what rises has jumped to another path
+        // towards a limit point the eigenvalue falls: if it rises, Newton's method has left the
+        // path
         if (!eigenvalue_at(s, a, c, k, &v) || (!reached && v > va)) {
             b = c;
             reached = false;
@@ -381,7 +394,7 @@ static int count_negative(const struct search *s)
     return n;
 }
 
-// By how much a section of a beam turns against its frame at most [rad].
+// Largest angle between a beam section and the frame of its beam [rad].
 static double steepness(struct search *s)
 {
     struct ct_evaluator *m = s->l->m;
@@ -396,18 +409,19 @@ static double steepness(struct search *s)
     return largest;
 }
 
-// From one stop to the next the eigenvalue that vanishes next loses no more than half of
-// itself, and goes no further below zero.
+// Is the step short enough? The next eigenvalue to vanish may lose at most half its value and
+// may overshoot zero by at most half of it.
 static bool is_gentle(const double *before, const double *after, int next, int n)
 {
     return next == n || (before[next] > 0 && after[next] >= before[next] / 2)
         || (after[next] <= 0 && after[next] >= -before[next] / 2);
 }
 
-// March along the path and refine where eigenvalues change their sign: to the factor `last`, or
-// where beams bend until they are too steep. The linear problem tells no more than the first
-// step there: as the load bends the axis, K also changes by what couples stretch and bending,
-// which the square of the load takes back, and its factors may be far from those of the path.
+// Follows the path of equilibria and refines each load factor at which an eigenvalue changes
+// its sign. The search ends at the factor `last`, or at the slope `steepest` of a beam if the
+// axis bends under the load. The linear problem only gives the length of the first step there:
+// a bent axis couples stretch and bending in K, and shortens with the square of the load, so
+// that the factors of the path may be far from the linear ones.
 static bool march(struct search *s, const struct place *start, double step, double last)
 {
     struct place here = place_create(s), next = place_create(s), first = place_create(s);
@@ -417,7 +431,7 @@ static bool march(struct search *s, const struct place *start, double step, doub
     keep(s->l, s->at, &here);
     double *before = CT_NEWN(s->a, double, s->n + 1), *after = CT_NEWN(s->a, double, s->n + 1);
     int negative = count_negative(s);
-    const int least = negative; // unstable without the load
+    const int least = negative; // eigenvalues that are negative without the load: unstable
     memcpy(before, s->value, (size_t)s->n * sizeof *before);
     s->searched = 0;
     bool is_bent = false, is_lost = false;
@@ -469,7 +483,7 @@ static bool march(struct search *s, const struct place *start, double step, doub
     return s->l->ctx->nerror == 0;
 }
 
-// ---- a sparse stiffness in proportion to the load -------------------------------------------
+// ---- refinement of linear factors, sparse stiffness ----------------------------------------
 
 // y (nu, out) = K1 x, from factors 0 and c
 static void apply_slope(struct search *s, double *y, const double *x, double c)
@@ -481,8 +495,8 @@ static void apply_slope(struct search *s, double *y, const double *x, double c)
         y[i] = (y[i] - s->K0x[i]) / c;
 }
 
-// One step from the place in l with factor c: d (out), x becomes y. False where K is singular
-// to the last digit.
+// One refinement step at the equilibrium in l with factor c: d (out) is the correction of c,
+// and x becomes y. False if K is singular to working precision.
 static bool step(struct search *s, double c, double *x, double *d)
 {
     const size_t nu = (size_t)s->l->nu, n = nu + (size_t)s->l->nrow;
@@ -492,7 +506,7 @@ static bool step(struct search *s, double c, double *x, double *d)
     memset(s->b, 0, n * sizeof *s->b);
     apply_slope(s, s->b, x, c);
     ct_sparse_solve_extended(matrix, s->y, s->b);
-    double *K1y = x; // no longer needed
+    double *K1y = x; // workspace: x is no longer needed
     const double work = ct_vector_dot(s->y, s->b, nu);
     apply_slope(s, K1y, s->y, c);
     *d = -work / ct_vector_dot(s->y, K1y, nu);
@@ -502,8 +516,8 @@ static bool step(struct search *s, double c, double *x, double *d)
     return isfinite(size);
 }
 
-// The factor of the path next to the estimate `linear` with its shape x. False where there is
-// none in proportion.
+// Refines the estimate `linear` with its shape x to the load factor on the path. False if the
+// factor is too far from the estimate.
 static bool refine_linear(struct search *s, double linear, double *x,
                           struct ct_buckling_factor *out)
 {
@@ -530,8 +544,8 @@ static int by_factor(const void *context, const void *a, const void *b)
     return (x->factor > y->factor) - (x->factor < y->factor);
 }
 
-// All n linear factors, `count` at most. False where one is not in proportion: then others of
-// the path may lie below.
+// Refines all n linear factors, at most `count`. False if one of them is too far from its
+// estimate: the path may then have lower factors that the linear problem does not show.
 static bool refine_all(struct search *s, const struct place *start, const double *c, int n)
 {
     const size_t nu = (size_t)s->l->nu;
@@ -548,7 +562,7 @@ static bool refine_all(struct search *s, const struct place *start, const double
     return true;
 }
 
-// ---- all of it ------------------------------------------------------------------------------
+// ---- entry points --------------------------------------------------------------------------
 
 static void reserve_dense(struct search *s)
 {
@@ -566,7 +580,7 @@ static void reserve_dense(struct search *s)
 static void reserve_sparse(struct search *s)
 {
     const size_t f = (size_t)s->f,
-                 next_to_zero = s->count + 2; // those that may be negative, and the next
+                 next_to_zero = s->count + 2; // the negative ones and the next
     s->n = (int)(next_to_zero < f ? next_to_zero : f);
     s->value = CT_NEWN(s->a, double, next_to_zero);
     s->free = ct_point_create(s->l);
@@ -601,8 +615,8 @@ static bool none_on_path(const struct search *s)
                         : "");
 }
 
-// Can sparse matrices serve? Is there a stiffness in every direction without the load, and
-// against none of them?
+// Can sparse matrices be used? They require an equilibrium that is stable without the load,
+// with stiffness in all directions.
 static bool is_stable(struct search *s)
 {
     double least;
@@ -632,7 +646,7 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
         stiffness(&s, s.K0);
     }
     const int n = estimate(&s, &start, c);
-    *applies = !s.is_large || n; // else the load may have no potential
+    *applies = !s.is_large || n; // without eigenvalues the load may have no potential
     if (!n)
         return *applies ? no_buckling(&s) : true;
     if (!s.is_large)

@@ -1,4 +1,4 @@
-// Buckling of a system under a load that grows, and its frequencies meanwhile.
+// Analysis `buckling`: critical factors of a growing load, and the frequencies under that load.
 #include "analysis/configuration.h"
 #include "base/pi.h"
 
@@ -10,23 +10,23 @@
 #include <math.h>
 #include <string.h>
 
-// Default: factors that are listed, as docs/cli.md tells. Test: analyses.
+// Default: number of factors that are listed (docs/cli.md). Test: analyses.
 enum { STANDARD_COUNT = 10 };
-enum { LEVELS = 21 }; // Layout: loads of a curve
+enum { LEVELS = 21 }; // Layout: number of load levels of the curve
 
 struct ct_buckling {
     struct ct_ctx own;
     struct ct_system *system;
-    struct ct_configuration at; // factor 0
+    struct ct_configuration at; // the configuration with load factor 0
     struct ct_model *variant;
     struct ct_equations equations;
     const char *load;
-    size_t count, input; // of the evaluator: the factor
+    size_t count, input; // input: index of the load factor among the evaluator's inputs
     struct ct_buckling_list list;
-    double *y0, *lam0, *memory0; // the equilibrium there
+    double *y0, *lam0, *memory0; // equilibrium at factor 0: state, multipliers, memory
 };
 
-// ---- finding it -----------------------------------------------------------------------------
+// ---- finding the factors -------------------------------------------------------------------
 
 static void start_again(struct ct_buckling *s)
 {
@@ -157,14 +157,15 @@ bool ct_buckling_write(struct ct_ctx *ctx, struct ct_buckling *s, const char *pa
     return s && ct_enter(ctx, write_factors, &o);
 }
 
-// Signed: what grows without oscillating counts as negative.
+// Frequency in Hz; negative for a motion that grows without oscillating.
 static double signed_frequency(const struct ct_motion_mode *m)
 {
     const double size = hypot(m->re, m->im) / (2 * CT_PI);
     return m->im == 0 && m->re > 0 ? -size : size;
 }
 
-// One row of the lowest frequencies at the present factor; empty fields where there are fewer.
+// One row: the lowest frequencies at the present load factor. Fields stay empty where there are
+// fewer.
 static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_columns *t,
                       long count)
 {
@@ -183,7 +184,8 @@ static bool add_level(struct ct_ctx *ctx, struct ct_buckling *s, struct ct_colum
     ct_columns_number(t, 0, l->m->input[s->input]);
     size_t k = 0;
     for (size_t i = 0; i < n && k < (size_t)count; i++)
-        if (mode[i].im > 0 || mode[i].re >= 0) // of a pair exp(s t), exp(-s t) the growing one
+        // of the pair exp(s t), exp(-s t) only the growing one is listed
+        if (mode[i].im > 0 || mode[i].re >= 0)
             ct_columns_number(t, ++k, signed_frequency(&mode[i]));
     while (k < (size_t)count)
         ct_columns_number(t, ++k, NAN);

@@ -1,4 +1,4 @@
-// Equilibrium of a system, its outputs there, and whether it is stable.
+// Analysis `equilibrium`: an equilibrium of a system, its outputs and its stability.
 #include "analysis/configuration.h"
 
 #include "analysis/eigenvalues.h"
@@ -12,20 +12,21 @@ struct ct_equilibrium {
     struct ct_ctx own;
     struct ct_system *system;
     struct ct_configuration at;
-    double *value;       // of the outputs
-    double stiffness;    // least eigenvalue of the stiffness against the masses [1/s^2]
-    double growth;       // largest real part of an eigenvalue [1/s]
-    double doubt;        // what round-off leaves of it: no growth below is told from none [1/s]
-    double fastest;      // largest eigenvalue [1/s]
-    const char *softest; // coordinate that moves most in the least stiff direction
+    double *value;    // of the outputs
+    double stiffness; // smallest eigenvalue of K y = w2 M y [1/s^2]
+    double growth;    // largest real part of an eigenvalue [1/s]
+    double doubt;     // error bound of `growth` from round-off [1/s]
+    double fastest;   // largest eigenvalue [1/s]
+    // coordinate with the largest entry in the direction of least stiffness
+    const char *softest;
 };
 
-// ---- finding it -----------------------------------------------------------------------------
+// ---- finding the equilibrium ---------------------------------------------------------------
 
-// By the lowest modes on sparse matrices.
+// Decides about stability from the lowest modes, with sparse matrices.
 static bool judge_large(struct ct_equilibrium *q, bool *applies)
 {
-    // Limit: of the search for what is free
+    // Limit: number of modes computed to find rigid-body motions.
     enum { COUNT_OF_MODES = 6 };
     struct ct_arena *a = q->own.model;
     struct ct_motion_mode *mode;
@@ -44,7 +45,7 @@ static bool judge_large(struct ct_equilibrium *q, bool *applies)
             continue;
         int most = 0;
         for (int k = 0; k < q->at.l->nu; k++)
-            // Derived: the first of equal ones, whatever the round-off
+            // Chosen: entries this close are equal, and the first one is taken.
             if (fabs(mode[i].shape[k]) > fabs(mode[i].shape[most]) * (1 + 1e-9))
                 most = k;
         q->stiffness = w2;
@@ -65,7 +66,7 @@ static bool judge(struct ct_equilibrium *q)
     ct_linear_expand(l, dq, y);
     int most = 0;
     for (int k = 0; k < l->nu; k++)
-        // Derived: the first of equal ones, whatever the round-off
+        // Chosen: entries this close are equal, and the first one is taken.
         if (fabs(dq[k]) > fabs(dq[most]) * (1 + 1e-9))
             most = k;
     q->softest = l->nu ? ct_linear_coordinate(q->at.e, a, most) : "";
@@ -103,7 +104,7 @@ static bool find(void *task)
     if (!ct_configuration_find(&q->own, q->system, NULL, &q->at)
         || (q->at.is_large && !judge_large(q, &is_judged)))
         return false;
-    if (q->at.is_large && !is_judged) { // dampers, or redundant rows
+    if (q->at.is_large && !is_judged) { // the system has dampers or redundant rows
         q->at.may_be_large = false;
         if (!ct_configuration_find(&q->own, q->system, NULL, &q->at))
             return false;
@@ -116,7 +117,7 @@ static bool find(void *task)
     ct_program_run(&m->result, m->input);
     q->value = CT_NEWN(q->own.model, double, n + 1);
     for (size_t i = 0; i < n; i++)
-        q->value[i] = m->result.out[i] + 0.0; // no negative zeros
+        q->value[i] = m->result.out[i] + 0.0; // + 0.0 turns -0 into 0
     watch_bending(q, m);
     return is_judged || judge(q);
 }
@@ -142,7 +143,7 @@ void ct_equilibrium_destroy(struct ct_equilibrium *q)
         ct_analysis_free(q, &q->own, &q->at);
 }
 
-// ---- what it says ---------------------------------------------------------------------------
+// ---- results -------------------------------------------------------------------------------
 
 double ct_equilibrium_value(const struct ct_equilibrium *q, const char *column)
 {

@@ -1,4 +1,5 @@
-// State-space matrices of a system about a configuration, with named states, inputs and outputs.
+// Analysis `linearize`: state-space matrices of a system about a configuration, with named
+// states, inputs and outputs.
 #include "analysis/configuration.h"
 
 #include "analysis/state_space.h"
@@ -17,14 +18,15 @@ struct ct_linearization {
     struct ct_system *system;
     struct ct_configuration at;
     struct ct_sim_options run;
-    const char *inputs; // asked for, during creation
+    const char *inputs; // names as given by the caller; used during creation only
     struct ct_model *variant;
     struct ct_equations equations;
     size_t nstate, ninput, noutput;
     const char **state, **input, **output;
-    size_t *parameter;       // of each input
-    double *A, *B, *C, *D;   // column-major
-    double *x0, *y0, *rate0; // states, outputs, and rates of the states there
+    size_t *parameter;     // index of the parameter of each input
+    double *A, *B, *C, *D; // column-major
+    // values at the configuration: states, outputs, rates of the states
+    double *x0, *y0, *rate0;
 };
 
 static double *matrix(struct ct_linearization *s, size_t n, size_t m)
@@ -34,7 +36,7 @@ static double *matrix(struct ct_linearization *s, size_t n, size_t m)
 
 // ---- inputs ---------------------------------------------------------------------------------
 
-// A list of names, separated by commas.
+// Splits a list of names at its commas.
 static void split_names(struct ct_linearization *s, const char *text)
 {
     struct ct_arena *a = s->own.model;
@@ -62,7 +64,7 @@ static bool make_variant(struct ct_linearization *s, const char *inputs)
         && ct_equations_like(&s->own, s->variant, &s->system->equations, false, &s->equations);
 }
 
-// ---- slopes of outputs and forces -----------------------------------------------------------
+// ---- derivatives of outputs and forces -----------------------------------------------------
 
 struct slopes {
     double *q, *u, *a, *lam, *p; // n x nu, nu, nu, nrow, ninput
@@ -102,7 +104,8 @@ static struct slopes evaluate_slopes(struct ct_linearization *s, const ct_ex *f,
     return out;
 }
 
-// An input that moves the rows themselves is none: it would ask for its own rates.
+// Rejects inputs on which the constraint rows depend: the linear equations would also need the
+// rates of these inputs.
 static bool check_inputs(struct ct_linearization *s)
 {
     const struct ct_equations *e = s->at.e;
@@ -134,7 +137,7 @@ static void add_product(struct ct_linearization *s, double *out, const double *A
         out[i] += product[i];
 }
 
-// Motion of the full coordinates for k columns of y, w, w': dq, du, da (nu x k).
+// Changes of the full coordinates for k columns of y, w, w': dq, du, da (nu x k).
 struct motion {
     double *dq, *du, *da;
 };
@@ -160,8 +163,10 @@ static double *full_multipliers(struct ct_linearization *s, const struct motion 
 {
     const struct ct_linear *l = s->at.l;
     const size_t nu = (size_t)l->nu, nrow = (size_t)l->nrow, most = nu > nrow ? nu : nrow;
-    // Derived: rows of unit size, and round-off of J of some 1e-12
-    const double tolerance = 1e-9; // of dependent rows, as for the multipliers of the state
+    // Derived: rows of unit size; J has round-off of about 1e-12, and some hundred terms are
+    // added.
+    // of dependent rows, as for the multipliers at the configuration
+    const double tolerance = 1e-9;
     double *lam = matrix(s, nrow, k), *r = matrix(s, nu, k);
     if (!nrow || !nu)
         return lam;
@@ -319,7 +324,7 @@ void ct_linearization_destroy(struct ct_linearization *s)
         ct_analysis_free(s, &s->own, &s->at);
 }
 
-// ---- questions ------------------------------------------------------------------------------
+// ---- access --------------------------------------------------------------------------------
 
 const double *ct_linearization_matrix(const struct ct_linearization *s, char name, size_t *rows,
                                       size_t *columns)

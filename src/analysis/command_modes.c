@@ -1,4 +1,5 @@
-// Natural motions about a configuration: the table, the shapes, their picture.
+// Analysis `modes`: the natural motions about a configuration as a table, as shapes and as a
+// picture.
 #include "analysis/modes.h"
 #include "base/pi.h"
 
@@ -14,13 +15,13 @@
 #include <math.h>
 #include <string.h>
 
-// Default: modes that are listed, as docs/cli.md tells. Test: analyses.
+// Default: number of modes that are listed (docs/cli.md). Test: analyses.
 enum { STANDARD_COUNT = 10 };
 enum { MOST_PANELS = 12 }; // Layout: modes that are drawn
 
-// ---- finding them ---------------------------------------------------------------------------
+// ---- finding the modes ---------------------------------------------------------------------
 
-// Sparse where that is possible, else as others.
+// With sparse matrices if possible, otherwise with dense ones.
 static bool solve(struct ct_modes *s, size_t count)
 {
     struct ct_arena *a = s->own.model;
@@ -35,7 +36,7 @@ static bool solve(struct ct_modes *s, size_t count)
     return ct_modes_solve(&s->own, a, s->at.l, &s->mode, &s->all, &s->how);
 }
 
-// Nothing is left to vibrate: motions drive it all, or loops hold it.
+// Reports that no freedom is left: drivers prescribe all motion, or loops allow none.
 static bool report_no_freedom(struct ct_modes *s)
 {
     const struct ct_model *m = &s->system->model;
@@ -92,7 +93,7 @@ void ct_modes_destroy(struct ct_modes *s)
         ct_analysis_free(s, &s->own, &s->at);
 }
 
-// ---- questions ------------------------------------------------------------------------------
+// ---- access --------------------------------------------------------------------------------
 
 size_t ct_modes_count(const struct ct_modes *s)
 {
@@ -267,8 +268,8 @@ char *ct_modes_summary(const struct ct_modes *s)
 
 // ---- the picture ---------------------------------------------------------------------------
 
-// Points of the skeleton in two directions of the view: the nodes of the graph, then points
-// along the axes of beams.
+// Points of the line drawing, as coordinates along the two directions of the view: first the
+// nodes of the graph, then points along the axes of beams.
 struct skeleton {
     struct ct_modes *s;
     struct ct_program places;
@@ -277,7 +278,8 @@ struct skeleton {
     size_t nbone, bone_cap;
 };
 
-// Directions of the view: the plane of a planar mechanism, else from above to one side.
+// Directions of the view: the plane of a planar mechanism, otherwise an oblique view from
+// above.
 static void view_directions(struct ct_build *b, ct_ex3 *right, ct_ex3 *up)
 {
     static const double side[3] = {-0.5, 0.8660254037844386, 0};
@@ -309,7 +311,7 @@ static int points_of_beam(const struct ct_flexible *f)
     return 1 + (n >= MOST ? MOST : n * (n >= FEWEST ? 1 : (FEWEST + n - 1) / n));
 }
 
-// The axis of a beam as a line of points from number `at` on.
+// The axis of a beam as a polyline, whose points are stored from index `at` on.
 static void add_axis(struct skeleton *k, struct ct_build *b, const struct ct_flexible *f,
                      int at, ct_ex3 *place)
 {
@@ -358,11 +360,11 @@ void ct_modes_displace(struct ct_modes *s, const double *y0, const double *shape
     for (int i = 0; i < l->nu; i++)
         dq[i] = amount * shape[i];
     ct_evaluator_retract(l->m, l->y, dq);
-    ct_linear_close(l); // as nearly as it can be
+    ct_linear_close(l); // if the loops do not close, the last iterate is drawn
     ct_evaluator_set(l->m, l->t, l->y);
 }
 
-// Points (2 x n, out) when the coordinates have moved by `amount` of a shape.
+// Points (2 x n, out) after the coordinates have moved by `amount` times a shape.
 static void points_of(struct skeleton *k, const double *y0, const double *shape, double amount,
                       double *out)
 {
@@ -371,9 +373,9 @@ static void points_of(struct skeleton *k, const double *y0, const double *shape,
     memcpy(out, k->places.out, 2 * k->n * sizeof *out);
 }
 
-// The motion of points that a small part of the shape gives, as large as `amount`: p (2 x n, in
-// and out). Beams would draw in their ends and bend back with a shape that is large against a
-// wave.
+// Scales the displacements p - rest (2 x n each, p in and out) of a small motion by `factor`.
+// The motion must be small: in a large one, beams whose shape is large against its wavelength
+// would be drawn shortened and folded.
 static void enlarge(double *p, const double *rest, size_t n, double factor)
 {
     for (size_t i = 0; i < 2 * n; i++)
@@ -399,7 +401,8 @@ static double extent(const double *p, size_t n)
 static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
 {
     struct ct_arena *a = s->own.model;
-    // Layout: of a mode against the picture. Derived: differences at 1e-4 have six digits
+    // Layout: size of a mode relative to the picture. Derived: differences at 1e-4 keep six
+    // digits.
     const double visible = 0.15, small = 1e-4, largest_turn = 0.5;
     struct skeleton k;
     skeleton_create(&k, s);
@@ -414,8 +417,9 @@ static bool draw(struct ct_ctx *ctx, struct ct_modes *s, const char *path)
         const struct ct_mode_info m = ct_modes_info(s, i);
         points_of(&k, y0, s->mode[i].shape, small, p);
         // Layout: of the picture
-        const double size = extent(rest, k.n), unseen = 1e-6 * small * size, // sections turn
-            far = farthest(p, rest, k.n), moved = far > unseen ? far / small : 0;
+        // rotating sections do not show as displacement
+        const double size = extent(rest, k.n), unseen = 1e-6 * small * size,
+                     far = farthest(p, rest, k.n), moved = far > unseen ? far / small : 0;
         const double amount = moved > 0 ? fmin(visible * size / moved, largest_turn) : 0;
         if (s->at.e->build->nflexible)
             enlarge(p, rest, k.n, moved > 0 ? visible * size / (moved * small) : 0);

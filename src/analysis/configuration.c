@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Derived: 4500 units of round-off
-static const double still = 1e-12; // of rows' rates: round-off
+// Chosen: 4500 eps, the round-off of speeds that the constraint rows ask for.
+static const double still = 1e-12; // [m/s, rad/s] a slower speed is zero
 
 // ---- equations ------------------------------------------------------------------------------
 
@@ -50,7 +50,7 @@ bool ct_equations_like(struct ct_ctx *own, const struct ct_model *model,
 
 // ---- states ---------------------------------------------------------------------------------
 
-// Any joint with a motion, be it a branch or a chord.
+// Does any joint have a driver, be it a branch or a chord?
 static bool has_drivers(const struct ct_model *m)
 {
     for (size_t i = 0; i < m->njoint; i++)
@@ -81,8 +81,8 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     return NULL;
 }
 
-// Does a motion do the same at any time: turn or slide at a constant rate, or push a slide at a
-// constant acceleration?
+// Does a driver act the same way at all times? So does a constant rate of turning or sliding,
+// and a constant acceleration along a slide.
 static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, size_t i)
 {
     const struct ct_driver *d = &e->driver[i];
@@ -95,7 +95,8 @@ static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, s
     return !(ct_ex_kinds(e->x, d->acceleration) & in_time) && l->m->driver.out[2 * i + 1] == 0;
 }
 
-// Do all motions move the system as a whole, so that what else there is can rest?
+// Do all drivers move the system as a whole, so that it can be at rest relative to the moving
+// frame?
 static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
 {
     ct_program_run(&l->m->driver, l->m->input);
@@ -103,7 +104,7 @@ static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
         if (!is_steady(e, l, i))
             return false;
     for (size_t k = 0; k < e->nmotion; k++)
-        if (fabs(l->y[l->m->nq + k]) > still) // rows ask for speeds
+        if (fabs(l->y[l->m->nq + k]) > still) // the constraint rows require a speed
             return false;
     return true;
 }
@@ -142,7 +143,7 @@ static bool find_equilibrium(struct ct_ctx *own, struct ct_system *sys,
             return false;
         if (applies)
             return true;
-        c->is_large = c->may_be_large = false; // full matrices
+        c->is_large = c->may_be_large = false; // forces dense matrices
         if (!can_be_full(own, sys, c))
             return false;
         ct_formulate_dynamics(c->equations);
@@ -170,7 +171,8 @@ static bool find_time(struct ct_ctx *own, struct ct_system *sys, const struct ct
     if (!c->sim || !ct_sim_run(own, c->sim, NULL))
         return false;
     struct ct_evaluator *m = ct_run_evaluator(c->sim->run);
-    if (c->e != &sys->equations) { // the same unknowns: angles are followed from where they are
+    // both have the same unknowns: rotation angles continue from their present values
+    if (c->e != &sys->equations) {
         const struct ct_evaluator *from = m;
         m = ct_evaluator_create(own->model, c->model, c->e);
         for (size_t i = 0; i < c->e->nmemory && i < from->e->nmemory; i++)
@@ -256,7 +258,7 @@ void *ct_analysis_find(struct ct_ctx *ctx, void *analysis, struct ct_ctx *own,
 
 void ct_configuration_print(const struct ct_configuration *c, FILE *out)
 {
-    // Layout: smaller accelerations are not told
+    // Layout: smaller accelerations are not printed.
     const double noticeable = 1e-6; // [m/s^2 or rad/s^2]
     if (c->is_equilibrium) {
         fprintf(out, "about         equilibrium, found in %d steps", c->equilibrium.iterations);

@@ -1,10 +1,11 @@
 // See eigenvalues.h.
 //
-// Without damping, gyroscopic or circulatory forces the problem is symmetric and solved as
-// such. Otherwise it is written in the modes of its symmetric part, where one unit of time and
-// mass holds for all coordinates and what nothing resists stands as exact zeros. Coordinates
-// that move no mass are condensed; if dampers act on them, the state space has their places as
-// states of their own.
+// Without damping, gyroscopic and circulatory forces the problem is symmetric and is solved by
+// a symmetric eigensolver. Otherwise the equations are transformed to the modes of their
+// symmetric part. There all coordinates have the same units of time and mass, and directions
+// without stiffness are exact zeros. Coordinates without mass are eliminated by static
+// condensation. If dampers act on them, they become additional states of the state-space form
+// instead.
 #include "analysis/eigenvalues.h"
 #include "analysis/state_space.h"
 #include "base/sort.h"
@@ -14,16 +15,16 @@
 #include <math.h>
 #include <string.h>
 
-// Directions with less than this of the mass of the others, in coordinates of unit mass each:
-// round-off.
-// Derived: n eps, n up to some thousand
+// A direction has no mass if its eigenvalue of the scaled mass matrix is below this fraction of
+// the largest.
+// Derived: n eps, n up to some thousand.
 static const double massless = 1e-12;
-// An entry is zero if it is this small against the largest: what sums of n round-off errors leave.
-// Derived: of products of four factors
+// An entry is zero if it is this small relative to the largest, per term of its sum.
+// Derived: round-off of products of four factors.
 static const double roundoff = 16 * DBL_EPSILON;
-// Derived: second derivatives of large beams lose six digits
+// Derived: second derivatives of large beams lose six digits.
 static const double symmetric
-    = 1e-9; // relative: derivatives of potentials are symmetric to round-off
+    = 1e-9; // relative: derivatives of a potential are symmetric but for round-off
 
 // out (k x k) = V' A V, V (n x k)
 static void congruence(double *out, const double *V, const double *A, double *work, int n,
@@ -33,8 +34,8 @@ static void congruence(double *out, const double *V, const double *A, double *wo
     ct_matrix_multiply_transposed(out, V, work, k, n, k);
 }
 
-// Entries against the largest of their columns: beside stiff elements a load without potential
-// is small.
+// Each pair of entries is compared with the largest entries of their columns: a load without
+// potential may be small compared with stiff elements elsewhere.
 static bool is_symmetric(struct ct_arena *a, const double *A, int n)
 {
     double *size = CT_NEWN(a, double, n + 1), most = 0;
@@ -59,17 +60,17 @@ static void symmetrise(double *A, int n)
 
 // ---- the symmetric problem ------------------------------------------------------------------
 
-// Shapes V (n x k, out) with V' M V = 1, V' K V = diag(w2), and the directions N (n x n0) that
-// move no mass.
+// Shapes V (n x k, out) with V' M V = 1 and V' K V = diag(w2); N (n x n0, out) spans the
+// directions without mass.
 struct basis {
     int n, k, n0;
     double *V, *w2, *N;
-    double *S;     // n0 x k: along N what massless coordinates do while V moves
-    double *error; // n: of the entries of N
-    bool is_held;  // they have places to follow to
+    double *S;     // n0 x k: motion along N that follows the shapes V
+    double *error; // n: error bounds of the entries of N
+    bool is_held;  // stiffness or damping determines the motion along N
 };
 
-// Mass-normalised directions and massless ones of Mr.
+// Splits the coordinates into mass-normalised directions V and massless directions N of Mr.
 static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct basis *s)
 {
     double *M = CT_NEWN(a, double, n *n + 1), *scale = CT_NEWN(a, double, n + 1);
@@ -92,11 +93,12 @@ static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct ba
     s->error = scale;
     for (int i = 0; i < n && s->k; i++)
         s->error[i]
-            *= roundoff * n * value[n - 1] / value[s->n0]; // a vector's, by the gap to others
+            // error of an eigenvector: round-off over the gap to other eigenvalues
+            *= roundoff * n * value[n - 1] / value[s->n0];
 }
 
-// How far N' K B (n0 x m, B: n x m) may be from its value by round-off errors and by the errors
-// of N, and of B where it has the same.
+// Bounds the errors of N' K B (n0 x m, with B n x m) that come from round-off, from the errors
+// of N and, if B has them, from the same errors of B.
 static void bound_errors(double *bound, const struct basis *s, const double *K, const double *B,
                          int m, bool is_same)
 {
@@ -115,8 +117,9 @@ static void bound_errors(double *bound, const struct basis *s, const double *K, 
         }
 }
 
-// K_nn = Q diag(held) Q', N becomes N Q; held 0 where nothing holds a direction, beyond
-// round-off errors. False if the eigenvalues cannot be found.
+// Diagonalises the stiffness of the massless directions, K_nn = Q diag(held) Q', and replaces N
+// by N Q. held is 0 for a direction whose stiffness is round-off. False if the eigensolver
+// fails.
 static bool turn_massless(struct ct_arena *a, const double *K, struct basis *s, double *held)
 {
     const int n = s->n, n0 = s->n0;
@@ -136,8 +139,9 @@ static bool turn_massless(struct ct_arena *a, const double *K, struct basis *s, 
     return true;
 }
 
-// The massless directions follow without inertia, K_nn s = -K_nv; those that nothing holds stay
-// at rest. False if one of these is pulled at nevertheless: then it has no place to follow to.
+// Eliminates the massless directions by static condensation, K_nn s = -K_nv. Directions without
+// stiffness stay at rest. False if a force acts along one of these: then its motion is not
+// determined.
 static bool condense(struct ct_arena *a, const double *K, struct basis *s)
 {
     const int n = s->n, k = s->k, n0 = s->n0;
@@ -164,7 +168,7 @@ static bool condense(struct ct_arena *a, const double *K, struct basis *s)
     return true;
 }
 
-// Shapes of the symmetric parts of K and M. Massless directions that nothing holds stay out.
+// Shapes of the symmetric parts of K and M, without massless directions that have no stiffness.
 static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *Kr, int n,
                             struct basis *s)
 {
@@ -188,7 +192,7 @@ static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *
     s->V = V;
 }
 
-// Below the error of the eigenvalues themselves there is no telling from zero.
+// Sets eigenvalues below their own round-off to zero.
 static void clear_zeros(struct basis *s)
 {
     const double zero
@@ -198,8 +202,8 @@ static void clear_zeros(struct basis *s)
             s->w2[j] = 0;
 }
 
-// L (n x n, out) = Cholesky factor of the symmetric part of K; false unless K is positive
-// beyond its round-off.
+// L (n x n, out) = Cholesky factor of the symmetric part of K. False if K is not positive
+// definite by more than its round-off.
 static bool factor_stiffness(double *L, const double *K, int n)
 {
     memcpy(L, K, (size_t)n * (size_t)n * sizeof *L);
@@ -212,9 +216,10 @@ static bool factor_stiffness(double *L, const double *K, int n)
     return true;
 }
 
-// Slow modes again, from M y = K y / w2: their eigenvalues are the largest there, and round-off
-// does not measure itself by the fastest. The lower half, counted in octaves. L: factor of K; M
-// (n x n).
+// Recomputes the slow modes from M y = K y / w2, where their eigenvalues are the largest, so
+// that their round-off is relative to themselves and not to the fastest mode. Does so for the
+// modes below the geometric mean of the slowest and the fastest frequency. L: Cholesky factor
+// of K; M (n x n).
 static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, struct basis *s)
 {
     const int n = s->n;
@@ -227,7 +232,7 @@ static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, s
         return;
     const double middle = sqrt(1 / value[n - 1]) * sqrt(s->w2[s->k - 1]);
     for (int j = 0; j < s->k && s->w2[j] < middle; j++) {
-        const int from = n - 1 - j; // of the ascending 1/w2
+        const int from = n - 1 - j; // index: the eigenvalues 1/w2 ascend
         double *y = s->V + (size_t)n * (size_t)j;
         memcpy(y, H + (size_t)n * (size_t)from, (size_t)n * sizeof *y);
         ct_cholesky_solve_transposed(y, L, n, n);
@@ -264,15 +269,15 @@ struct list {
     size_t n, cap;
 };
 
-// The largest entry becomes 1.
+// Scales a shape so that its largest entry is 1.
 static void normalise(double *shape, int nu)
 {
     int most = 0;
     double size = 0;
     for (int i = 0; i < nu; i++) {
         const double here = hypot(shape[i], shape[i + nu]);
-        // Derived: n eps
-        if (here > size * (1 + 1e-9)) { // the first of equal ones, whatever the round-off
+        // Chosen: entries this close are equal; the first one is taken, whatever the round-off.
+        if (here > size * (1 + 1e-9)) {
             size = here;
             most = i;
         }
@@ -285,7 +290,7 @@ static void normalise(double *shape, int nu)
     }
 }
 
-// A mode with the reduced shape yr + i yi (yi NULL: real).
+// Adds a mode with the shape yr + i yi in the reduced coordinates (yi NULL: real).
 static void add_mode(struct list *list, double re, double im, const double *yr,
                      const double *yi)
 {
@@ -312,7 +317,7 @@ double ct_modes_roundoff(const struct ct_motion_mode *mode, size_t nmode, double
     *fastest = 0;
     for (size_t i = 0; i < nmode; i++)
         *fastest = fmax(*fastest, hypot(mode[i].re, mode[i].im));
-    return roundoff * 2 * (double)nmode * *fastest; // as zeros of as many states
+    return roundoff * 2 * (double)nmode * *fastest; // as for zeros of 2 nmode states
 }
 
 void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode)
@@ -330,7 +335,7 @@ void ct_mode_add_undamped(struct ct_motion_mode *mode, size_t *nmode, double w2,
             = (struct ct_motion_mode){.im = w, .is_rigid = w2 == 0, .shape = shape};
         return;
     }
-    // an unstable pair: exp(w t) and exp(-w t)
+    // an unstable mode: the pair exp(w t) and exp(-w t)
     mode[(*nmode)++] = (struct ct_motion_mode){.re = w, .shape = shape};
     mode[(*nmode)++] = (struct ct_motion_mode){.re = -w, .shape = shape};
 }
@@ -346,9 +351,9 @@ static void add_symmetric(struct list *list, const struct basis *s)
     }
 }
 
-// A free coordinate has a double zero with one vector, which round-off splits into a pair of
-// the order of its square root: up to `most` of those not larger than `small` are zero, too.
-// Returns how many are.
+// A free coordinate has a double zero eigenvalue with one eigenvector. Round-off splits it into
+// a pair of the order of the square root of round-off. Sets eigenvalues not larger than `small`
+// to zero until there are `most` zeros. Returns the number of zeros.
 static int take_split_zeros(double *re, double *im, int n, int nzero, int most, double small)
 {
     while (nzero < most) {
@@ -367,9 +372,9 @@ static int take_split_zeros(double *re, double *im, int n, int nzero, int most, 
     return nzero;
 }
 
-// Eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape. Those this
-// small are zero; as many as `rigid` zeros, and half of what there are more, are rigid-body
-// motions.
+// Adds the eigenvalues of x' = A x (n x n, destroyed); y = T x (nfree x n) gives the shape.
+// Eigenvalues up to `zero` in size are zero. The number of rigid-body modes is `rigid`, or half
+// the number of zeros if that is more.
 static bool add_general(struct list *list, double *A, const double *T, int n, double zero,
                         int rigid)
 {
@@ -398,7 +403,7 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
                 if (im[k] > 0)
                     y[f + i] += T[i + f * p] * V[p + (size_t)n * (size_t)(k + 1)];
             }
-        // round-off of a damping that is not there
+        // a real part this small is round-off of a mode without damping
         const double small = 64 * DBL_EPSILON * fabs(im[k]);
         add_mode(list, fabs(re[k]) <= small ? 0 : re[k], im[k], y, im[k] > 0 ? y + f : NULL);
     }
@@ -414,7 +419,7 @@ static void clear_roundoff(double *A, int n, double size)
             A[i] = 0;
 }
 
-// Coordinates that no force depends on.
+// Number of coordinates on which no force depends.
 static int count_free(const struct ct_linear *l, int f)
 {
     const double size = ct_vector_largest(l->Kr, (size_t)f * (size_t)f);
@@ -425,7 +430,7 @@ static int count_free(const struct ct_linear *l, int f)
     return n;
 }
 
-// Motions that go on for ever: what A (n x n) takes to nothing.
+// Number of motions of constant rate: the dimension of the null space of A (n x n).
 static int count_steady(struct ct_arena *a, const double *A, int n)
 {
     double *R = CT_NEWN(a, double, n *n + 1), *tau = CT_NEWN(a, double, n + 1),
@@ -474,14 +479,14 @@ static bool solve_modal(struct list *list, const struct basis *s)
     return add_general(list, A, T, n, zero, steady > free ? steady : free);
 }
 
-// ---- all of it ------------------------------------------------------------------------------
+// ---- entry point ---------------------------------------------------------------------------
 
-// A (n x n) <- D^-1 A D, T (f x n) <- T D with powers of two that make rows as large as columns:
-// what states of the model are counted in then decides about no zeros. Source: Osborne (1960),
-// as in LAPACK's dgebal.
+// Balances A (n x n): A <- D^-1 A D, T (f x n) <- T D with powers of two D that make each row
+// as large as its column. The units of model states then do not affect which eigenvalues count
+// as zero. Source: Osborne (1960), as in LAPACK's dgebal.
 static void balance(double *A, double *T, int n, int f)
 {
-    // Limit: passes of balancing, which changes no eigenvalue
+    // Limit: number of passes; balancing changes no eigenvalue.
     enum { MOST_PASSES = 20 };
     bool is_changed = true;
     for (int pass = 0; pass < MOST_PASSES && is_changed; pass++) {
@@ -506,7 +511,7 @@ static void balance(double *A, double *T, int n, int f)
     }
 }
 
-// Massless coordinates with dampers, and states of the model: their places are states without speeds.
+// For massless coordinates with dampers, and for model states, which are first-order states.
 static bool solve_state_space(struct list *list, int rigid)
 {
     struct ct_state_space s;

@@ -1,7 +1,7 @@
 // See equilibrium.h.
 //
-// The steps come from dense or from sparse matrices (equilibrium_step.h). Their length, and
-// where the search ends, are the same for both.
+// The search takes its steps from dense or from sparse matrices (equilibrium_step.h). The limit
+// of step lengths and the criteria of convergence are the same for both.
 #include "analysis/equilibrium.h"
 #include "analysis/equilibrium_step.h"
 #include "formulate/build.h"
@@ -10,16 +10,16 @@
 #include <math.h>
 #include <string.h>
 
-// [rad] in one step, against jumping to another equilibrium.
-// Chosen: shorter steps take more of them, longer ones may lead to another equilibrium.
+// Longest rotation in one step [rad].
+// Chosen: shorter steps are more steps; longer ones may jump to another equilibrium.
 static const double longest_turn = 0.2;
-// [m] in one step at first; doubled after steps that went well.
-// Limit: of the first steps
+// Longest translation in one step [m] at first. It is doubled after each successful step.
+// Limit: of the first steps.
 static const double first_length = 0.2;
-// Of a step against the coordinates: their round-off.
-// Derived: 450 units of round-off
+// Size of a step, relative to the coordinates, at which the search has converged.
+// Chosen: 450 eps, above the round-off of the coordinates.
 static const double arrived = 1e-13;
-// Limit: with a message
+// Limit: with a message.
 enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
 
 static void find_turns(struct ct_equilibrium_search *s)
@@ -68,7 +68,7 @@ static void go_back(const struct ct_equilibrium_search *s)
     memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
-// The part of dq that the limits allow.
+// The fraction of dq that the limits of step length allow.
 static double allowed(const struct ct_equilibrium_search *s)
 {
     double part = 1;
@@ -88,7 +88,7 @@ static void scale_step(struct ct_equilibrium_search *s, double part)
         s->dlam[k] *= part;
 }
 
-// Take the step. False where the loops do not close, or there is nothing finite.
+// Takes the step. False if the loops do not close or a value is not finite.
 static bool take_step(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
@@ -98,18 +98,18 @@ static bool take_step(struct ct_equilibrium_search *s)
     return ct_linear_close(l) && s->method->evaluate(s);
 }
 
-// Go along the step as far as the forces still push on, more or less. False if no part of it
-// can be taken; mostly without a diagnostic.
+// Halves the step until the forces at its end do not point back too strongly. False if no
+// fraction of the step is accepted; then there is usually no diagnostic.
 static bool go(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
-    // Chosen: by trial
+    // Chosen: by trial.
     const double before = s->method->slope(s), part = allowed(s), turned_back = 0.5;
     const size_t nu = (size_t)l->nu;
     scale_step(s, part);
-    const bool is_fine
-        = s->is_newton
-       && ct_vector_largest(s->dq, nu) < CT_EQUILIBRIUM_FINE; // slopes are round-off here
+    const bool is_fine = s->is_newton
+                      // below this length the slope is round-off
+                      && ct_vector_largest(s->dq, nu) < CT_EQUILIBRIUM_FINE;
     keep(s);
     for (int i = 0; i < MOST_HALVINGS; i++) {
         if (take_step(s)
@@ -118,7 +118,7 @@ static bool go(struct ct_equilibrium_search *s)
             if (i == 0 && part < 1)
                 s->length *= 2;
             else if (i)
-                // Limit: of the halvings that are remembered
+                // Limit: of the halvings that carry over to the next step.
                 s->length = fmax(ct_vector_largest(s->dq, nu), first_length * 1e-6);
             return true;
         }
@@ -130,31 +130,33 @@ static bool go(struct ct_equilibrium_search *s)
     return false;
 }
 
-// The size of the step against the coordinates.
+// Size of the step relative to the coordinates.
 static double step_size(const struct ct_equilibrium_search *s)
 {
     const struct ct_linear *l = s->l;
     return ct_vector_largest(s->dq, (size_t)l->nu) / (1 + ct_vector_largest(l->y, l->m->nq));
 }
 
-// Is what is left of the coordinates their round-off? `last`: the step before.
+// Is the remaining error round-off of the coordinates? `last`: size of the step before.
 static bool has_arrived(double size, double last)
 {
     return size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2);
 }
 
-// ---- along a path of loads ------------------------------------------------------------------
+// ---- along a path of equilibria ------------------------------------------------------------
 
 bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
-    // Limit: after which another method is tried
+    // Limit: number of iterations, after which another method is tried.
     enum { MOST = 25 };
     struct ct_equilibrium_search s
         = search_create(l, l->M ? &ct_equilibrium_dense : &ct_equilibrium_sparse);
     double last = INFINITY;
     const size_t before = l->ctx->nerror;
     s.length
-        = INFINITY; // a path may lead far; what jumps to another one does not converge steadily
+        // no limit: an iteration that jumps to another path converges irregularly and is
+        // rejected
+        = INFINITY;
     *out = (struct ct_equilibrium_result){0};
     if (!s.method->evaluate(&s))
         return false;
@@ -195,8 +197,8 @@ static bool report_missing(const struct ct_equilibrium_search *s)
                     ct_linear_coordinate(l->m->e, l->arena, k));
 }
 
-// Down the forces, from a place that is evaluated. False, without a diagnostic of its own, if
-// that leads nowhere: s->dq is the last step that was sought.
+// Descends the potential from a position that is evaluated. False, without a diagnostic of its
+// own, if no equilibrium is reached; then s->dq is the last step that was computed.
 static bool descend(struct ct_equilibrium_search *s, struct ct_equilibrium_result *out)
 {
     struct ct_linear *l = s->l;
@@ -217,11 +219,11 @@ static bool descend(struct ct_equilibrium_search *s, struct ct_equilibrium_resul
     }
 }
 
-// Do forces that have no potential act here, as those that turn with a body?
+// Do forces without a potential act, such as forces that turn with a body?
 static bool has_no_potential(const struct ct_linear *l)
 {
-    // Derived: as of symmetric matrices in eigenvalues.c
-    const double roundoff = 1e-9; // of the largest stiffness
+    // Derived: as for symmetric matrices in eigenvalues.c.
+    const double roundoff = 1e-9; // relative to the largest stiffness
     double odd = 0, largest = 0;
     for (int j = 0; j < l->nfree; j++)
         for (int i = 0; i < l->nfree; i++) {
@@ -235,7 +237,7 @@ bool ct_equilibrium_find(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
     if (l->m->e->nstate)
         return ct_equilibrium_find_with_states(l, out);
-    if (!ct_linear_rest(l)) // with room for the matrices
+    if (!ct_linear_rest(l)) // also allocates the matrices
         return false;
     struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_dense), start = s;
     start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
@@ -263,7 +265,8 @@ bool ct_equilibrium_find_sparse(struct ct_linear *l, struct ct_equilibrium_resul
     if (!*applies)
         return true;
     if (!descend(&s, out)) {
-        // without one step nothing can be said about it with these factors
+        // if the first step failed, the sparse factors cannot tell whether an equilibrium
+        // exists
         *applies = out->iterations > 0 || l->ctx->nerror;
         return *applies && !l->ctx->nerror ? report_missing(&s) : !*applies;
     }

@@ -1,8 +1,9 @@
-// Steps towards an equilibrium with dense matrices, along the independent speeds.
+// Steps towards an equilibrium with dense matrices, in the independent speeds.
 //
-// V' Kr V = diag(value), V' W V = 1 with the masses W. A direction of positive stiffness takes
-// Newton's step, one of negative stiffness the opposite one, one without stiffness goes as far
-// as it may if a force acts along it.
+// The generalised eigenvectors V satisfy V' Kr V = diag(value) and V' W V = 1 with the mass
+// matrix W. Along a direction of positive stiffness the step is Newton's; along one of negative
+// stiffness it has the opposite sign. Along a direction without stiffness it is as long as the
+// limits allow if a force acts there, and zero otherwise.
 #include "analysis/equilibrium_step.h"
 #include "formulate/build.h"
 #include "numeric/dense.h"
@@ -11,9 +12,11 @@
 #include <math.h>
 #include <string.h>
 
-// Of the stiffest direction: no stiffness. Derived: n eps, n up to some ten thousand.
+// Relative to the largest eigenvalue: below it a direction has no stiffness. Derived: n eps, n
+// up to some ten thousand.
 static const double flat = 1e-11;
-// Of the forces that meet: none along a direction without stiffness. Chosen: far above round-off.
+// Relative to the sum of force magnitudes: below it no force acts along a direction without
+// stiffness. Chosen: far above round-off.
 static const double balanced = 1e-9;
 
 static void reserve(struct ct_equilibrium_search *s)
@@ -35,7 +38,7 @@ static bool evaluate(struct ct_equilibrium_search *s)
     return ct_linear_rest(s->l);
 }
 
-// The symmetric part of A (nfree x nfree).
+// A <- the symmetric part of A (nfree x nfree).
 static void symmetric_part(const struct ct_equilibrium_search *s, double *out, const double *A)
 {
     const int n = s->l->nfree;
@@ -48,8 +51,8 @@ static void symmetric_part(const struct ct_equilibrium_search *s, double *out, c
 static void find_stiffness(struct ct_equilibrium_search *s)
 {
     const int n = s->l->nfree;
-    // Of the masses: added, so that massless directions have some. Chosen: it changes
-    // motion with mass by a millionth.
+    // Relative to the mass matrix: added to it so that massless directions have some mass.
+    // Chosen: it changes the step of directions with mass by a millionth.
     const double little = 1e-6;
     double *W = s->A, mean = 0;
     symmetric_part(s, W, s->l->Mr);
@@ -66,7 +69,8 @@ static void find_stiffness(struct ct_equilibrium_search *s)
         ct_cholesky_solve_transposed(s->V + (size_t)n * (size_t)j, W, n, n);
 }
 
-// Sizes of what the forces are the sum of: constraints, weights, and stiffness over one unit.
+// Magnitudes of the terms that each force sums: constraint forces, weights, and the stiffness
+// times one unit of displacement.
 static void find_scale(struct ct_equilibrium_search *s)
 {
     const struct ct_linear *l = s->l;
@@ -86,9 +90,9 @@ static void find_scale(struct ct_equilibrium_search *s)
     }
 }
 
-// Is the stiffness positive beyond its round-off? Its pivots are compared each with its own
-// diagonal, so that a structure of many elements, whose soft directions are far below its stiff
-// ones, is not taken for a mechanism.
+// Is the stiffness positive definite by more than its round-off? Each pivot is compared with
+// its own diagonal entry. A structure of many elements, whose softest direction is far below
+// its stiffest, is then not taken for a mechanism.
 static bool is_positive(struct ct_equilibrium_search *s)
 {
     const int n = s->l->nfree;
@@ -104,7 +108,7 @@ static bool is_positive(struct ct_equilibrium_search *s)
     return true;
 }
 
-// With the whole stiffness, so that forces without a potential count.
+// Uses the unsymmetric stiffness, so that forces without a potential count.
 static bool find_newton_step(struct ct_equilibrium_search *s)
 {
     const struct ct_linear *l = s->l;
@@ -137,7 +141,7 @@ static bool find_step(struct ct_equilibrium_search *s)
         return true;
     memset(y, 0, (size_t)n * sizeof *y);
     for (int k = 0; k < n; k++) {
-        // Limit: a step that is cut to the longest one in any unit
+        // Limit: longer than any step length, to which the step is cut later.
         const double *v = s->V + (size_t)n * (size_t)k, far = 1e30;
         double g = 0, size = 0;
         for (int i = 0; i < n; i++) {

@@ -1,10 +1,11 @@
-// Steps towards an equilibrium of large systems, for positions and multipliers at once.
+// Steps towards an equilibrium of large systems, for positions and multipliers together:
 //
 //     [ K  J' ] [  dq   ]     [ r   ]
 //     [ J  0  ] [ -dlam ] = - [ phi ]
 //
-// A step that would do negative work, past a saddle or along what nothing holds, is replaced by
-// that of K + s M with a larger and larger s, which goes down the forces.
+// If the forces would do negative work along the step, as near a saddle or along a direction
+// without stiffness, K is replaced by K + s M. The shift s is increased until the step descends
+// the potential.
 #include "analysis/equilibrium_step.h"
 #include "numeric/dense.h"
 
@@ -12,9 +13,9 @@
 #include <math.h>
 #include <string.h>
 
-// Shifts s, of the largest stiffness against the largest mass: from round-off to beyond the
-// stiffest direction.
-// Limit: of the search, twelve factorisations
+// Shifts s, relative to the largest stiffness over the largest mass: from round-off to beyond
+// the stiffest direction.
+// Limit: of the search, twelve factorisations.
 static const double first_shift = 1e-12, next_shift = 30;
 enum { MOST_SHIFTS = 12 };
 
@@ -36,7 +37,7 @@ static double slope(const struct ct_equilibrium_search *s)
     return ct_vector_dot(s->p->r, s->dq, (size_t)s->l->nu);
 }
 
-// The step of K + shift M; false where that is singular.
+// The step with K + shift M. False if that matrix is singular.
 static bool solve(struct ct_equilibrium_search *s, double shift)
 {
     const size_t nu = (size_t)s->l->nu, nrow = (size_t)s->l->nrow;
@@ -52,7 +53,7 @@ static bool solve(struct ct_equilibrium_search *s, double shift)
         if (!isfinite(s->x[i]))
             return false;
     memcpy(s->dq, s->x, nu * sizeof *s->dq);
-    for (size_t i = 0; i < nrow; i++) // r has -J' lam
+    for (size_t i = 0; i < nrow; i++) // r contains -J' lam
         s->dlam[i] = -s->x[nu + i];
     return true;
 }

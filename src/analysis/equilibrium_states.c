@@ -1,9 +1,9 @@
 // Equilibrium of a model with states; see equilibrium.h.
 //
-// Forces that controllers make have no potential to go down. Newton's method finds where forces
-// and rates of states vanish, with the step of least norm where nothing tells a coordinate or a
-// state from others. A step is shortened while the next one, by the same derivatives, would not
-// be shorter. Source: Deuflhard (2011), 3.2, key deuflhard2011.
+// Forces of controllers have no potential to descend. Newton's method finds where forces and
+// rates of states vanish. Its step has least norm if the equations do not determine all
+// coordinates and states. A step is halved until the next step, computed with the same
+// derivatives, is shorter. Source: Deuflhard (2011), 3.2, key deuflhard2011.
 #include "analysis/equilibrium.h"
 #include "formulate/build.h"
 #include "numeric/dense.h"
@@ -11,21 +11,21 @@
 #include <math.h>
 #include <string.h>
 
-// [rad] in one step, as for other models.
-// Definition: as in equilibrium.c
+// Longest rotation in one step [rad].
+// Definition: as in equilibrium.c.
 static const double longest_turn = 0.2;
-// Of a step against the coordinates: their round-off.
-// Derived: 450 units of round-off
+// Size of a step, relative to the coordinates, at which the search has converged.
+// Chosen: 450 eps, above the round-off of the coordinates, as in equilibrium.c.
 static const double arrived = 1e-13;
-// Of the forces that meet: what is left is none.
-// Derived: sums of some hundred forces, against the largest
+// Relative to the sum of force magnitudes: a smaller remaining force is zero.
+// Derived: round-off of sums of some hundred forces, relative to the largest.
 static const double balanced = 1e-9;
-// Limit: with a message
+// Limit: with a message.
 enum { MOST_STEPS = 200, MOST_HALVINGS = 30 };
 
 struct search {
     struct ct_linear *l;
-    bool *turns;               // nu: coordinates that are angles
+    bool *turns;               // nu: is the coordinate an angle?
     double *K, *A, *x, *scale; // nfree x nfree, twice; nfree, twice
     double *dq, *part, *next;  // steps: nu
     double *kept_y, *kept_memory;
@@ -68,7 +68,8 @@ static void go_back(const struct search *s)
     memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
-// The largest change of a coordinate against the largest of them in y, or of a state against itself.
+// The larger of two ratios: the largest change of a coordinate over the largest coordinate in
+// y, and the largest change of a state over that state.
 static double step_size(const struct ct_linear *l, const double *y, const double *dq)
 {
     const struct ct_equations *e = l->m->e;
@@ -78,8 +79,9 @@ static double step_size(const struct ct_linear *l, const double *y, const double
     return size;
 }
 
-// A (n x n), x (n) <- rows, then columns, over the largest of them; scale (n, out) of the columns. Coordinates and states are
-// counted in anything, and ranks are judged against one size.
+// Divides the rows and then the columns of A (n x n) by their largest entries, and the rows of
+// x (n) alike; scale (n, out) are the column factors. Coordinates and states have different
+// units; equilibrated rows and columns let one tolerance decide about the rank.
 static void equilibrate(double *A, double *x, double *scale, int n)
 {
     for (int by_columns = 0; by_columns < 2; by_columns++)
@@ -98,7 +100,7 @@ static void equilibrate(double *A, double *x, double *scale, int n)
         }
 }
 
-// dq (nu, out): the step that forces and rates of now ask for, by the derivatives in s->K.
+// dq (nu, out): the step for the present forces and rates, with the derivatives in s->K.
 static void find_step(struct search *s, double *dq)
 {
     struct ct_linear *l = s->l;
@@ -113,7 +115,7 @@ static void find_step(struct search *s, double *dq)
     ct_linear_expand(l, dq, s->x);
 }
 
-// The part of the step that turns nothing too far.
+// The fraction of the step that rotates nothing by more than the limit.
 static double allowed(const struct search *s)
 {
     double part = 1;
@@ -123,7 +125,7 @@ static double allowed(const struct search *s)
     return part;
 }
 
-// Along s->dq, of this size, to where the next step is shorter. False if it is nowhere.
+// Halves the step s->dq of the given size until the next step is shorter. False if it never is.
 static bool go(struct search *s, double size)
 {
     struct ct_linear *l = s->l;
@@ -146,12 +148,13 @@ static bool go(struct search *s, double size)
     return false;
 }
 
-// The speed along which a force or a rate is left that no step takes off; -1: none is.
+// An independent speed along which a force or a rate remains that no step removes; -1 if there
+// is none.
 static int find_unbalanced(const struct search *s)
 {
     const struct ct_linear *l = s->l;
     for (int i = 0; i < l->nfree; i++) {
-        double meet = 0; // multipliers and weights are part of l->scale
+        double meet = 0; // magnitude of the terms; multipliers and weights are part of l->scale
         for (int j = 0; j < l->nu; j++) {
             double row = l->scale[j];
             for (int k = 0; k < l->nu; k++)
@@ -201,7 +204,7 @@ static bool report_missing(const struct search *s)
 bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
     *out = (struct ct_equilibrium_result){0};
-    if (!ct_linear_rest(l)) // with room for the matrices
+    if (!ct_linear_rest(l)) // also allocates the matrices
         return false;
     struct search s = search_create(l);
     for (double last = INFINITY;; out->iterations++) {

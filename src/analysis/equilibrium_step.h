@@ -1,5 +1,5 @@
-// The steps that a search for an equilibrium asks for: dense for small systems, sparse for
-// large ones.
+// Interface of the steps in a search for equilibrium, with a dense version for small systems
+// and a sparse one for large systems.
 #ifndef CT_ANALYSIS_EQUILIBRIUM_STEP_H
 #define CT_ANALYSIS_EQUILIBRIUM_STEP_H
 
@@ -10,15 +10,16 @@ struct ct_equilibrium_search {
     struct ct_linear *l;
     const struct ct_equilibrium_method *method;
     double *dq, *dlam; // the step: nu, nrow
-    bool is_newton;    // nothing is unstable: the step is that of Newton's method
-    double length;     // limit of lengths in a step now [m]
-    bool *turns;       // nu: coordinates that are angles
+    bool is_newton;    // no direction is unstable: the step is Newton's
+    double length;     // present limit of translation in a step [m]
+    bool *turns;       // nu: is the coordinate an angle?
     double *kept_y, *kept_lam, *kept_memory;
     // dense
-    double *scale;         // nfree: sizes of the forces that meet in each direction
-    double *gross;         // nu: the same of each row
-    double *H, *V, *value; // stiffness; its directions against the masses and their values
-    double *A, *work;      // nfree x nfree
+    double *scale; // nfree: magnitude of the terms that each force sums
+    double *gross; // nu: the same for each row of the full equations
+    // stiffness; its eigenvectors in the metric of the mass matrix; eigenvalues
+    double *H, *V, *value;
+    double *A, *work; // nfree x nfree
     int *pivot;
     // sparse
     struct ct_point *p;
@@ -27,16 +28,16 @@ struct ct_equilibrium_search {
 
 struct ct_equilibrium_method {
     void (*reserve)(struct ct_equilibrium_search *s);
-    /// Forces and stiffness at the place in l. False if they are not finite or the constraints
-    /// are singular.
+    /// Evaluates forces and stiffness at the position in l. False if they are not finite or the
+    /// constraints are singular.
     bool (*evaluate)(struct ct_equilibrium_search *s);
-    /// dq, dlam (out): a step down the forces. False where there is none.
+    /// dq, dlam (out): a step that descends the potential. False if there is none.
     bool (*find_step)(struct ct_equilibrium_search *s);
-    /// dq, dlam (out): Newton's step. False where the stiffness is singular.
+    /// dq, dlam (out): Newton's step. False if the stiffness is singular.
     bool (*find_newton_step)(struct ct_equilibrium_search *s);
-    /// The slope of the energy along dq: less the work of the forces.
+    /// The derivative of the potential along dq: minus the work of the forces.
     double (*slope)(const struct ct_equilibrium_search *s);
-    /// Nothing but round-off is left of the forces that meet.
+    /// Are the remaining forces round-off of their terms?
     bool (*is_balanced)(struct ct_equilibrium_search *s);
 };
 

@@ -10,10 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: 450 units of round-off
-static const double closed
-    = 1e-13; // rows of positions: a few round-off errors of coordinates of order one
-// Limit: with a message
+// Chosen: 450 eps, some round-off errors of coordinates of order one.
+static const double closed = 1e-13; // [m, rad] the position constraints are met
+// Limit: with a message.
 enum { MOST_NEWTON = 30 };
 
 static size_t larger(size_t a, size_t b)
@@ -37,7 +36,7 @@ struct ct_linear *ct_linear_create(struct ct_ctx *ctx, struct ct_arena *arena,
     return l;
 }
 
-// Room for matrices, once it is known that they will be full.
+// Allocates the dense matrices, once it is known that they are needed.
 static void reserve(struct ct_linear *l)
 {
     struct ct_arena *a = l->arena;
@@ -71,9 +70,9 @@ static bool is_finite(const double *v, size_t n)
     return true;
 }
 
-// ---- the state ------------------------------------------------------------------------------
+// ---- the state -----------------------------------------------------------------------------
 
-// d (nu, out): the shortest vector with J d = -r; J is that of the evaluator.
+// d (nu, out): the vector of least norm with J d = -r; J is that of the evaluator.
 static void shortest(struct ct_linear *l, double *d, const double *r)
 {
     const size_t n = (size_t)l->nu, m = (size_t)l->nrow;
@@ -106,7 +105,7 @@ bool ct_linear_close(struct ct_linear *l)
     for (int i = 0; i < MOST_NEWTON; i++) {
         ct_evaluator_constraint(m);
         const double left = ct_vector_max_norm(m->phi, m->nrow);
-        // Definition: the tolerance of assembly
+        // Definition: the tolerance of assembly.
         if (!isfinite(left) || (left >= before / 2 && before > 1e-9))
             return false;
         if (left <= closed || left >= before / 2)
@@ -116,8 +115,8 @@ bool ct_linear_close(struct ct_linear *l)
         ct_evaluator_retract(m, l->y, l->r);
         enter(l);
     }
-    // Definition: the tolerance of assembly
-    if (!(ct_vector_max_norm(m->phi, m->nrow) < 1e-9)) // [m] or [rad]: not closed at all
+    // Definition: the tolerance of assembly.
+    if (!(ct_vector_max_norm(m->phi, m->nrow) < 1e-9)) // [m, rad] the loops do not close
         return false;
     if (ct_vector_max_norm(m->v, m->nrow) == 0)
         return true;
@@ -156,7 +155,7 @@ static void put_in(const struct ct_linear *l, const double *u, const double *a,
     memcpy(m->input + m->at_lam, lam, m->nrow * sizeof *lam);
 }
 
-// dv/dq with the speeds u: v is linear in them.
+// D = d(J u)/dq at the speeds u. J u is linear in u.
 static void speed_slopes(struct ct_linear *l, double *D, const double *u)
 {
     const struct ct_residual *f = l->m->e->residual;
@@ -166,7 +165,8 @@ static void speed_slopes(struct ct_linear *l, double *D, const double *u)
             l->m->slopes + f->ndq + f->ndu + f->nda + f->ndk);
 }
 
-// Places of states are the states themselves: what multiplies z' moves from M to C, what multiplies z from C to K (nu x nu).
+// A state z of the model takes the place of a position: the coefficient of z' moves from M to
+// C, and that of z from C to K (nu x nu).
 static void take_states_as_places(const struct ct_equations *e, double *K, double *C, double *M)
 {
     for (size_t k = e->nmotion; k < e->nu; k++)
@@ -180,7 +180,7 @@ static bool slopes(struct ct_linear *l)
     const struct ct_residual *f = m->e->residual;
     const double *u = l->y + m->nq;
     const size_t nu = m->nu, nrow = m->nrow;
-    // the derivatives of J a replace those of J u; what drivers add is in the latter alone
+    // derivatives of J a replace those of J u; only the latter contain the terms of drivers
     if (nrow) {
         speed_slopes(l, l->D2, l->a);
         memset(l->b, 0, nu * sizeof *l->b);
@@ -228,7 +228,7 @@ static void choose(struct ct_linear *l, const double *J)
             l->independent[l->nfree++] = j;
 }
 
-// Rows of W (nu x nfree, out) at the dependent speeds: -J_d^-1 R, R (nrow x nfree).
+// Rows of W (nu x nfree, out) at the dependent speeds: -J_d^-1 R, with R (nrow x nfree).
 static void solve_dependent(struct ct_linear *l, double *W, const double *R)
 {
     const int n = l->nu, m = l->nrow, r = l->rank, f = l->nfree;
@@ -251,7 +251,7 @@ static bool factor_dependent(struct ct_linear *l, const double *J)
     return !r || ct_lu(l->Jd, l->pivot, r, r);
 }
 
-// Z from J: unit rows at the independent speeds.
+// Z (nu x nfree), a basis of the null space of J with unit rows at the independent speeds.
 static bool null_space(struct ct_linear *l, const double *J)
 {
     const int n = l->nu, m = l->nrow, f = l->nfree;
@@ -277,8 +277,8 @@ void ct_linear_project(const struct ct_linear *l, double *v, const double *f)
     ct_matrix_multiply_transposed(v, l->Z, f, l->nfree, l->nu, 1);
 }
 
-// G = (E Z) at the independent speeds: a rotation vector th in axes that turn at w has the rate
-// dw + th x w.
+// G = (E Z) at the independent speeds. It comes from rotation vectors: in axes that turn with
+// the angular velocity w, a rotation vector th has the rate dw + th x w.
 static void turning_chart(struct ct_linear *l)
 {
     const double *w = l->y + l->m->nq;
@@ -352,7 +352,7 @@ static void reduce(struct ct_linear *l)
                 || ct_vector_max_norm(l->G, ff) > 0;
 }
 
-// ---- balance --------------------------------------------------------------------------------
+// ---- forces and multipliers ----------------------------------------------------------------
 
 // r (nu, out) = M a - Q - J' lam
 static void residual(struct ct_linear *l, double *r, const double *a, const double *lam)
@@ -362,7 +362,7 @@ static void residual(struct ct_linear *l, double *r, const double *a, const doub
     memcpy(r, l->m->residual.out, (size_t)l->nu * sizeof *r);
 }
 
-// Minimum-norm multipliers for r (nu) = J' lam, and the sizes of the forces that meet.
+// Multipliers of least norm with r (nu) = J' lam, and the sums of force magnitudes of each row.
 static void multipliers(struct ct_linear *l, const double *r)
 {
     const int n = l->nu, m = l->nrow;
@@ -383,7 +383,8 @@ static void multipliers(struct ct_linear *l, const double *r)
     }
 }
 
-// What both ways of balance begin with: J, Z and the accelerations that the drivers ask for.
+// The first part of ct_linear_rest and ct_linear_move: J, Z and the accelerations that the
+// drivers prescribe.
 static bool begin(struct ct_linear *l)
 {
     struct ct_evaluator *m = l->m;
@@ -407,7 +408,7 @@ static bool begin(struct ct_linear *l)
 static bool finish(struct ct_linear *l)
 {
     residual(l, l->r, l->a,
-             l->lam); // lam is zero: what multipliers must bear, and what is left
+             l->lam); // lam is zero: r is the force that multipliers must balance
     multipliers(l, l->r);
     ct_linear_project(l, l->force, l->r);
     l->acceleration = ct_vector_max_norm(l->a, (size_t)l->nu);
@@ -426,12 +427,12 @@ bool ct_linear_rest(struct ct_linear *l)
     return finish(l);
 }
 
-// w (nfree, out): Mr w = -v; directions that move no mass stay at rest.
+// w (nfree, out): Mr w = -v. Directions without mass stay at rest.
 static void accelerate(struct ct_linear *l, double *w, const double *v)
 {
     const int f = l->nfree;
-    // Derived: n eps, n up to some thousand
-    const double massless = 1e-12; // of the largest: round-off of a matrix of order one
+    // Derived: n eps, n up to some thousand.
+    const double massless = 1e-12; // relative to the largest eigenvalue
     double *M = l->Mr, *scale = l->d, *value = l->r;
     memset(M, 0, (size_t)f * (size_t)f * sizeof *M);
     add_reduced(l, M, l->m->M, l->Z);
@@ -478,7 +479,7 @@ const char *ct_linear_coordinate(const struct ct_equations *e, struct ct_arena *
         return e->u[k].name;
     const char *dot = strrchr(e->u[k].name, '.');
     const size_t n = dot ? (size_t)(dot - e->u[k].name) : strlen(e->u[k].name);
-    int start = k; // angular velocities come in threes
+    int start = k; // first of the three angular velocities
     while (start > 0 && e->u[start - 1].q < 0)
         start--;
     return ct_arena_printf(a, "%.*s.turn%d", (int)n, e->u[k].name, (k - start) % 3 + 1);

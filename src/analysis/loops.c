@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what closes a loop -------------------------------------------------------------------------
+// ---- the joint that closes a loop ----------------------------------------------------------
 
 static bool closes(const struct ct_build *b, size_t edge, int joint)
 {
@@ -29,7 +29,7 @@ static void add_member(struct ct_arena *a, const char ***list, size_t *n, size_t
     CT_PUSH(a, *list, *n, *cap, name);
 }
 
-// Branches of the circuits of a joint, in the order in which they are passed.
+// Lists the branches of the circuits of a joint, in the order of the circuits.
 static void find_members(struct ct_arena *a, const struct ct_build *b, struct ct_loop *l)
 {
     const char **list = NULL;
@@ -51,7 +51,8 @@ static void find_members(struct ct_arena *a, const struct ct_build *b, struct ct
     l->nmember = n;
 }
 
-// Rows of one joint are a loop; a row of none is one by itself.
+// Groups the rows into loops: the rows of one joint form a loop, and a row without a joint is a
+// loop of its own.
 static void list_loops(struct ct_arena *a, struct ct_loops *out)
 {
     const struct ct_equations *e = &out->sim->system->equations;
@@ -76,7 +77,7 @@ static void list_loops(struct ct_arena *a, struct ct_loops *out)
     }
 }
 
-// ---- singular values ----------------------------------------------------------------------------
+// ---- singular values -----------------------------------------------------------------------
 
 static double entry(const struct ct_loops *l, size_t k)
 {
@@ -84,7 +85,7 @@ static double entry(const struct ct_loops *l, size_t k)
     return l->J.out[k] * l->speed_size[J->column] / l->row_size[J->row];
 }
 
-// Rows of K that are listed, as columns of A (nu x n, out).
+// A (nu x n, out): the listed rows of K as columns.
 static void gather(const struct ct_loops *l, const size_t *row, size_t n, double *A)
 {
     const struct ct_equations *e = &l->sim->system->equations;
@@ -95,7 +96,8 @@ static void gather(const struct ct_loops *l, const size_t *row, size_t n, double
                 A[(size_t)e->J[k].column + e->nu * i] = entry(l, k);
 }
 
-// The smallest of the first `rank` singular values of the rows that are listed: by eigenvalues of K K', half the digits.
+// The smallest of the first `rank` singular values of the listed rows, from the eigenvalues of
+// K K'. This has half the digits.
 static double smallest(const struct ct_loops *l, const size_t *row, size_t n, int rank)
 {
     const size_t nu = l->sim->system->equations.nu;
@@ -155,13 +157,13 @@ static void prepare_measure(struct ct_arena *a, struct ct_loops *l)
     l->work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n) + 1);
 }
 
-// ---- what to release ----------------------------------------------------------------------------
+// ---- freedoms that could be released -------------------------------------------------------
 
-// A freedom that may be released, and the reaction along it of each null vector.
+// A freedom that may be released, and the reaction along it for each null vector of J'.
 struct candidate {
     struct ct_release release;
-    size_t at;     // of its expression, or the row that it stands for
-    double *share; // (nz)
+    size_t at;     // index of its expression, or of the constraint row that it removes
+    double *share; // reaction for each null vector (nz)
 };
 
 struct releases {
@@ -172,7 +174,7 @@ struct releases {
     ct_ex *reaction;
     size_t nreaction, reaction_cap;
     size_t nz;
-    double *z; // (nrow x nz): z'J = 0
+    double *z; // (nrow x nz): null vectors, z' J = 0
 };
 
 static void add_candidate(struct releases *r, int joint, enum ct_release_kind kind, int axis,
@@ -182,7 +184,8 @@ static void add_candidate(struct releases *r, int joint, enum ct_release_kind ki
     CT_PUSH(r->a, r->candidate, r->n, r->cap, c);
 }
 
-// Turns and slides in axes of `from`. Out of the plane of a planar model nothing is known.
+// Adds rotations and translations along the axes of frame `from`. For a planar model only those
+// in its plane.
 static void add_freedoms(struct releases *r, struct ct_build *b, int joint)
 {
     const int tail = b->topology->wiring[b->topology->edge_of_joint[joint]].tail;
@@ -201,7 +204,7 @@ static void add_freedoms(struct releases *r, struct ct_build *b, int joint)
     }
 }
 
-// Joints of loops that have a multiplier which is not unique.
+// Marks the joints of loops with a multiplier that is not unique.
 static bool *joints_concerned(const struct releases *r)
 {
     const struct ct_loops *l = r->l;
@@ -246,7 +249,8 @@ static void find_null_vectors(struct releases *r)
         ct_null_space_vector(null_space, s->row[(size_t)s->rank + k], r->z + nrow * k);
 }
 
-// Reactions are linear in the multipliers: their difference with z and with none.
+// Computes the shares. Reactions are linear in the multipliers, so a share is the difference
+// between the reaction with z and that without.
 static void find_shares(struct releases *r)
 {
     struct ct_evaluator *m = ct_run_evaluator(r->l->sim->run);
@@ -282,7 +286,7 @@ static double norm(const double *v, size_t n)
     return sqrt(sum);
 }
 
-// Torques are compared with forces by the size of the mechanism.
+// Divides torques by the size of the mechanism, so that they compare with forces.
 static void make_comparable(struct releases *r)
 {
     const struct ct_equations *e = &r->l->sim->system->equations;
@@ -295,14 +299,15 @@ static void make_comparable(struct releases *r)
                 r->candidate[i].share[k] /= length;
 }
 
-// Round-off of sums of some hundred terms against the largest reaction of null vectors.
-// Derived: null vectors are good to 1e-12, and a hundred are added.
+// A share below this, relative to the largest reaction of the null vectors, is zero.
+// Derived: null vectors have errors of 1e-12, and some hundred to a thousand terms are added.
 static const double nothing = 1e-9;
 
-// The first candidate whose share is not much less than the largest: which of equal ones is not for round-off to decide.
+// Returns the first candidate whose share is not much less than the largest, so that round-off
+// does not choose between equal ones.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much = 0.5; // Chosen: apart from the largest by far more than round-off
+    const double much = 0.5; // Chosen: far above round-off.
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));
@@ -312,7 +317,8 @@ static struct candidate *next(struct releases *r, double least)
     return NULL;
 }
 
-// One after the other: what a release takes away is taken off the shares of all.
+// Chooses releases one by one. After each choice its contribution is subtracted from the shares
+// of all candidates.
 static void choose(struct releases *r, double least)
 {
     double *v = CT_NEWN(r->a, double, r->nz);
@@ -355,7 +361,7 @@ static void find_releases(struct ct_arena *a, struct ct_loops *l)
         l->release[l->nrelease++] = r.candidate[i].release;
 }
 
-// ---- the entries --------------------------------------------------------------------------------
+// ---- entry points --------------------------------------------------------------------------
 
 void ct_loops_create(struct ct_arena *a, struct ct_sim *sim, struct ct_loops *out)
 {
@@ -370,7 +376,7 @@ void ct_loops_create(struct ct_arena *a, struct ct_sim *sim, struct ct_loops *ou
     if (!nrow)
         return;
     prepare_measure(a, out);
-    // the evaluator at the start, with multipliers
+    // evaluates at the start, with multipliers
     bool *unused = CT_NEWN(a, bool, nrow + sim->system->equations.nresult + 1);
     ct_run_find_undetermined(run, 0, ct_run_state(run), unused, unused + nrow);
     ct_evaluator_set(run->m, 0, ct_run_state(run));
@@ -406,13 +412,13 @@ const char *ct_release_text(struct ct_arena *a, const struct ct_loops *l,
     return name;
 }
 
-// ---- for people, and for programs ---------------------------------------------------------------
+// ---- output --------------------------------------------------------------------------------
 
 struct printing {
     struct ct_ctx *own;
     struct ct_sim *sim;
     FILE *out;
-    const char *summary; // path; NULL: none
+    const char *summary; // path of the summary file; NULL: none
 };
 
 static const char *list_names(struct ct_arena *a, const struct ct_loop *l,

@@ -41,7 +41,7 @@ static ct_ex add_parameter(struct ct_ctx *own, struct ct_model *v, const char *n
     return p->symbol;
 }
 
-// A value of an instance that may be changed: the instance's values are its own from now on.
+// A value of an instance for modification. The instance gets its own copy of its values.
 static struct ct_value *own_value(struct ct_ctx *own, struct ct_instance *self, const char *key,
                                   size_t room)
 {
@@ -72,7 +72,8 @@ static struct ct_value *own_value(struct ct_ctx *own, struct ct_instance *self, 
 
 // ---- names ----------------------------------------------------------------------------------
 
-// Is the name "OWNER.PROPERTY" with the given property at `dot`? The owner's name, or NULL.
+// If the name is "OWNER.PROPERTY" with the given property at `dot`, returns the owner's name;
+// else NULL.
 static const char *owner_of(struct ct_arena *a, const char *name, const char *property)
 {
     const size_t n = strlen(name), k = strlen(property);
@@ -81,7 +82,8 @@ static const char *owner_of(struct ct_arena *a, const char *name, const char *pr
     return ct_arena_strndup(a, name, n - k - 1);
 }
 
-// "J.effort" or "J.effort3": joint and place; -1 if it is none.
+// For "J.effort" or "J.effort3" returns the joint and sets the index of the effort; -1 for
+// other names.
 static int find_effort(struct ct_ctx *own, const struct ct_model *m, const char *name,
                        int *place)
 {
@@ -100,7 +102,7 @@ static int find_effort(struct ct_ctx *own, const struct ct_model *m, const char 
     return *place >= 0 && *place < nfree && (is_numbered || nfree == 1) ? joint : -1;
 }
 
-// "F.force.x" or "T.torque.x": the load and its component; -1 if it is none.
+// For "F.force.x" or "T.torque.x" returns the load and sets its component; -1 for other names.
 static int find_component(struct ct_ctx *own, const struct ct_model *m, const char *name,
                           int *component)
 {
@@ -149,7 +151,7 @@ static void push(struct names *l, const char *name)
     CT_PUSH(l->a, l->name, l->n, l->cap, name);
 }
 
-// Efforts (all of them, or those that the model gives) and components of loads.
+// Lists the efforts (all, or those that the model gives) and the components of loads.
 static struct names list_inputs(struct ct_arena *a, const struct ct_model *m, bool all)
 {
     struct names l = {.a = a};
@@ -256,7 +258,8 @@ static bool no_load(struct ct_ctx *own, const struct ct_model *m, const char *na
                     name, ct_suggest_or_list(own->model, name, l.name, l.n));
 }
 
-// A linear beam cannot buckle: those left to the program know how bending shortens them.
+// A linear beam cannot buckle. Beams whose formulation the program chooses get the one with
+// foreshortening.
 static void foreshorten(struct ct_ctx *own, struct ct_model *v)
 {
     struct ct_body *body = CT_NEWN(own->model, struct ct_body, v->nbody + 1);

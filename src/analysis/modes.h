@@ -1,4 +1,4 @@
-// Natural motions about a configuration, for the pictures of them.
+// Natural modes about a configuration, as used by their pictures and animations.
 #ifndef CT_ANALYSIS_MODES_H
 #define CT_ANALYSIS_MODES_H
 
@@ -10,15 +10,15 @@ struct ct_modes {
     struct ct_system *system;
     struct ct_configuration at;
     struct ct_sim_options run;
-    long count; // asked for; 0: the usual number
+    long count; // number of modes requested; 0: the default
     struct ct_motion_mode *mode;
-    size_t n, all; // shown, found
+    size_t n, all; // number of modes listed, number found
     const char *how;
-    const char **coordinate; // nu names
+    const char **coordinate; // names of the coordinates (nu)
 };
 
-/// The evaluator of s->at.l stands where the coordinates have moved by `amount` of a shape (nu) from the state y0, the
-/// loops closed again. s->at.l->y is that place then.
+/// Moves the evaluator of s->at.l from the state y0 by `amount` times a shape (nu) and closes
+/// the loops again. s->at.l->y is then that position.
 void ct_modes_displace(struct ct_modes *s, const double *y0, const double *shape,
                        double amount);
 

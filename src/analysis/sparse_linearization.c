@@ -28,7 +28,8 @@ struct ct_point *ct_point_here(struct ct_linear *l)
     return l->point;
 }
 
-// Entries of one level (place, speed, acceleration) out of all, their directions counted from 0.
+// Picks the entries with respect to one level (position, speed or acceleration) from all
+// entries, with columns counted from 0.
 static size_t pick(struct ct_arena *a, const struct ct_number *all, size_t n, size_t level,
                    size_t nu, struct ct_number **out)
 {
@@ -153,7 +154,8 @@ struct ct_sparse *ct_point_factor(struct ct_point *p, double stiffness, double m
     for (size_t i = 0; i < p->nM && mass != 0; i++)
         add(&s, p->M[i].row, p->M[i].direction, mass * p->M[i].value);
     add_rows(&s, m);
-    for (size_t i = 0; i < n; i++) // a place for every pivot
+    // a zero entry on the diagonal, so that every pivot has a place
+    for (size_t i = 0; i < n; i++)
         add(&s, i, i, 0);
     return factor(&s, n, m->nrow);
 }

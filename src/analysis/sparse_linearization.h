@@ -1,13 +1,11 @@
-// The equations and their derivatives at a state as sparse numbers: for systems that are too
-// large for full matrices, and that are linearised at a few places only.
+// The linearised equations at a state as sparse matrices. They serve systems that are too large
+// for dense matrices and are linearised at a few states only.
 //
 //     r = M u' - Q - J' lam,    K = dr/dq, C = dr/du, M = dr/du'
 //
-// Entries have a row and a direction; zeros are left out.
-//
-// Derivatives are taken where the numbers are, node by node of the expressions of r
-// (ct_ex_jacobian_at), so that what is zero at the state costs nothing and no further
-// expressions are made.
+// Entries are (row, column, value); zeros are left out. Derivatives are evaluated numerically,
+// node by node, on the expressions of r (ct_ex_jacobian_at). No derivative expressions are
+// created, and terms that are zero at the state cost nothing.
 #ifndef CT_ANALYSIS_SPARSE_LINEARIZATION_H
 #define CT_ANALYSIS_SPARSE_LINEARIZATION_H
 
@@ -20,17 +18,18 @@ struct ct_point {
     double *r, *value;
     struct ct_seed *seed;
     size_t nseed;
-    struct ct_number *K, *C, *M; // in `all`
+    struct ct_number *K, *C, *M; // parts of `all`
     size_t nK, nC, nM;
-    const double *phi, *v, *J; // of the rows; entries as e->J lists them
+    const double *phi, *v, *J; // of the constraint rows; J as listed by e->J
 };
 
-/// At the state of l, with the accelerations and multipliers there. The equations have the rows
-/// of their residual. Everything lives in arenas under l->arena.
+/// Creates sparse matrices for the state of l, with its accelerations and multipliers. The
+/// equations must have a residual. Everything lives in arenas under l->arena.
 struct ct_point *ct_point_create(struct ct_linear *l);
-/// One that all analyses at l use in turn; it is made when it is first asked for.
+/// Returns the object that all analyses at l share; creates it at the first call.
 struct ct_point *ct_point_here(struct ct_linear *l);
-/// At l->y, l->t, l->a, l->lam. False if something is not finite. No diagnostic.
+/// Evaluates at l->y, l->t, l->a, l->lam. False, without a diagnostic, if a value is not
+/// finite.
 bool ct_point_evaluate(struct ct_point *p);
 /// y (nu, out) = A x
 void ct_point_apply(double *y, const struct ct_number *A, size_t n, const double *x, size_t nu);
@@ -38,11 +37,11 @@ void ct_point_apply(double *y, const struct ct_number *A, size_t n, const double
 /// Largest |value| of n entries.
 double ct_point_largest(const struct ct_number *A, size_t n);
 
-/// Factors of [ stiffness K + mass M, J'; J, 0 ] at the last evaluation, which they live with.
-/// NULL where it is singular or sparse factors are not available.
+/// Factors [ stiffness K + mass M, J'; J, 0 ] at the last evaluation; valid until the next one.
+/// NULL if the matrix is singular or sparse factors are not available.
 struct ct_sparse *ct_point_factor(struct ct_point *p, double stiffness, double mass);
-/// d (nu, out): the shortest vector with J d = -r, by sparse factors; J is that of the last
-/// ct_evaluator_constraint. False where they are not available or J has not full rank.
+/// d (nu, out): the vector of least norm with J d = -r, by sparse factors, with J of the last
+/// ct_evaluator_constraint. False if these are not available or J does not have full rank.
 bool ct_point_shortest(struct ct_linear *l, double *d, const double *r);
 
 #endif

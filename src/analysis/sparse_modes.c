@@ -1,12 +1,14 @@
 // See sparse_modes.h.
 //
-// The unknowns are nu speeds x and nrow multipliers mu. An operator OP takes x to the solution y of
+// The unknowns are nu speeds x and nrow multipliers mu. The operator OP maps x to the solution
+// y of
 //
 //     [ K - s M  J' ] [ y  ]   [ F x ]        modes:     F = M, symmetric in the metric M
 //     [ J        0  ] [ mu ] = [ 0   ]        buckling:  F = -dK, s = 0, symmetric in the metric K
 //
-// Its matrix is factored once, and its eigenvalues theta of largest size are those next to the
-// shift s: w^2 = s + 1/theta of modes, c = 1/theta of load factors.
+// The matrix is factored once. The eigenvalues theta of OP with the largest size belong to the
+// eigenvalues closest to the shift s: w^2 = s + 1/theta for modes, c = 1/theta for load
+// factors.
 #include "analysis/sparse_modes.h"
 #include "analysis/sparse_linearization.h"
 #include "base/sort.h"
@@ -17,19 +19,19 @@
 #include <math.h>
 #include <string.h>
 
-// [m/s^2, rad/s^2] Accelerations below this are round-off: an equilibrium.
-// Derived: n eps of accelerations of order 10, some hundred terms
+// [m/s^2, rad/s^2] Below it accelerations are round-off, and the state is an equilibrium.
+// Derived: n eps of accelerations of order 10, some hundred terms.
 static const double still = 1e-9;
-// Of damping against sqrt(largest K * largest M): none.
-// Derived: 4500 units of round-off
+// Relative to sqrt(largest K * largest M): below it there is no damping.
+// Chosen: 4500 eps, far above round-off of the entries.
 static const double absent = 1e-12;
-// Where K is singular: the shift below zero against the largest K over the largest M. Round-off of
-// K, eps times that, is small beside it. An eigenvalue is zero that is `zero` of the shift: what
-// round-off of 1/theta leaves.
-// Derived: eps / 1e-9 is small beside 1, and 1e-6 a digit above it.
+// If K is singular, the shift is this far below zero, relative to the largest K over the
+// largest M. Round-off of K, eps times that ratio, is small compared with the shift. An
+// eigenvalue below `zero` times the shift is zero: this is what round-off of 1/theta leaves.
+// Derived: eps / 1e-9 = 2e-7 is the relative error of 1/theta, and 1e-6 is a few times that.
 static const double small_shift = 1e-9, zero = 1e-6;
-// Of K x - K' x against the largest entries: round-off.
-// Derived: 4500 units of round-off
+// Limit of asymmetry |K x - K' x| relative to the largest entries.
+// Chosen: 4500 eps, far above round-off of the entries.
 static const double symmetric = 1e-12;
 
 struct large {
@@ -39,10 +41,10 @@ struct large {
     struct ct_point *p;
     size_t nu, nrow, n;
     struct ct_sparse *matrix;
-    double *b, *x, *f; // n each
+    double *b, *x, *f; // workspace, n each
     double shift;
-    const struct ct_point *loaded; // of buckling; NULL: modes
-    double factor;                 // of the load there
+    const struct ct_point *loaded; // the stiffness under load, for buckling; NULL: modes
+    double factor;                 // the load factor of `loaded`
 };
 
 // ---- matrices -------------------------------------------------------------------------------
@@ -64,7 +66,7 @@ static bool factor_point(struct large *g, double shift)
     return g->matrix != NULL;
 }
 
-// x (nu, out): the first part of the solution for (r, 0)
+// x (nu, out): the first nu entries of the solution for the right-hand side (r, 0)
 static void solve(struct large *g, double *x, const double *r)
 {
     memcpy(g->b, r, g->nu * sizeof *r);
@@ -73,7 +75,7 @@ static void solve(struct large *g, double *x, const double *r)
     memcpy(x, g->x, g->nu * sizeof *x);
 }
 
-// y = OP x; metric_x is the product of x with the metric
+// y = OP x; metric_x is the product of the metric and x.
 static void apply_operator(void *data, double *y, const double *x, const double *metric_x)
 {
     struct large *g = data;
@@ -87,9 +89,10 @@ static void apply_operator(void *data, double *y, const double *x, const double 
     solve(g, y, g->f);
 }
 
-// ---- is it of this kind? --------------------------------------------------------------------
+// ---- is the system of the required kind? ---------------------------------------------------
 
-// Accelerations and multipliers at rest: r = 0, J a = 0. False where masses and rows are singular.
+// Accelerations and multipliers at rest: r = 0, J a = 0. False if the matrix of masses and rows
+// is singular.
 static bool balance(struct large *g)
 {
     struct ct_linear *l = g->l;
@@ -102,7 +105,7 @@ static bool balance(struct large *g)
         return false;
     for (size_t i = 0; i < g->nu; i++)
         r[i] = -g->p->r[i];
-    if (ct_vector_largest(r, g->nu) == 0) // nothing acts
+    if (ct_vector_largest(r, g->nu) == 0) // no force acts
         return true;
     g->matrix = ct_point_factor(g->p, 0, 1);
     if (!g->matrix)
@@ -114,15 +117,16 @@ static bool balance(struct large *g)
     return ct_point_evaluate(g->p);
 }
 
-// Numbers in [-1, 1) that are the same in every run.
+// Pseudorandom numbers in [-1, 1), the same in every run.
 static double chance(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
 
-// K x against K' x, each row and column measured by its largest entry: a load that follows the
-// end of a long beam is small beside the stiffness of its elements.
+// Compares K x with K' x for a random x, each entry relative to the largest entries of its row
+// and column. A follower load at the end of a long beam is small compared with the stiffness of
+// the elements, and must still be seen.
 static bool is_symmetric(struct large *g, const struct ct_point *p)
 {
     uint64_t state = 1;
@@ -148,10 +152,10 @@ static bool is_of_this_kind(struct large *g)
     const struct ct_evaluator *m = g->l->m;
     if ((g->nrow && m->e->ndriver) || ct_vector_largest(g->l->y + m->nq, g->nu) > 0)
         return false;
-    if (!balance(g) || ct_vector_largest(g->p->v, g->nrow) > 0) // motions of chords
+    if (!balance(g) || ct_vector_largest(g->p->v, g->nrow) > 0) // drivers of chords
         return false;
     if (g->nrow && g->l->acceleration > still)
-        return false; // the rows turn while it accelerates
+        return false; // the rows depend on the acceleration
     const double rate
         = sqrt(ct_point_largest(g->p->K, g->p->nK) * ct_point_largest(g->p->M, g->p->nM));
     return ct_point_largest(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g, g->p);
@@ -159,8 +163,8 @@ static bool is_of_this_kind(struct large *g)
 
 // ---- eigenvalues ----------------------------------------------------------------------------
 
-// Eigenvalues theta of OP, n of them, |theta| descending, and vectors (nu x n) of unit size in
-// the metric.
+// n eigenvalues theta of OP, |theta| descending, and eigenvectors (nu x n) of unit size in the
+// metric.
 struct pairs {
     double *theta, *vector;
     size_t n;
@@ -186,25 +190,28 @@ static void rank(struct large *g, struct pairs *out, struct ranked *order)
     ct_sort(g->a, order, out->n, sizeof *order, by_rank, NULL);
 }
 
-// The `count` eigenvalues of OP that are largest by size; fewer where there are no more, or
-// ARPACK fails.
+// Finds the `count` eigenvalues of OP that are largest in size. Finds fewer if there are no
+// more or ARPACK fails.
 //
-// A Krylov space of one vector has one vector of several equal eigenvalues, and others by
-// round-off only: a round beam bends about two axes alike, a free body has six motions of
-// frequency 0. So the search is repeated in the complement of what was found until that has
-// none larger than the last one wanted. Each such search adds one that is wanted, so there are
-// no more than `count` of them and the one that finds nothing.
+// A Krylov space from one start vector contains one eigenvector of a multiple eigenvalue;
+// others appear by round-off only. Multiple eigenvalues are common: a round beam bends alike
+// about two axes, and a free body has six motions of frequency 0. The search is therefore
+// repeated in the complement of the eigenvectors found, until it finds no eigenvalue larger
+// than the last one wanted. Each repetition adds at least one wanted eigenvalue or is the last,
+// so that there are at most `count` of them.
 static struct pairs find_pairs(struct large *g, size_t count)
 {
-    // Limit: of a search
-    enum { MORE = 2 }; // vectors of a repeated search: a pair of equal ones at once
+    // Limit: of a search.
+    enum { MORE = 2 }; // vectors of a repeated search: a double eigenvalue at once
     const struct ct_operator op = {apply_operator, apply_metric, g};
-    const size_t room = g->nu - g->nrow; // of the null space of J, where OP leads
+    // dimension of the null space of J, which contains the range of OP
+    const size_t room = g->nu - g->nrow;
     const size_t wanted = count < room ? count : room, most = wanted + MORE * (wanted + 1);
     uint64_t state = 7;
     struct pairs all = {CT_NEWN(g->a, double, most), CT_NEWN(g->a, double, g->nu *most), 0};
     struct ranked *order = CT_NEWN(g->a, struct ranked, most);
-    double *start = CT_NEWN(g->a, double, g->nu), last = 0; // of the wanted ones so far
+    // last: smallest wanted theta found so far
+    double *start = CT_NEWN(g->a, double, g->nu), last = 0;
     for (size_t i = 0; i <= wanted + 1 && all.n < room; i++) {
         for (size_t k = 0; k < g->nu; k++)
             start[k] = chance(&state);
@@ -235,8 +242,8 @@ static struct pairs find_pairs(struct large *g, size_t count)
     return out;
 }
 
-// Factors next to the lowest eigenvalues. Where something is free to move K is singular: the
-// shift is then a little below zero.
+// Factors the matrix near the lowest eigenvalues. If a rigid-body motion makes K singular, the
+// shift is slightly below zero.
 static bool factor_lowest(struct large *g)
 {
     const double ratio = ct_point_largest(g->p->K, g->p->nK)
@@ -246,14 +253,14 @@ static bool factor_lowest(struct large *g)
                     "the stiffness and the constraints are singular");
 }
 
-// w^2 [1/s^2]
+// w^2 [1/s^2] from theta
 static double eigenvalue(const struct large *g, double theta)
 {
     const double w2 = g->shift + 1 / theta;
     return fabs(w2) <= zero * fabs(g->shift) ? 0 : w2;
 }
 
-// ---- all of it ------------------------------------------------------------------------------
+// ---- entry points --------------------------------------------------------------------------
 
 static struct large large_create(struct ct_ctx *ctx, struct ct_arena *a, struct ct_linear *l)
 {
@@ -320,8 +327,8 @@ bool ct_sparse_modes_stiffness(struct ct_linear *l, size_t count, double *w2)
 size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loaded,
                                double factor, size_t count, double *c, double *shape)
 {
-    // Chosen: loads a thousand million times the first are none
-    const double none = 1e-9; // of the largest 1/c
+    // Chosen: factors above a thousand million times the first do not count.
+    const double none = 1e-9; // relative to the largest 1/c
     struct ct_arena *a = ct_arena_create_under(l->arena);
     struct large g = large_create(l->ctx, a, l);
     size_t n = 0;
@@ -329,7 +336,7 @@ size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loade
         g.loaded = loaded;
         g.factor = factor;
         const struct pairs z
-            = find_pairs(&g, 2 * count); // loads that pull have negative factors
+            = find_pairs(&g, 2 * count); // twice as many: half of them may be negative factors
         for (size_t i = 0; i < z.n && n < count; i++)
             if (z.theta[i] > none * fabs(z.theta[0])) {
                 c[n] = 1 / z.theta[i];

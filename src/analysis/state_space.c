@@ -2,10 +2,11 @@
 //
 //     y = T z + N2 y2,  z = (y_p, y_1)
 //
-// y_p: coordinates with mass; N1 y_1, N2 y2: massless ones, with dampers and without.
+// y_p are the coordinates with mass. N1 y_1 and N2 y2 are massless directions with and without
+// dampers.
 //
-//     M_pp w_p' + C_pp w_p + C_p1 y_1' + K_p z = g_p      rows T' of the equations, y2 put in from
-//     C_1p w_p + C_11 y_1' + K_1 z = g_1                  N2' K (T z + N2 y2) = N2' g
+//     M_pp w_p' + C_pp w_p + C_p1 y_1' + K_p z = g_p      rows T' of the equations, after y2 is
+//     C_1p w_p + C_11 y_1' + K_1 z = g_1                  eliminated by N2' K (T z + N2 y2) = N2' g
 #include "analysis/state_space.h"
 #include "numeric/dense.h"
 
@@ -13,11 +14,12 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: n eps, n up to some thousand
+// Derived: n eps, n up to some thousand.
 static const double massless
-    = 1e-12; // of the largest eigenvalue, in coordinates of unit mass each
-// Derived: as symmetric matrices in eigenvalues.c
-static const double uncoupled = 1e-9; // a damping that small against the largest is not there
+    = 1e-12; // relative to the largest eigenvalue, in coordinates of unit mass each
+// Derived: as for symmetric matrices in eigenvalues.c.
+// relative to the largest entry: below it there is no damping
+static const double uncoupled = 1e-9;
 
 static double *matrix(struct ct_arena *a, int n, int m)
 {
@@ -29,16 +31,16 @@ struct split {
     struct ct_arena *a;
     const struct ct_linear *l;
     int f, k, n0, n1, n2; // f = k + n0, n0 = n1 + n2
-    int *heavy, *light;   // k and n0 coordinates
-    bool is_mixed;        // massless directions are not coordinates
-    double *error;        // f: of the entries of N
+    int *heavy, *light;   // indices of the k coordinates with mass and the n0 without
+    bool is_mixed;        // massless directions combine several coordinates
+    double *error;        // f: error bounds of the entries of N
     double *N;            // f x n0: N1, then N2
-    double *T;            // f x (k + n1): unit vectors of the heavy ones, N1
+    double *T;            // f x (k + n1): unit vectors of the coordinates with mass, then N1
 };
 
 // ---- directions -----------------------------------------------------------------------------
 
-// N (f x n0): null space of Mr, n0 counted.
+// N (f x n0): null space of Mr. Sets n0.
 static void find_massless(struct split *s)
 {
     const int f = s->f;
@@ -62,11 +64,13 @@ static void find_massless(struct split *s)
         for (int i = 0; i < f; i++)
             s->N[i + f * j] = scale[i] * M[i + f * j];
     s->error = scale;
-    for (int i = 0; i < f && s->n0 < f; i++) // a vector's, by the gap to the others
+    // error of an eigenvector: round-off over the gap to other eigenvalues
+    for (int i = 0; i < f && s->n0 < f; i++)
         s->error[i] *= fmax(massless, DBL_EPSILON * f * value[f - 1] / value[s->n0]);
 }
 
-// The massless directions by coordinates of their own: rows of N at these become unit rows.
+// Chooses one coordinate for each massless direction and makes the rows of N at these
+// coordinates unit rows.
 static void choose_light(struct split *s)
 {
     const int f = s->f, n0 = s->n0;
@@ -85,14 +89,14 @@ static void choose_light(struct split *s)
     int heavy = 0, light = 0;
     for (int i = 0; i < f; i++)
         *(taken[i] ? &s->light[light++] : &s->heavy[heavy++]) = i;
-    // N' <- P^-T N' with the square part P of N: rows `light`
+    // N' <- P^-T N', where P is the square block of rows `light` of N
     for (int j = 0; j < n0; j++)
         for (int i = 0; i < n0; i++)
             P[i + n0 * j] = s->N[s->light[i] + f * j];
     for (int j = 0; j < n0; j++)
         for (int i = 0; i < f; i++)
             A[j + n0 * i] = s->N[i + f * j];
-    double own = 1; // what a direction has at its coordinate, at least
+    double own = 1; // smallest entry of a direction at its coordinate
     if (n0 && ct_lu(P, pivot, n0, n0)) {
         ct_lu_solve(A, P, pivot, n0, n0, f, n0, true);
         for (int i = 0; i < n0; i++)
@@ -111,8 +115,8 @@ static bool is_state(const struct split *s, int i)
     return ct_speed_is_state(s->l->m->e, (size_t)s->l->independent[i]);
 }
 
-// The largest entry of A (f x n) but for rows of states of the model, and with n = f columns
-// of theirs: their size is that of whatever they stand for.
+// The largest entry of A (f x n) outside the rows of model states and, if n = f, outside their
+// columns. Model states may have any unit.
 static double largest_of_motion(const struct split *s, const double *A, int n)
 {
     double largest = 0;
@@ -123,8 +127,9 @@ static double largest_of_motion(const struct split *s, const double *A, int n)
     return largest;
 }
 
-// Columns of N and the coordinates in `light` that are states of the model go to the front, in
-// their order. Returns how many there are: z' stands in the row of each, so that they have rates.
+// Moves the columns of N and the entries of `light` that are model states to the front, in
+// their order. Returns their number. The row of a state contains its rate z', so that each of
+// them has a rate.
 static int put_states_first(struct split *s)
 {
     const int f = s->f, n0 = s->n0;
@@ -145,7 +150,7 @@ static int put_states_first(struct split *s)
     return nstate;
 }
 
-// Turn N so that states of the model, and dampers, act on its first n1 directions alone.
+// Rotates N so that model states and dampers act on its first n1 columns only.
 static void split_by_damping(struct split *s)
 {
     const int f = s->f, nstate = put_states_first(s), n = s->n0 - nstate;
@@ -190,12 +195,12 @@ static bool not_held(struct split *s)
 // ---- the equations in z ---------------------------------------------------------------------
 
 struct reduced {
-    int m;                 // k + n1
+    int m;                 // m = k + n1
     double *That, *y_g;    // y = That z + y_g g
-    double *M, *C, *K, *g; // m x m; g (m x f): what is left of forces
+    double *M, *C, *K, *g; // m x m; g (m x f): coefficients of the forces
 };
 
-// y2 = -K22^-1 (N2' K T z - N2' g)
+// Eliminates y2 = -K22^-1 (N2' K T z - N2' g).
 static bool follow(struct split *s, struct reduced *r)
 {
     const int f = s->f, m = r->m, n2 = s->n2;
@@ -258,7 +263,8 @@ static bool reduce(struct split *s, struct reduced *r)
 
 // ---- states ---------------------------------------------------------------------------------
 
-// X (n x k) <- A^-1 X for the square part of P (ld) from `at`, n rows.
+// X (n x k) <- A^-1 X, where A is the n x n block of P (leading dimension ld) from row and
+// column `at`.
 static bool divide(struct split *s, double *X, const double *P, int at, int n, int ld, int k)
 {
     double *A = matrix(s->a, n, n);
@@ -274,7 +280,7 @@ static bool divide(struct split *s, double *X, const double *P, int at, int n, i
     return true;
 }
 
-// out (rows x cols of the whole, leading dimension ld) from row `at`: rows of a block
+// Copies a block (rows x cols) into out (leading dimension ld) from row `at`.
 static void put(double *out, int ld, int at, const double *block, int n, int columns)
 {
     for (int j = 0; j < columns; j++)
@@ -282,7 +288,7 @@ static void put(double *out, int ld, int at, const double *block, int n, int col
                (size_t)n * sizeof *out);
 }
 
-// Rates of z and w_p in terms of x = (z, w_p) and g; x' = A x + B g.
+// Rates of z and w_p as functions of x = (z, w_p) and g: x' = A x + B g.
 static bool rates(struct split *s, const struct reduced *r, struct ct_state_space *out)
 {
     const int f = s->f, k = s->k, n1 = s->n1, m = r->m, n = out->n;
@@ -331,7 +337,7 @@ static bool rates(struct split *s, const struct reduced *r, struct ct_state_spac
     return true;
 }
 
-// y, w = That (w_p, y_1') and w' = That (w_p', y_1'') by states and forces.
+// y, w = That (w_p, y_1') and w' = That (w_p', y_1'') as functions of states and forces.
 static void measures(struct split *s, const struct reduced *r, struct ct_state_space *out)
 {
     const int f = s->f, k = s->k, n1 = s->n1, m = r->m, n = out->n;

@@ -1,4 +1,5 @@
-// cotree accuracy: speed against error, and the cheapest setting that is accurate enough.
+// cotree accuracy: compares methods by error and run time, and finds the cheapest accurate
+// setting.
 #include "cli/cli.h"
 
 #include <stdlib.h>
@@ -17,7 +18,7 @@ static bool report(struct ct_ctx *ctx, const struct ct_accuracy *a, const struct
 // Limit: with a message
 enum { MOST = 16 }; // entries of a list, so 256 variants
 
-// Entries of "a,b,c", in place; returns their number, 0 for NULL, -1 for too many.
+// Splits "a,b,c" in place; returns the number of entries, 0 for NULL, -1 for too many.
 static int split(char *text, char *entry[MOST])
 {
     int n = 0;
@@ -33,7 +34,8 @@ static int split(char *text, char *entry[MOST])
     return n;
 }
 
-// The beams to try, and those of the reference: twice the largest number of elements, the last formulation.
+// The beam variants to compare, and that of the reference: twice the largest number of elements
+// and the last formulation.
 struct beams {
     char *text[2], *entry[2][MOST];
     int n[2];

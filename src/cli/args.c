@@ -20,7 +20,7 @@ const struct cli_command *const cli_commands[] = {&cli_simulate,   &cli_report,
                                                   &cli_methods,    &cli_schema,
                                                   &cli_completion, NULL};
 
-// ---- options --------------------------------------------------------------------------------------------
+// ---- options -------------------------------------------------------------------------------
 
 const struct cli_option cli_options[] = {
 #define FIELD(f) offsetof(struct cli_args, f)
@@ -150,7 +150,7 @@ bool cli_is_accepted(const struct cli_option *o, const struct cli_command *c)
     return !c || o->use & c->use || (o->is_common && (c->takes_model || o->kind == CLI_FLAG));
 }
 
-// ---- messages ---------------------------------------------------------------------------------------------
+// ---- messages ------------------------------------------------------------------------------
 
 int cli_complain(const struct cli_command *command, const char *fmt, ...)
 {
@@ -172,7 +172,7 @@ static bool wrong(const struct cli_command *command, const char *what, const cha
     return false;
 }
 
-// ---- values -------------------------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
 static bool parse_number(const char *text, double *v)
 {
@@ -206,7 +206,7 @@ static bool parse_seed(const char *text, unsigned long long *v)
     return text[0] >= '0' && text[0] <= '9' && !*end && !errno;
 }
 
-// I/N; whether I is one of N the library says.
+// Parses I/N. The library checks that I is one of N.
 static bool parse_shard(const char *text, long *shard, long *shards)
 {
     const size_t n = strcspn(text, "/");
@@ -262,7 +262,7 @@ static bool store(const struct cli_command *c, const struct cli_option *o, const
     }
 }
 
-// ---- parsing --------------------------------------------------------------------------------------------------
+// ---- parsing -------------------------------------------------------------------------------
 
 struct parser {
     int argc, at;
@@ -272,7 +272,8 @@ struct parser {
     struct cli_args *args;
 };
 
-// The name that is meant: one that begins with what is written, else one that is near; NULL: none.
+// The name that was probably meant: one that begins with the text, else a similar one; NULL:
+// none.
 static const char *find_meant(const char *text, const char *const *names, size_t n)
 {
     const size_t length = strlen(text);
@@ -282,7 +283,8 @@ static const char *find_meant(const char *text, const char *const *names, size_t
     return ct_did_you_mean(text, names, n);
 }
 
-// An option that other commands have: false after a message that names one of them.
+// For an option that this command does not have: false, after a message that names a command
+// that has it.
 static bool is_nowhere(const struct parser *p, const char *name)
 {
     for (size_t i = 0; i < cli_noption; i++)
@@ -374,7 +376,7 @@ static bool parse_command(struct parser *p, const char *name)
     return wrong(NULL, "no such command:", name, find_meant(name, names, n));
 }
 
-// What a command takes in place of a model: one of its words.
+// Parses one of the words that a command takes instead of a model.
 static bool parse_word(struct parser *p, const char *text)
 {
     const char *const *words = p->command->words;
@@ -414,7 +416,7 @@ static bool parse_plain(struct parser *p, const char *text)
     return true;
 }
 
-// The words of an option, from number `first` on, as they were written: of all that decide about results.
+// Keeps an option as it was written, from argument `first` on, if it affects results.
 static void keep_option(struct parser *p, int first)
 {
     static const char *const other[] = {"output", "summary", "quiet", "help", "version"};
@@ -448,7 +450,7 @@ static bool parse_all(struct parser *p)
     return true;
 }
 
-// The option's value is one of its words.
+// Checks that the value of an option is one of its words.
 static bool check_word(const struct parser *p, const char *name, const char *value)
 {
     const struct cli_option *o = cli_options;
@@ -482,7 +484,7 @@ static bool is_same_file(const char *a, const char *b)
     return !has_a && !has_b && strcmp(a, b) == 0;
 }
 
-// What is written may be neither what is read nor written by another option.
+// Checks that no output file is an input file or the file of another option.
 static bool check_files(const struct parser *p)
 {
     const struct cli_args *args = p->args;
@@ -554,12 +556,12 @@ void cli_args_finish(struct cli_args *args)
     free(args->given.text);
 }
 
-// ---- help -----------------------------------------------------------------------------------------------------
+// ---- help ----------------------------------------------------------------------------------
 
 static void print_option(FILE *out, const struct cli_option *o)
 {
     char left[40];
-    const bool is_output = strcmp(o->name, "output") == 0; // known by its letter
+    const bool is_output = strcmp(o->name, "output") == 0; // it is listed by its letter
     if (is_output)
         snprintf(left, sizeof left, "-%c, --%s %s", o->letter, o->name, o->value);
     else

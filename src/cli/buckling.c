@@ -1,4 +1,4 @@
-// cotree buckling: by which factor a load must grow until the stiffness vanishes.
+// cotree buckling: critical load factors, at which the stiffness becomes singular.
 #include "cli/cli.h"
 
 static bool report(struct ct_ctx *ctx, struct ct_buckling *s, const struct cli_args *args)

@@ -1,4 +1,4 @@
-// cotree check: reads and assembles a model and says what it is.
+// cotree check: reads and assembles a model and prints its properties.
 #include "cli/cli.h"
 
 static bool check(struct ct_ctx *ctx, struct ct_sim *sim, const struct cli_args *args)

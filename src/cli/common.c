@@ -135,7 +135,7 @@ const char *cli_format(const struct cli_command *command, const struct cli_args 
     return NULL;
 }
 
-// ---- files ---------------------------------------------------------------------------------------------
+// ---- files ---------------------------------------------------------------------------------
 
 char *cli_standard_path(const char *model, const char *suffix)
 {

@@ -1,7 +1,7 @@
 // cotree completion: scripts that complete command lines, from the tables of commands and options.
 //
-// Each script completes the command first, then the options of that command; after an option its words, or files where its
-// value is one.
+// Each script completes the command first, then the options of that command; after an option
+// its words, or files where its value is one.
 #include "cli/cli.h"
 
 #include <string.h>
@@ -11,13 +11,13 @@ static bool is_file(const struct cli_option *o)
     return o->value && (strstr(o->value, "FILE") || (o->words && strstr(o->help, "FILE")));
 }
 
-// The commands that an option means something to.
+// Does the command use the option?
 static bool is_offered(const struct cli_option *o, const struct cli_command *c)
 {
     return o->use & c->use;
 }
 
-// Text between single quotes, where a quote is `quoted`; line ends become blanks.
+// Prints text for single quotes, with `quoted` for a quote in it; line breaks become blanks.
 static void print_quoted(FILE *out, const char *text, const char *quoted)
 {
     for (; *text; text++)
@@ -27,7 +27,7 @@ static void print_quoted(FILE *out, const char *text, const char *quoted)
             fputc(*text == '\n' ? ' ' : *text, out);
 }
 
-// ---- bash -----------------------------------------------------------------------------------------------------
+// ---- bash ----------------------------------------------------------------------------------
 
 static void print_bash_command(FILE *out, const struct cli_command *c)
 {
@@ -85,9 +85,9 @@ static void print_bash(FILE *out)
           out);
 }
 
-// ---- zsh ------------------------------------------------------------------------------------------------------
+// ---- zsh -----------------------------------------------------------------------------------
 
-// Of a specification for _arguments, between single quotes: ':', '[' and ']' have a meaning there.
+// Text of a specification for _arguments, in single quotes; escapes ':', '[' and ']'.
 static void print_zsh_text(FILE *out, const char *text)
 {
     for (; *text; text++) {
@@ -179,7 +179,7 @@ static void print_zsh(FILE *out)
           out);
 }
 
-// ---- fish -----------------------------------------------------------------------------------------------------
+// ---- fish ----------------------------------------------------------------------------------
 
 static void print_fish_text(FILE *out, const char *text)
 {
@@ -226,7 +226,7 @@ static void print_fish(FILE *out)
     }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
+// --------------------------------------------------------------------------------------------
 
 static const char *const shells[] = {"bash", "zsh", "fish", NULL};
 

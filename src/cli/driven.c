@@ -1,4 +1,5 @@
-// cotree kinematics, cotree inverse: the samples of a motion that is driven all through.
+// cotree kinematics, cotree inverse: kinematics and inverse dynamics of a motion
+// prescribed by drivers.
 #include "cli/cli.h"
 
 static int follow(struct ct_ctx *ctx, const struct cli_command *command,

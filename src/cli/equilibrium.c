@@ -1,4 +1,4 @@
-// cotree equilibrium: where the system comes to rest, and whether it stays there.
+// cotree equilibrium: finds the equilibrium of a system and its stability.
 #include "cli/cli.h"
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)

@@ -9,16 +9,16 @@
 #include <time.h>
 #include <unistd.h>
 
-// A minute: graphs of thousands of edges are drawn in seconds.
-// Limit: of the time of a picture, with a message; and [ms] between looks at it
+// Limit: of the time of Graphviz, with a message (graphs of thousands of edges take seconds);
+// and [ms] between checks for a signal.
 enum { MOST_SECONDS = 60, LOOK_MS = 50 };
 
-// Graphviz reads what is in `source` and writes to `out`.
+// Starts Graphviz, which reads `source` and writes to `out`.
 static pid_t start_dot(FILE *source, int out, const char *type)
 {
     const pid_t child = fork();
     if (child == 0) {
-        setpgid(0, 0); // Ctrl-C goes to cotree alone, which ends dot and says so
+        setpgid(0, 0); // Ctrl-C goes to cotree only, which ends dot and reports it
         cli_interrupt_end();
         if (lseek(fileno(source), 0, SEEK_SET) == 0 && dup2(fileno(source), STDIN_FILENO) >= 0
             && dup2(out, STDOUT_FILENO) >= 0)
@@ -30,7 +30,7 @@ static pid_t start_dot(FILE *source, int out, const char *type)
 
 enum end { ENDED, INTERRUPTED, TOO_LONG };
 
-// What comes out of `in` goes to `out`, until there is no more; *n (out): bytes.
+// Copies `in` to `out` until its end; *n (out): number of bytes.
 static enum end copy(int in, FILE *out, size_t *n)
 {
     const time_t start = time(NULL);
@@ -55,7 +55,7 @@ static bool dot_failed(enum end end, int status, size_t n)
 {
     const bool is_missing
         = end == ENDED && status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 127;
-    if (end == INTERRUPTED) // said at the end
+    if (end == INTERRUPTED) // reported at the end
         return true;
     if (end == TOO_LONG)
         fprintf(stderr,

@@ -1,4 +1,4 @@
-// cotree import: a robot of another format as a model file.
+// cotree import: converts a robot description to a model file.
 #include "cli/cli.h"
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)

@@ -1,10 +1,11 @@
-// Ctrl-C and SIGTERM: the work is asked to end, and keeps what it has.
+// Handles Ctrl-C and SIGTERM: work is cancelled and keeps its results so far.
 //
-//     signal --> thread: cancels the context, which ends at its next step --> files are closed, what is left is said
-//                  `-- patience is over (a long factorization, say) --> the process ends
+//     signal --> thread: cancels the context, which ends at its next step --> files are closed
+//                  `-- after 0.8 s (a long factorization, say) --> the process ends
 //
-// Both signals are blocked in all threads but this one, which waits for them: there is no handler. A signal that was
-// ignored from outside, as by nohup, stays so.
+// Both signals are blocked in all threads but one, which waits for them; there is no signal
+// handler. A signal that the parent process has set to be ignored, as nohup does, stays
+// ignored.
 #include "cli/cli.h"
 
 #include <errno.h>
@@ -18,21 +19,21 @@
 static atomic_int signal_seen;
 static _Atomic(const char *) explanation;
 static sigset_t waited_for, outside;
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // of `cancelled`
-static struct ct_ctx *cancelled;                         // by a signal
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards `cancelled`
+static struct ct_ctx *cancelled;                         // the context that a signal cancels
 
 static void write_text(const char *text)
 {
     if (write(STDERR_FILENO, text, strlen(text)) < 0)
-        return; // nobody listens
+        return; // standard error is closed
 }
 
-// The main thread ends the process when it is done.
+// Ends the process; the main thread does so if it is done first.
 static void end_process(int number)
 {
     const char *what_stays = atomic_load(&explanation);
     if (isatty(STDERR_FILENO))
-        write_text("\r\033[K"); // the progress bar
+        write_text("\r\033[K"); // erases the progress bar
     write_text("cotree: error: interrupted");
     write_text(what_stays ? what_stays
                           : " before there were results; the same command begins anew");
@@ -42,7 +43,7 @@ static void end_process(int number)
 
 static void *wait_for_signal(void *unused)
 {
-    const struct timespec patience = {.tv_nsec = 800000000}; // of the second that is promised
+    const struct timespec patience = {.tv_nsec = 800000000}; // of the promised second
     int number = 0;
     (void)unused;
     if (sigwait(&waited_for, &number) != 0)
@@ -75,7 +76,8 @@ void cli_interrupt_begin(void)
     if (pthread_create(&thread, NULL, wait_for_signal, NULL) == 0)
         pthread_detach(thread);
     else
-        pthread_sigmask(SIG_SETMASK, &outside, NULL); // then they end the process at once
+        // from now on they end the process at once
+        pthread_sigmask(SIG_SETMASK, &outside, NULL);
 }
 
 void cli_interrupt_end(void)

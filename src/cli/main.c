@@ -1,4 +1,4 @@
-// cotree: reads the command line, runs the command, prints what there is to say.
+// cotree: reads the command line, runs the command, prints the diagnostics.
 #include "cli/cli.h"
 
 #include <errno.h>
@@ -24,7 +24,7 @@ static int run(const struct cli_command *command, const struct cli_args *args)
     return fault ? fault : status;
 }
 
-// Help and version are results, too: standard output must have taken them.
+// Flushes standard output, since help and version are results too; reports an error.
 static int finish(void)
 {
     errno = 0;
@@ -35,7 +35,8 @@ static int finish(void)
     return CLI_FAILED;
 }
 
-// A stream that the caller closed would become the next file that is opened; instead reading and writing it fails.
+// Occupies the standard streams that the caller has closed. Otherwise the next file opened
+// would take their place.
 static bool occupy_standard_streams(void)
 {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
@@ -45,8 +46,8 @@ static bool occupy_standard_streams(void)
     return true;
 }
 
-// OpenBLAS, where it is the BLAS, starts a thread a core even for matrices of ten rows: that costs
-// more than it gives, and results would depend on the machine.
+// If the BLAS is OpenBLAS, it starts one thread for each core even for matrices of ten rows.
+// This costs more than it saves, and results would depend on the machine.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
 int main(int argc, char **argv)

@@ -1,4 +1,4 @@
-// cotree merge: the shards of a sweep become one file.
+// cotree merge: joins the shards of a sweep.
 #include "cli/cli.h"
 
 static int run(struct ct_ctx *ctx, const struct cli_args *args)

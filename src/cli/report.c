@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// cotree report MODEL.yaml and the options that decide what is on the page; NULL without memory.
+// The command `cotree report MODEL.yaml` with the options that affect the page; NULL if memory
+// is exhausted.
 static const char **list_command(const struct cli_args *args, size_t *n)
 {
     const char **word = calloc(args->given.n + 3, sizeof *word);
@@ -19,7 +20,7 @@ static const char **list_command(const struct cli_args *args, size_t *n)
     return word;
 }
 
-// The methods and tolerances that `accuracy` tries by itself.
+// Runs `accuracy` with its default methods and tolerances.
 static struct ct_accuracy *study(struct ct_ctx *ctx, struct ct_system *sys,
                                  const struct cli_args *args)
 {

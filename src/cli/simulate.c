@@ -1,7 +1,8 @@
 // cotree simulate: integrates and writes the outputs.
 #include "cli/cli.h"
 
-// The same run, its samples plotted as well; columns that do not exist are refused before it begins.
+// The same run with a plot of its samples. Columns that do not exist are rejected before it
+// begins.
 static int run_and_plot(struct ct_ctx *ctx, const struct cli_args *args)
 {
     struct ct_system *sys = cli_load(ctx, args);

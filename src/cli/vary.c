@@ -1,4 +1,4 @@
-// Analyses that vary: the part that their commands share.
+// Analyses of a varied model: the part that their commands share.
 #include "cli/cli.h"
 
 #include <stdlib.h>

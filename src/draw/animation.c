@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what moves -------------------------------------------------------------------------------
+// ---- what moves ----------------------------------------------------------------------------
 
-// Each body, then the frames of beams, which move in their bodies.
+// Lists the poses: each body, then the frames of beams, which move relative to their bodies.
 static void find_poses(struct ct_arena *a, struct ct_animation *m)
 {
     const struct ct_model *model = m->scene.model;
@@ -29,7 +29,8 @@ static void find_poses(struct ct_arena *a, struct ct_animation *m)
     }
 }
 
-// What `from` exerts on `to`, ground axes; nothing out of the plane of a planar mechanism, where it is not known.
+// Force of body `from` on `to` in ground axes. Components perpendicular to a planar mechanism
+// are not known and set to 0.
 static ct_ex3 reaction(struct ct_build *b, size_t joint)
 {
     ct_ex3 force, torque;
@@ -76,7 +77,7 @@ void ct_animation_create(struct ct_arena *a, struct ct_build *b,
                    : ct_animation_load_column(m, 0);
 }
 
-// ---- columns ----------------------------------------------------------------------------------
+// ---- columns -------------------------------------------------------------------------------
 
 size_t ct_animation_pose_column(const struct ct_animation *m, size_t pose)
 {
@@ -92,7 +93,7 @@ size_t ct_animation_beam_column(const struct ct_animation *m, size_t beam)
     return column;
 }
 
-// Loads alone have columns: what has both ends is seen by its length.
+// Only loads have columns: a spring between two frames is visible by its length.
 size_t ct_animation_load_column(const struct ct_animation *m, size_t force)
 {
     size_t column = ct_animation_beam_column(m, m->scene.nbeam);
@@ -106,7 +107,7 @@ size_t ct_animation_reaction_column(const struct ct_animation *m, size_t joint)
     return ct_animation_load_column(m, m->scene.model->nforce) + 3 * joint;
 }
 
-// ---- rows -------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 void ct_animation_compile(struct ct_arena *a, struct ct_animation *m,
                           struct ct_evaluator *evaluator)
@@ -116,7 +117,8 @@ void ct_animation_compile(struct ct_arena *a, struct ct_animation *m,
                              m->values.n, &m->values.program);
 }
 
-// The largest of the four first, so that no small number is divided by (Shepperd 1978).
+// Computes the largest of the four numbers first, to avoid a division by a small one (Shepperd
+// 1978).
 static void quaternion_of(const double *R, const double before[4], double q[4])
 {
     const double trace = R[0] + R[4] + R[8];
@@ -139,7 +141,7 @@ static void quaternion_of(const double *R, const double before[4], double q[4])
         q[i] = -q[i];
 }
 
-// out = R' (place - origin)
+// out = R' (point - origin)
 static void to_axes(const double *R, const double origin[3], const double place[3],
                     double out[3])
 {
@@ -173,7 +175,7 @@ static void keep_beams(struct ct_animation *m, const double *value, double *row)
     }
 }
 
-// Where frames are on what carries them, which does not change.
+// Finds the constant positions of frames relative to their poses.
 static void find_local(struct ct_animation *m, const double *value)
 {
     for (size_t f = 0; f < m->scene.model->nframe; f++) {

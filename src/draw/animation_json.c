@@ -8,7 +8,8 @@
 //     traces   [{body, at: [pose, x, y, z]}], and ends of beams
 //     times, samples: packed
 //
-// Axes are unit vectors: the first one moves with the pose of `from`, the second one with that of `to`.
+// Axes are unit vectors: the first one moves with the pose of `from`, the second one with that
+// of `to`.
 #include "draw/animation.h"
 
 #include "draw/view.h"
@@ -37,10 +38,10 @@ static void write3(const struct work *w, const char *key, ct_ex3 v)
     ct_json_numbers(w->j, key, n, 3);
 }
 
-// [pose, x, y, z]; lengths below round-off of the others are zero
+// Writes [pose, x, y, z]; a coordinate that is round-off of the others is 0.
 static void write_place(const struct work *w, const char *key, int pose, const double at[3])
 {
-    // Derived: 45 units of round-off of a rotation
+    // Chosen: 45 eps.
     const double roundoff = 1e-14, size = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
     double v[4] = {pose};
     for (int i = 0; i < 3; i++)
@@ -53,7 +54,7 @@ static void write_frame(const struct work *w, const char *key, int frame)
     write_place(w, key, w->m->pose_of[frame], w->m->local[frame]);
 }
 
-// ---- views ------------------------------------------------------------------------------------
+// ---- views ---------------------------------------------------------------------------------
 
 static void write_views(const struct work *w)
 {
@@ -78,7 +79,7 @@ static void write_views(const struct work *w)
     ct_json_numbers(w->j, "gravity", s->gravity, 3);
 }
 
-// ---- bodies -----------------------------------------------------------------------------------
+// ---- bodies --------------------------------------------------------------------------------
 
 static void write_turns(const struct work *w, const struct ct_solid *solid)
 {
@@ -165,7 +166,7 @@ static void write_body(const struct work *w, size_t i)
     ct_json_end(w->j);
 }
 
-// ---- joints and forces ------------------------------------------------------------------------
+// ---- joints and forces ---------------------------------------------------------------------
 
 static void write_end(const struct work *w, const char *key, int frame)
 {
@@ -232,9 +233,9 @@ static void write_force(const struct work *w, size_t i)
     ct_json_end(w->j);
 }
 
-// ---- samples ----------------------------------------------------------------------------------
+// ---- samples -------------------------------------------------------------------------------
 
-// The largest extent of a column of some, over all rows.
+// The largest extent of a range of columns over all rows.
 static double extent(const struct ct_animation *m, size_t first, size_t step, size_t n)
 {
     double most = 0;
@@ -249,7 +250,7 @@ static double extent(const struct ct_animation *m, size_t first, size_t step, si
     return most;
 }
 
-// How far places are apart, on bodies and over the motion [m].
+// Largest distance between positions, on bodies and over the motion [m].
 static double size_of(const struct ct_animation *m)
 {
     double size = 0;
@@ -260,13 +261,14 @@ static double size_of(const struct ct_animation *m)
     return size;
 }
 
-// What cannot be seen. Deflections of beams may be shown a hundred times as large.
+// Resolution of each column: smaller differences are not visible, even if deflections of beams
+// are enlarged a hundred times.
 static double *find_resolution(const struct work *w)
 {
     // Layout: of the picture
-    const double seen = 1e-6; // of the picture, which so may be enlarged a thousand times
+    const double seen = 1e-6; // relative to the picture, which can be enlarged a thousand times
     const double enlarged = 100;
-    const double seen_force = 1e-4; // of the largest: arrows
+    const double seen_force = 1e-4; // relative to the largest force
     const struct ct_animation *m = w->m;
     const size_t beams = ct_animation_beam_column(m, 0),
                  loads = ct_animation_beam_column(m, m->scene.nbeam);
@@ -281,7 +283,7 @@ static double *find_resolution(const struct work *w)
     return resolution;
 }
 
-// Every k-th row, as few apart as `most` allows, and the last one.
+// Writes every k-th row, with the smallest k that `most` allows, and the last row.
 static void write_samples(const struct work *w, size_t most)
 {
     const struct ct_animation *m = w->m;
@@ -300,7 +302,8 @@ static void write_samples(const struct work *w, size_t most)
     ct_pack_write_rounded(w->j, w->a, "samples", v, n, m->ncolumn, find_resolution(w));
 }
 
-// Points of moving bodies, the body's own frame where it has none, and both ends of beams, as `draw --trace`.
+// Writes the traced points, as `draw --trace`: points of moving bodies, the body frame if it
+// has none, and both ends of beams.
 static void write_traces(const struct work *w)
 {
     bool *has_points = CT_NEWN(w->a, bool, w->model->nbody);

@@ -19,7 +19,7 @@ static int tenths(double px)
     return isnan(px) ? 0 : (int)lround(10 * fmax(-far, fmin(far, px)));
 }
 
-// ---- text -------------------------------------------------------------------------------------
+// ---- text ----------------------------------------------------------------------------------
 
 // Control characters cannot stand in XML at all.
 void ct_canvas_escape(FILE *out, const char *text)
@@ -62,7 +62,7 @@ double ct_canvas_text_width(const char *text, double font)
     return em * font;
 }
 
-// ---- what is taken ----------------------------------------------------------------------------
+// ---- what is taken -------------------------------------------------------------------------
 
 static void take(struct ct_canvas *c, int column, int row)
 {
@@ -131,7 +131,7 @@ void ct_canvas_take_polygon(struct ct_canvas *c, const struct ct_spot *p, size_t
     }
 }
 
-// ---- polylines --------------------------------------------------------------------------------
+// ---- polylines -----------------------------------------------------------------------------
 
 static double off_line(struct ct_spot a, struct ct_spot b, struct ct_spot p)
 {
@@ -182,7 +182,7 @@ size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double mos
     return kept;
 }
 
-// ---- the file ---------------------------------------------------------------------------------
+// ---- the file ------------------------------------------------------------------------------
 
 void ct_canvas_begin(struct ct_canvas *c, struct ct_arena *a, FILE *out, double width,
                      double height, const char *title)

@@ -1,8 +1,8 @@
-// A picture as SVG, and which parts of it are taken, so that names find free places.
+// A picture in SVG, with a map of its occupied cells, so that labels find free places.
 //
-// Places are in pixels from the upper left corner; the file has tenths of a pixel, whole numbers:
-// the same text in every locale. What always holds: text that comes from a model is escaped, and
-// valid XML whatever it contains.
+// Positions are in pixels from the upper left corner. The file contains whole tenths of a
+// pixel, so that its text does not depend on the locale. What always holds: text from a model
+// is escaped and gives valid XML.
 #ifndef CT_DRAW_CANVAS_H
 #define CT_DRAW_CANVAS_H
 
@@ -24,11 +24,11 @@ struct ct_spot { // [px]
 struct ct_canvas {
     FILE *out;
     double width, height;
-    unsigned char *taken; // by cell, row by row
+    unsigned char *taken; // by cell, row by row: occupied
     int ncolumn, nrow;
 };
 
-/// The head of the file. title: of the picture.
+/// Writes the head of the file. title: of the picture.
 void ct_canvas_begin(struct ct_canvas *c, struct ct_arena *a, FILE *out, double width,
                      double height, const char *title);
 void ct_canvas_end(struct ct_canvas *c);
@@ -54,17 +54,17 @@ void ct_canvas_text(struct ct_canvas *c, struct ct_spot at, const char *anchor,
                     const char *attributes, const char *text);
 void ct_canvas_escape(FILE *out, const char *text);
 
-/// Nothing may be written there any more: inside a convex polygon; in a rectangle.
+/// Marks as occupied the inside of a convex polygon; a rectangle.
 void ct_canvas_take_polygon(struct ct_canvas *c, const struct ct_spot *p, size_t n);
 void ct_canvas_take_box(struct ct_canvas *c, struct ct_spot low, struct ct_spot high);
-/// How many cells of a rectangle are taken; -1: it reaches over the edge.
+/// Number of occupied cells in a rectangle; -1 if it extends beyond the picture.
 int ct_canvas_count_taken(const struct ct_canvas *c, struct ct_spot low, struct ct_spot high);
 
-/// Leave out points of a polyline that are off the lines between the others by no more than
-/// `most`; how many stay, in place.
+/// Removes points of a polyline that are within `most` [px] of the lines between the remaining
+/// ones; returns the number of points that remain, in place.
 size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double most);
 
-/// Width of a text [px], nearly, and no less than that of common sans-serif fonts.
+/// Approximate width of a text [px]; not less than that of common sans-serif fonts.
 double ct_canvas_text_width(const char *text, double font);
 
 #endif

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- signals ----------------------------------------------------------------------------------
+// ---- signals -------------------------------------------------------------------------------
 
 static const struct {
     const char *property, *unit;
@@ -91,7 +91,7 @@ static const char *unit_of_signal(const struct ct_build *b, const char *name)
     return NULL;
 }
 
-// ---- expressions ------------------------------------------------------------------------------
+// ---- expressions ---------------------------------------------------------------------------
 
 static const char *unit_of(const struct ct_build *b, ct_ex e, int depth);
 

@@ -4,8 +4,8 @@
 
 #include "formulate/equations.h"
 
-/// "m", "rad/s", "" for a plain number; NULL where it is not known, as of a product with a
-/// parameter.
+/// Unit of an output: "m", "rad/s", "" for a number without unit; NULL if it is not known, as
+/// for a product with a parameter.
 const char *ct_result_unit(const struct ct_equations *e, size_t result);
 
 #endif

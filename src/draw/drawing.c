@@ -23,7 +23,7 @@ struct drawing {
     } * source;
 };
 
-// ---- what leaves paths ------------------------------------------------------------------------
+// ---- what leaves paths ---------------------------------------------------------------------
 
 static void add_path(struct drawing *d, int body, size_t at)
 {
@@ -59,7 +59,7 @@ static void keep_places(struct drawing *d, const double *value)
     d->nplace += d->nplace < d->nsample;
 }
 
-// ---- steps, each with a guard -----------------------------------------------------------------
+// ---- steps, each with a guard --------------------------------------------------------------
 
 static bool make_scene(void *task)
 {

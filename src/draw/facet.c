@@ -9,7 +9,7 @@
 // Layout: of the picture
 enum { ROUND = 48 }; // corners of what is round
 
-// ---- places -----------------------------------------------------------------------------------
+// ---- places --------------------------------------------------------------------------------
 
 static double number(const struct ct_model *m, ct_ex e)
 {
@@ -43,7 +43,7 @@ void ct_solid_place(const struct ct_scene *s, const double *value, int body,
     ct_scene_point(value, m->body[body].frame, v, out);
 }
 
-// ---- corners ----------------------------------------------------------------------------------
+// ---- corners -------------------------------------------------------------------------------
 
 static void cross(const double a[3], const double b[3], double out[3])
 {
@@ -124,7 +124,7 @@ size_t ct_solid_corners(struct ct_arena *a, const struct ct_model *m,
     return n;
 }
 
-// ---- pieces -----------------------------------------------------------------------------------
+// ---- pieces --------------------------------------------------------------------------------
 
 struct work {
     struct ct_facets *f;
@@ -247,7 +247,7 @@ static void add_sphere(struct work *w, const double centre[3])
     add(w, NULL, FINE, all_edges(w->f->arena, FINE))->light = lit;
 }
 
-// ---- triangles --------------------------------------------------------------------------------
+// ---- triangles -----------------------------------------------------------------------------
 
 // A side of a triangle, its ends in an order of their own.
 struct side {
@@ -325,7 +325,7 @@ static void add_triangles(struct work *w)
     }
 }
 
-// ---- all of a body ----------------------------------------------------------------------------
+// ---- all of a body -------------------------------------------------------------------------
 
 static void add_solid(struct work *w)
 {

@@ -1,4 +1,4 @@
-// Shapes of bodies as flat pieces, farthest first, so that nearer ones cover what is behind them.
+// Shapes of bodies as flat facets, farthest first, so that nearer ones cover those behind them.
 #ifndef CT_DRAW_FACET_H
 #define CT_DRAW_FACET_H
 
@@ -23,16 +23,16 @@ struct ct_facets {
     size_t n, cap;
 };
 
-/// The pieces of a body's shapes that may be seen; color: of those without one.
+/// Adds the visible facets of a body's shapes; color: for shapes without one.
 void ct_facets_add_body(struct ct_facets *f, int body, const char *color);
-/// Farthest first.
+/// Sorts the facets, farthest first.
 void ct_facets_sort(struct ct_facets *f);
 
-/// Where a point of a shape is: axes of the shape -> ground [m].
+/// Position in ground axes of a point of a shape [m].
 void ct_solid_place(const struct ct_scene *s, const double *value, int body,
                     const struct ct_solid *solid, const double local[3], double out[3]);
-/// Corners of a shape's outline, in its axes [m]: enough to find how far it reaches. Returns
-/// their number.
+/// Corners of the outline of a shape in its axes [m], sufficient for its extent. Returns their
+/// number.
 size_t ct_solid_corners(struct ct_arena *a, const struct ct_model *m,
                         const struct ct_solid *solid, double (**corner)[3]);
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-// ---- names ------------------------------------------------------------------------------------
+// ---- names ---------------------------------------------------------------------------------
 
 static void add_label(struct ct_sketch *d, const char *name, const char *attributes,
                       double font, double away, const struct ct_spot *place, size_t n)
@@ -81,7 +81,7 @@ static void write_names(struct ct_sketch *d)
     ct_canvas_close(&d->canvas);
 }
 
-// ---- below: axes, gravity, scale --------------------------------------------------------------
+// ---- below: axes, gravity, scale -----------------------------------------------------------
 
 static void draw_axes(struct ct_sketch *d, struct ct_spot at)
 {
@@ -187,7 +187,7 @@ static void draw_strip(struct ct_sketch *d)
     draw_scale(d, d->canvas.width - 24, y + 44);
 }
 
-// ---- all of it --------------------------------------------------------------------------------
+// ---- all of it -----------------------------------------------------------------------------
 
 static void draw_all(struct ct_sketch *d)
 {

@@ -4,7 +4,7 @@
 
 #include "draw/view.h"
 
-/// What is drawn. All of it lives as long as the call.
+/// What to draw. Everything must live as long as the call.
 struct ct_picture {
     const struct ct_scene *scene;
     const double *value; // of the scene (nvalue)
@@ -14,12 +14,12 @@ struct ct_picture {
     // paths of points over the run: place k of path i is at path[3 (npath k + i)]
     const double *path;
     size_t npath, nplace;
-    const int *path_body; // whose point it is, for its colour
+    const int *path_body; // by path: body of the point, for its colour
 };
 
-/// Print it as SVG, <svg> ... </svg>. a: for the time of the call. Raises the guard.
+/// Prints the picture as SVG, <svg> ... </svg>. a: workspace. Raises the guard.
 void ct_picture_print(FILE *out, struct ct_arena *a, const struct ct_picture *p);
-/// Write it as a file. a: for the time of the call. Errors: E002. Raises the guard.
+/// Writes it to a file. a: workspace. Errors: E002. Raises the guard.
 bool ct_picture_write(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_picture *p,
                       const char *path);
 

@@ -1,5 +1,5 @@
-// Names in a picture: each beside what it names, on free ground; where there is none, it is left
-// out.
+// Places labels in a picture: each beside the object it names, where the picture is free. A
+// label without a free place is left out.
 #ifndef CT_DRAW_PLACEMENT_H
 #define CT_DRAW_PLACEMENT_H
 
@@ -15,7 +15,8 @@ struct ct_label {
     const struct ct_spot *place; // that it may stand beside, best first
 };
 
-/// Write the labels in their order, and take their places. Cost: labels x places x 48.
+/// Writes the labels in their order and marks their places as occupied. Cost: labels x places x
+/// 48.
 void ct_labels_write(struct ct_canvas *c, const struct ct_label *label, size_t n);
 
 #endif

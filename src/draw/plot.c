@@ -22,7 +22,7 @@ struct ct_plot {
     size_t nrow, row_cap;
 };
 
-// ---- columns ----------------------------------------------------------------------------------
+// ---- columns -------------------------------------------------------------------------------
 
 // The column that text begins with, up to a comma or its end: names may have commas themselves.
 static bool match(const struct ct_equations *e, const char *text, size_t *column,
@@ -104,7 +104,7 @@ bool ct_plot_row(void *plot, double t, const double *value, size_t n)
     return true;
 }
 
-// ---- axes -------------------------------------------------------------------------------------
+// ---- axes ----------------------------------------------------------------------------------
 
 // Values from low to high, ticks at whole multiples of `step`, labels in units of 10^exponent.
 struct axis {
@@ -117,9 +117,9 @@ struct axis {
 static struct axis choose_axis(double low, double high, int count, bool is_whole)
 {
     static const double mantissas[] = {1, 2, 5, 10};
-    // Derived: some units of round-off of a division
+    // Chosen: some thousand eps, the round-off of ticks.
     const double roundoff = 1e-12, most = fmax(fabs(low), fabs(high));
-    const double constant = 1e-6; // less would need labels of more than six digits
+    const double constant = 1e-6; // a smaller range would need labels of more than six digits
     if (!(high - low > constant * most)) {
         const double margin = most > 0 ? 0.5 * most : 1;
         low -= margin;
@@ -150,7 +150,7 @@ static double place(const struct axis *a, double v)
 static const char *tick_name(struct ct_arena *a, const struct axis *axis, double v)
 {
     const double unit = pow(10, axis->exponent), step = axis->step / unit;
-    // Derived: a power of ten but for round-off
+    // Chosen: above the round-off of log10.
     const int decimals = (int)fmax(0, -floor(log10(step) + 1e-9));
     if (fabs(v) < axis->step / 2)
         return "0";
@@ -175,7 +175,7 @@ static const char *unit_name(struct ct_arena *a, const char *unit, int exponent)
                            *unit ? " " : "", unit);
 }
 
-// ---- panels -----------------------------------------------------------------------------------
+// ---- panels --------------------------------------------------------------------------------
 
 struct panel {
     const char *unit; // NULL: not known
@@ -244,15 +244,15 @@ static void find_axes(struct work *w)
     }
 }
 
-// ---- drawing ----------------------------------------------------------------------------------
+// ---- drawing -------------------------------------------------------------------------------
 
 static const char grid[] = "stroke=\"#dcdcdc\" stroke-width=\"8\"";
 
 static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
 {
     const struct axis *x = &w->x, *y = &panel->y;
-    // Derived: sums of a million steps
-    const double roundoff = 1e-9; // of a step
+    // Derived: eps times some million steps, relative to a step.
+    const double roundoff = 1e-9;
     for (double n = ceil(x->low / x->step - roundoff);
          n * x->step <= x->high + roundoff * x->step; n++) {
         const double at = place(x, n * x->step);

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// ---- joints -----------------------------------------------------------------------------------
+// ---- joints --------------------------------------------------------------------------------
 
 static void number3(const struct ct_model *m, ct_ex3 e, double out[3])
 {
@@ -75,7 +75,7 @@ static void create_joint(struct ct_build *b, size_t i, struct ct_scene_joint *j)
     j->has_damper = nlength == 1 && is_given(self, "damping");
 }
 
-// ---- bodies -----------------------------------------------------------------------------------
+// ---- bodies --------------------------------------------------------------------------------
 
 static void hold(bool *held, int frame)
 {
@@ -125,7 +125,7 @@ static void create_bodies(struct ct_arena *a, struct ct_scene *s)
     list_held(a, s, held);
 }
 
-// ---- values -----------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
 struct values {
     struct ct_arena *a;
@@ -234,7 +234,7 @@ void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_ev
     ct_evaluator_add_program(a, m, m->e->build->x, s->expression, s->nvalue, p);
 }
 
-// ---- questions --------------------------------------------------------------------------------
+// ---- questions -----------------------------------------------------------------------------
 
 void ct_scene_direction(const double *value, int frame, const double local[3], double out[3])
 {

@@ -1,25 +1,27 @@
-// A scene: what there is to see of a system, and where it is at a state.
+// This folder draws mechanisms and plots: line drawings in SVG, animations for pages, and plots
+// of outputs. This header is the geometry that all of them share: the objects of a system, and
+// their positions at a state.
 //
 //     scene (made once)                        values at a state (scene.nvalue numbers)
-//       frame[f]  name, body                     place (3) and rotation to ground (3 x 3) of each frame
+//       frame[f]  name, body                     position (3) and rotation to ground (3 x 3)
 //       body[i]   frames held, shapes            --
 //       joint[j]  symbol, ends, axes             --
-//       force[k]  spring, force, torque, ends    force and torque (3 + 3) of those from outside
+//       force[k]  spring, force, torque, ends    force and torque (3 + 3) of external loads
 //       beam[i]   body, points of its axis       points (3 x npoint)
 //
-// What always holds: lengths in m, axes of ground unless a comment says otherwise; the values
-// come from one program on the input of a run's evaluator, so that a scene does not change the
-// motion. Beams bend by their elements' own interpolation. Drawing (svg) and other views know
-// nothing of how the values are found.
+// What always holds: lengths in m; ground axes unless a comment says otherwise. The values come
+// from one program that reads the input of a run's evaluator, so that a scene does not change
+// the motion. Beams are interpolated by the shape functions of their elements. Views of a scene
+// do not depend on how the values are computed.
 #ifndef CT_DRAW_SCENE_H
 #define CT_DRAW_SCENE_H
 
 #include "solve/evaluator/evaluator.h"
 #include "system.h"
 
-/// How a joint is drawn, by what it lets move.
+/// Symbol of a joint, by its freedoms.
 enum ct_symbol {
-    CT_SYMBOL_NONE,        // nothing to see: a free joint, a gear
+    CT_SYMBOL_NONE,        // no symbol: a free joint, a gear
     CT_SYMBOL_PIN,         // one angle
     CT_SYMBOL_SLIDER,      // one length
     CT_SYMBOL_CYLINDRICAL, // a length and the angle about it
@@ -28,7 +30,7 @@ enum ct_symbol {
     CT_SYMBOL_BALL,
     CT_SYMBOL_PLANAR, // two lengths and an angle
     CT_SYMBOL_WELD,
-    CT_SYMBOL_ROD,  // a distance that is kept
+    CT_SYMBOL_ROD,  // constant distance
     CT_SYMBOL_OTHER // any other motion
 };
 
@@ -37,28 +39,28 @@ struct ct_scene_joint {
     enum ct_symbol symbol;
     int from, to; // frames; -1: none
     int naxis;
-    double axis[2][3];           // unit vectors, axes of `from`; the second one axes of `to`
+    double axis[2][3]; // unit vectors: the first in axes of `from`, the second in axes of `to`
     bool has_spring, has_damper; // along a length
 };
 
 struct ct_scene_force {
     const struct ct_instance *self;
-    int from, to; // frames; from -1: from outside
+    int from, to; // frames; from -1: external
     bool has_spring, has_damper;
-    size_t first; // of its six values; SIZE_MAX: it has none
+    size_t first; // index of its six values; SIZE_MAX: none
 };
 
 struct ct_scene_beam {
     int body;
     int npoint;   // along the axis, equally spaced where the beam is straight
-    size_t first; // of its values
+    size_t first; // index of its values
 };
 
 struct ct_scene_body {
     double com[3]; // axes of the body [m]
     bool has_mass;
     int beam;  // -1: none
-    int nheld; // frames that joints, springs and forces hold
+    int nheld; // number of frames that joints, springs and forces hold
     int *held;
 };
 
@@ -76,14 +78,15 @@ struct ct_scene {
     const ct_ex *expression; // of the values
 };
 
-/// The scene of the system that equations were derived from; all of it lives in a. Raises the guard.
+/// Makes the scene of a system; everything lives in a. Raises the guard.
 void ct_scene_create(struct ct_arena *a, struct ct_build *b, struct ct_scene *s);
 
-/// The program of its values on a run's evaluator. a: lives as long as that. Raises the guard.
+/// Compiles its values for a run's evaluator. a must live as long as the evaluator. Raises the
+/// guard.
 void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_evaluator *m,
                       struct ct_program *p);
 
-/// Place (3) and rotation (3 x 3, column-major, its axes -> ground's) of a frame.
+/// Position (3) and rotation (3 x 3, column-major, frame axes -> ground) of a frame.
 static inline const double *ct_scene_place(const double *value, int frame)
 {
     return value + (size_t)12 * (size_t)frame;
@@ -92,9 +95,9 @@ static inline const double *ct_scene_rotation(const double *value, int frame)
 {
     return value + (size_t)12 * (size_t)frame + 3;
 }
-/// out (3) = place of a point given in axes of a frame.
+/// out (3) = ground coordinates of a point given in the axes of a frame.
 void ct_scene_point(const double *value, int frame, const double local[3], double out[3]);
-/// out (3) = a direction given in axes of a frame.
+/// out (3) = ground components of a direction given in the axes of a frame.
 void ct_scene_direction(const double *value, int frame, const double local[3], double out[3]);
 
 #endif

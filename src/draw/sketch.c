@@ -18,7 +18,7 @@ enum {
     ALONE = 120
 };
 
-// ---- how large it is --------------------------------------------------------------------------
+// ---- how large it is -----------------------------------------------------------------------
 
 struct reach {
     double low[3], high[3]; // along right, up; depth
@@ -88,7 +88,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
     const struct reach r = find_reach(d);
     const double w = r.high[0] - r.low[0], h = r.high[1] - r.low[1];
     d->size = fmax(fmax(w, h), r.high[2] - r.low[2]);
-    // Derived: round-off of places, however they are computed
+    // Chosen: above round-off of positions.
     const double nothing = 1e-9 * d->size; // round-off
     d->view.scale = fmin(w > nothing ? MOST_WIDTH / w : INFINITY,
                          h > nothing ? MOST_HEIGHT / h : INFINITY);
@@ -120,7 +120,7 @@ double ct_sketch_symbol_size(const struct ct_sketch *d)
     return fmax(least, fmin(largest, share * nearest));
 }
 
-// ---- joints: where their symbols are ----------------------------------------------------------
+// ---- joints: where their symbols are -------------------------------------------------------
 
 // Where something else than joint i holds a frame's place, too.
 static bool is_shared(const struct ct_sketch *d, size_t i, int frame)
@@ -181,12 +181,12 @@ void ct_sketch_find_blocks(struct ct_sketch *d)
     }
 }
 
-// ---- what bodies are drawn as -----------------------------------------------------------------
+// ---- what bodies are drawn as --------------------------------------------------------------
 
 static bool add_place(const struct ct_sketch *d, struct ct_outline *o, const double place[3],
                       const double **known, size_t *n)
 {
-    // Derived: of places given with six digits
+    // Chosen: positions given with six digits are equal.
     const double same = 1e-6 * d->size; // [m]
     for (size_t i = 0; i < *n; i++) {
         double across[3];

@@ -96,7 +96,7 @@ static inline double ct_sketch_size_of(const double v[3])
     return sqrt(ct_dot3(v, v));
 }
 
-// ---- sketch.c ---------------------------------------------------------------------------------
+// ---- sketch.c ------------------------------------------------------------------------------
 
 /// Scale and place of the view; width and height of the picture [px].
 void ct_sketch_fit(struct ct_sketch *d, double *width, double *height);
@@ -113,13 +113,13 @@ struct ct_spot ct_sketch_joint_spot(const struct ct_sketch *d, size_t i);
 /// place itself.
 struct ct_spot ct_sketch_direction(const struct ct_sketch *d, int body, struct ct_spot from);
 
-// ---- sketch_body.c ----------------------------------------------------------------------------
+// ---- sketch_body.c -------------------------------------------------------------------------
 
 void ct_sketch_draw_paths(struct ct_sketch *d);
 void ct_sketch_draw_shapes(struct ct_sketch *d);
 void ct_sketch_draw_bodies(struct ct_sketch *d);
 
-// ---- sketch_joint.c ---------------------------------------------------------------------------
+// ---- sketch_joint.c ------------------------------------------------------------------------
 
 /// Grounds and guides, which lie behind bodies.
 void ct_sketch_draw_supports(struct ct_sketch *d);

@@ -8,7 +8,7 @@
 // Layout: of the picture
 enum { TRIAD = 46 }; // [px], axes of a loose body
 
-// ---- drawing: paths, bodies -------------------------------------------------------------------
+// ---- drawing: paths, bodies ----------------------------------------------------------------
 
 // Points of two bodies that a joint holds together leave the same path.
 static bool is_drawn_already(const struct ct_sketch *d, size_t i)
@@ -272,8 +272,9 @@ void ct_sketch_draw_bodies(struct ct_sketch *d)
     struct by_depth *o = CT_NEWN(d->a, struct by_depth, n);
     for (size_t i = 1; i < n; i++) {
         o[i] = (struct by_depth){d->outline[i].depth, (int)i};
-        // those in a plane keep their order, whatever round-off says of their depths
-        // Derived: of places given with six digits
+        // at almost equal depth the order of the lines is kept, so that round-off does not
+        // decide
+        // Chosen: positions given with six digits are equal.
         const double apart = 1e-6 * (d->size > 0 ? d->size : 1);
         o[i].depth = round(o[i].depth / apart);
     }

@@ -1,7 +1,7 @@
 // See sketch.h: supports, joints, springs and loads.
 #include "draw/sketch.h"
 
-// ---- drawing: joints and forces ---------------------------------------------------------------
+// ---- drawing: joints and forces ------------------------------------------------------------
 
 static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j, int k,
                        double out[3])
@@ -13,7 +13,7 @@ static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j
 static struct ct_spot below(struct ct_spot along)
 {
     const struct ct_spot side = {-along.y, along.x};
-    // Derived: of unit vectors, zero but for round-off
+    // Chosen: components of a unit vector below this are 0.
     const bool turned = side.y < -1e-9 || (fabs(side.y) <= 1e-9 && side.x < 0);
     return turned ? (struct ct_spot){-side.x, -side.y} : side;
 }

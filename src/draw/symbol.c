@@ -37,7 +37,7 @@ static struct ct_spot left_of(struct ct_spot d)
     return (struct ct_spot){d.y, -d.x};
 }
 
-// ---- joints -----------------------------------------------------------------------------------
+// ---- joints --------------------------------------------------------------------------------
 
 // Half an ellipse about `at`: half axes `minor` along g, `major` along f; from angle a to a + pi.
 static size_t half_ellipse(struct ct_spot *p, struct ct_spot at, struct ct_spot g, double minor,
@@ -205,7 +205,7 @@ void ct_draw_other(struct ct_pen *pen, struct ct_spot at)
     ct_canvas_circle(pen->canvas, at, 0.4 * pen->size, "fill=\"#000000\" stroke=\"none\"", 0);
 }
 
-// ---- ground -----------------------------------------------------------------------------------
+// ---- ground --------------------------------------------------------------------------------
 
 // Strokes behind a line from a to b, on the side of `behind`.
 static void hatch(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, struct ct_spot behind)
@@ -245,7 +245,7 @@ void ct_draw_wall(struct ct_pen *pen, struct ct_spot at, struct ct_spot along, d
           (struct ct_spot){-along.x, -along.y});
 }
 
-// ---- springs and dampers ----------------------------------------------------------------------
+// ---- springs and dampers -------------------------------------------------------------------
 
 void ct_draw_spring(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, double offset)
 {
@@ -294,7 +294,7 @@ void ct_draw_damper(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, doub
                    style, 2);
 }
 
-// ---- marks ------------------------------------------------------------------------------------
+// ---- marks ---------------------------------------------------------------------------------
 
 void ct_draw_centre(struct ct_pen *pen, struct ct_spot at, const char *color)
 {

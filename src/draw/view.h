@@ -1,4 +1,4 @@
-// How a scene is looked at: parallel projection along one of the axes, or isometric.
+// The view of a scene: parallel projection along a ground axis, or isometric.
 #ifndef CT_DRAW_VIEW_H
 #define CT_DRAW_VIEW_H
 
@@ -9,13 +9,13 @@ struct ct_view {
     const char *name;                  // "x", "y", "z", "iso"
     double right[3], up[3], toward[3]; // unit vectors; toward: to the eye
     double scale;                      // [px/m], of lengths across the view
-    double shortening;                 // of lengths along the axes of ground that are seen
-    double low[2];                     // the place [m] that is at `origin`
-    struct ct_spot origin;             // [px]
+    double shortening;     // of lengths along those ground axes that are seen obliquely
+    double low[2];         // the point [m] that is at `origin`
+    struct ct_spot origin; // [px]
 };
 
-/// name NULL: that which looks along the normal of a planar mechanism where this is an axis, else
-/// iso. False: no view has this name.
+/// Chooses a view by name. NULL: along the normal of a planar mechanism if that is an axis,
+/// else isometric. False: no such view.
 bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *name);
 
 struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3]);

@@ -1,6 +1,7 @@
-// The source of an FMU as a shared library, by the system's compiler. See fmu.h.
+// Compiles the source of an FMU to a shared library by the system's compiler. See fmu.h.
 //
-// What always holds: the same source and the same compiler give the same bytes: no debugging information, no path.
+// What always holds: the same source and the same compiler give the same bytes, because the
+// library contains no debugging information and no path.
 #include "export/fmu.h"
 
 #include <errno.h>
@@ -24,7 +25,7 @@ static bool write_text(struct ct_arena *a, const char *folder, const char *name,
     return fclose(file) == 0 && ok;
 }
 
-// The status of cc; 127 where there is none.
+// Returns the exit status of cc; 127 if there is no cc.
 static int run_compiler(struct ct_arena *a, const char *folder, const char *name)
 {
     char *const argument[] = {ct_arena_strdup(a, "cc"),
@@ -75,7 +76,7 @@ static unsigned char *read_whole(struct ct_arena *a, const char *path, size_t *n
     return ok ? b : NULL;
 }
 
-// What cc said first.
+// First line of the messages of cc.
 static const char *first_line(struct ct_arena *a, const char *folder)
 {
     size_t n;
@@ -83,7 +84,7 @@ static const char *first_line(struct ct_arena *a, const char *folder)
     if (!text || !n)
         return "it failed";
     text[strcspn(text, "\n")] = 0;
-    const char *own = strstr(text, folder); // its place is of no use
+    const char *own = strstr(text, folder); // removes the path of the temporary folder
     return own ? own + strlen(folder) + 1 : text;
 }
 

@@ -1,4 +1,4 @@
-// A system as C source in a folder. See exported.h.
+// Writes a system as C source in a folder. See exported.h.
 #include "export/fmu.h"
 
 #include "expr/print.h"
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-// ---- files ----------------------------------------------------------------------------------------
+// ---- files ---------------------------------------------------------------------------------
 
 static bool write_file(struct ct_exported *w, const char *suffix, const char *text)
 {
@@ -32,7 +32,7 @@ static bool make_folder(struct ct_exported *w)
                     w->place, strerror(errno));
 }
 
-// M and Q are what is exported; a run that had no use for them is made again.
+// Makes M and Q available for export; a run without them is prepared again.
 static bool want_dynamics(struct ct_sim *sim)
 {
     struct ct_system *s = sim->system;
@@ -43,7 +43,7 @@ static bool want_dynamics(struct ct_sim *sim)
     return sim->run != NULL;
 }
 
-// Accelerations in closed form, where the run has them.
+// Finds the closed form of the accelerations, if the run has it.
 static void find_solution(struct ct_exported *w)
 {
     const struct ct_partition *s = ct_run_partition(w->sim->run);
@@ -63,7 +63,7 @@ static void find_solution(struct ct_exported *w)
     }
 }
 
-// ---- programs -------------------------------------------------------------------------------------
+// ---- programs ------------------------------------------------------------------------------
 
 static unsigned kinds_of_outputs(const struct ct_equations *e)
 {
@@ -73,7 +73,7 @@ static unsigned kinds_of_outputs(const struct ct_equations *e)
     return kinds;
 }
 
-// All parameters in terms of those that are set.
+// Expressions of all parameters in terms of those that can be set.
 static const struct ct_listing *list_parameters(struct ct_exported *w)
 {
     struct ct_model *m = &w->sim->system->model;
@@ -106,7 +106,9 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Those of linear tables. Of cubic ones third derivatives jump, which a method of order 4 does not see.
+// Lists the points of linear tables, where the method must begin a new step. Points of cubic
+// tables are not listed: only their third derivatives are discontinuous there, which does not
+// affect a method of order 4.
 static void find_knots(struct ct_exported *w)
 {
     const struct ct_exs *x = w->x.e->x;
@@ -132,7 +134,8 @@ static bool is_driven(const struct ct_equations *e)
     return e->ndriver > 0;
 }
 
-// What decides how speeds follow where rates of drivers jump. Errors: E560.
+// Lists the data that determine the velocities after a jump in the rates of drivers. Errors:
+// E560.
 static bool list_jump(struct ct_exported *w)
 {
     const struct ct_equations *e = w->x.e;
@@ -176,7 +179,7 @@ static bool list_reactions(struct ct_exported *w, struct ct_result **list)
     return true;
 }
 
-// Everything but values to compare with.
+// Collects everything except the values for comparison.
 static bool gather(struct ct_exported *w)
 {
     struct ct_arena *a = w->ctx->model;
@@ -206,7 +209,7 @@ static bool gather(struct ct_exported *w)
                               .at_work = m->at_work,
                               .ninput = m->ninput,
                               .state = w->state,
-                              // Definition: the tolerance of assembly
+                              // Definition: the tolerance of assembly.
                               .closed = 1e-9,
                               .lanes = w->lanes};
     w->x.parameter = list_parameters(w);
@@ -258,7 +261,7 @@ static bool export_task(void *task)
     const struct task *t = task;
     struct ct_exported *w = t->w;
     const bool ok = export_as(w, t->format);
-    if (w->reaction.listing) // of the caller's stack
+    if (w->reaction.listing) // it is on the caller's stack
         ct_evaluator_remove_program(ct_run_evaluator(w->sim->run), &w->reaction);
     ct_ctx_hand_over(t->ctx, w->ctx);
     return ok;

@@ -9,7 +9,7 @@ static struct ct_export_items make_list(struct ct_arena *a, size_t n)
     return (struct ct_export_items){CT_NEWN(a, struct ct_export_item, n + 1), n};
 }
 
-// All of a kind; number i of it is at first + i.
+// Lists all items of a kind; item i has the index first + i.
 static struct ct_export_items list_kind(struct ct_exported *w, enum ct_kind kind, size_t first)
 {
     const struct ct_system *s = w->sim->system;
@@ -30,8 +30,8 @@ static void mark_inputs(bool *used, const struct ct_listing *l)
             used[l->input[v]] = true;
 }
 
-// Indices of `in` that anything reads, parameters by way of others included. A parameter that nothing reads has decided about
-// the start alone.
+// Marks the indices of `in` that are used, also through other parameters. An unused parameter
+// affects only the start.
 static const bool *find_used(struct ct_exported *w)
 {
     struct ct_export *x = &w->x;

@@ -1,4 +1,4 @@
-// NAME.json: what stands where in exported code, for programs. See exported.h.
+// NAME.json: the layout of the arrays of exported code. See exported.h.
 #include "export/exported.h"
 
 #include "report/json.h"

@@ -1,4 +1,4 @@
-// Values and a motion that exported code compares itself with. See exported.h.
+// Values and a motion for the test program of exported code. See exported.h.
 #include "export/exported.h"
 
 #include "solve/evaluator/switch_state.h"
@@ -15,7 +15,8 @@ static const double *copy(struct ct_arena *a, const double *v, size_t n)
     return c;
 }
 
-// Raw parameters a little off the model's, and all that follow from them; nothing but zero in place of those.
+// Records parameters slightly different from the model's, and all that depend on them. A
+// parameter that is zero stays zero.
 static void record_parameters(struct ct_exported *w, struct ct_export_state *s)
 {
     struct ct_arena *a = w->ctx->model;
@@ -34,8 +35,9 @@ static void record_parameters(struct ct_exported *w, struct ct_export_state *s)
     s->parameter = all;
 }
 
-// All values at t, y; false if the equations are singular there, or rates break constraints: with
-// redundant rows accelerations mean something only where they are met.
+// Records all values at t, y. False if the equations are singular there or the speeds violate
+// the constraints; with redundant rows the accelerations are only defined if the constraints
+// are satisfied.
 static bool record(struct ct_exported *w, double t, const double *y)
 {
     struct ct_arena *a = w->ctx->model;
@@ -44,14 +46,14 @@ static bool record(struct ct_exported *w, double t, const double *y)
     struct ct_partition *s = ct_run_partition(r);
     struct ct_export_state *to = &w->state[w->x.nstate];
     double *value = CT_NEWN(a, double, m->e->nresult + 1);
-    // Derived: ten times the tolerance of assembly
-    const double met = 1e-8; // assembled to about 1e-12, in metres and radians
+    // Derived: ten times the tolerance of assembly.
+    const double met = 1e-8; // [m, rad]; assembly reaches about 1e-12
     ct_evaluator_set(m, t, y);
     ct_evaluator_constraint(m);
     for (size_t i = 0; i < 2 * m->nrow; i++)
         if (!(fabs(m->constraint.out[i]) <= met))
             return false;
-    ct_program_run(&m->constraint, m->input); // as the program says
+    ct_program_run(&m->constraint, m->input); // switches as evaluated
     *to = (struct ct_export_state){.constraint
                                    = copy(a, m->constraint.out, m->constraint.nout)};
     if (ct_run_results(r, t, y, value) != CT_EVAL_OK)
@@ -72,7 +74,7 @@ static bool record(struct ct_exported *w, double t, const double *y)
     return true;
 }
 
-// The same with switches as the state says.
+// The same with switches as the state determines them.
 static void record_elsewhere(struct ct_exported *w, const double *y)
 {
     struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
@@ -85,8 +87,9 @@ static void record_elsewhere(struct ct_exported *w, const double *y)
         memcpy(mode, before, m->e->nswitch * sizeof *mode);
 }
 
-// The start; with its speeds doubled, and turned round; in open systems somewhere else. Elastic coordinates stay: the
-// accelerations of a bent stiff beam are so large that round-off alone makes them differ.
+// Records the start, the start with doubled and with reversed speeds and, for open systems,
+// another position. Elastic coordinates keep their values: the accelerations of a bent stiff
+// beam are so large that round-off alone would make them differ.
 bool ct_exported_record_states(struct ct_exported *w)
 {
     const struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
@@ -115,12 +118,12 @@ bool ct_exported_record_states(struct ct_exported *w)
     return true;
 }
 
-// ---- a motion -------------------------------------------------------------------------------------
+// ---- a motion ------------------------------------------------------------------------------
 
 // Limit: of a test program
 enum { SAMPLES = 8 };
 
-// A state that is stepped for a recorded motion, with its own diagnostics.
+// A state stepped for the recorded motion, with its own diagnostics.
 struct stepper {
     struct ct_ctx *quiet;
     struct ct_data *d;
@@ -139,7 +142,7 @@ static void destroy_stepper(struct stepper *s)
     ct_ctx_destroy(s->quiet);
 }
 
-// Number k of q, u, states.
+// Number k of the sequence q, u, states.
 static double value_of(const struct ct_equations *e, const struct ct_data *d, size_t k)
 {
     const size_t first_state = e->nq + e->nmotion;
@@ -148,7 +151,8 @@ static double value_of(const struct ct_equations *e, const struct ct_data *d, si
                            : ct_data_value(d, CT_STATE, k - first_state);
 }
 
-// q, u at even times (SAMPLES x ny, out), with nstep calls between them. False where the run fails.
+// Records q, u at equal intervals (SAMPLES x ny, out), with nstep steps between. False if the
+// run fails.
 static bool run(const struct ct_equations *e, struct stepper *s, double duration, long nstep,
                 double *y)
 {
@@ -166,7 +170,7 @@ static bool run(const struct ct_equations *e, struct stepper *s, double duration
     return ok;
 }
 
-// Largest difference, each number against 1 + the largest of its kind.
+// Largest difference; each number is relative to 1 + the largest of its kind.
 static double compare(const double *got, const double *want, size_t ny)
 {
     double worst = 0;
@@ -181,7 +185,7 @@ static double compare(const double *got, const double *want, size_t ny)
     return worst;
 }
 
-// Steps of a recorded motion: what some seconds of this machine's time are enough for.
+// Number of steps of the recorded motion: some seconds of computation.
 static long count_steps(const struct ct_exported *w)
 {
     const struct ct_tape_counts n = w->x.motion->counts;
@@ -193,7 +197,8 @@ static long count_steps(const struct ct_exported *w)
     return (long)steps / SAMPLES;
 }
 
-// Of the model's duration, or a part of it where steps are too long for the classical method of order 4.
+// Records a motion over the model's duration, or a part of it if the steps would be too long
+// for the classical Runge-Kutta method of order 4.
 void ct_exported_record_motion(struct ct_exported *w)
 {
     const struct ct_equations *e = &w->sim->system->equations;
@@ -204,11 +209,11 @@ void ct_exported_record_motion(struct ct_exported *w)
     double *want = CT_NEWN(w->ctx->model, double, n),
            *got = CT_NEWN(w->sim->own.scratch, double, n);
     double duration = w->sim->run_options.duration > 0 ? w->sim->run_options.duration : 1;
-    // a call takes one step of its own length
+    // each call takes one step
     struct stepper fixed
         = make_stepper(w, &(struct ct_sim_options){.method = "rk4", .step = duration}),
         tight
-        // Derived: far below what is wanted
+        // Derived: 1e-4 of the wanted error.
         = make_stepper(w, &(struct ct_sim_options){.method = "dopri5", .tolerance = 1e-10});
     r->nstep = count_steps(w);
     for (int k = 0; k < 12 && !r->nsample && ny; k++, duration /= 4) {
@@ -220,7 +225,7 @@ void ct_exported_record_motion(struct ct_exported *w)
         r->nsample = SAMPLES;
         r->y = want;
         r->duration = duration;
-        // Derived: ten times the error, and of the reference
+        // Derived: ten times the error; 1e-9 covers the error of the reference.
         r->tolerance = fmax(10 * error, 1e-9);
     }
     destroy_stepper(&fixed);

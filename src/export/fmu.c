@@ -5,8 +5,9 @@
 
 #include <string.h>
 
-// Local errors add up over a run; the method of order 4 takes off their first terms.
-// Chosen: accuracy of co-simulation against steps.
+// Tolerance of steps relative to the tolerance of co-simulation, because local errors
+// accumulate over a run.
+// Chosen: accuracy of co-simulation against number of steps.
 static const double share_of_steps = 1e-2;
 
 #if defined(__linux__) && defined(__x86_64__)
@@ -17,7 +18,7 @@ static const char *const platform[] = {NULL, "aarch64-linux"};
 static const char *const platform[] = {NULL, NULL};
 #endif
 
-// FNV-1a of 64 bits from some start.
+// 64-bit FNV-1a, continued from h.
 static uint64_t hash(uint64_t h, const char *text)
 {
     for (; *text; text++)
@@ -25,7 +26,7 @@ static uint64_t hash(uint64_t h, const char *text)
     return h;
 }
 
-// The same for the same model, others for others.
+// The GUID of a model: the same for the same model, different for others.
 static const char *find_token(struct ct_arena *a, const char *header, const char *source)
 {
     const uint64_t one = hash(hash(UINT64_C(0xcbf29ce484222325), header), source),

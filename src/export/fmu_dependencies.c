@@ -1,7 +1,9 @@
-// On what derivatives and outputs of a model depend, and how they change along a direction. See fmu.h.
+// Dependencies of derivatives and outputs of a model, and their directional derivatives. See
+// fmu.h.
 //
-// Speeds that M or J couple are one component: the derivative of each of them, and the multipliers of their rows, depend on all
-// that the entries of M, Q, J and gam of the component depend on. Where u' is known in closed form its own expression tells.
+// Speeds that M or J couple form a component. The derivatives of its speeds and the multipliers
+// of its rows depend on everything in the component's entries of M, Q, J and gam. If u' is
+// known in closed form, its expression gives the dependencies.
 #include "export/fmu.h"
 
 #include <string.h>
@@ -9,9 +11,9 @@
 struct finder {
     struct ct_fmu *f;
     const struct ct_equations *e;
-    size_t n;       // of `in`
-    int *component; // of speeds, then of rows
-    bool **of;      // by component: what it depends on; NULL: not found yet
+    size_t n;       // size of `in`
+    int *component; // component of each speed, then of each row
+    bool **of;      // by component: dependencies; NULL: not found yet
 };
 
 static void mark(const struct finder *s, struct ct_exs *x, const ct_ex *root, size_t n,
@@ -27,7 +29,7 @@ static void mark(const struct finder *s, struct ct_exs *x, const ct_ex *root, si
     }
 }
 
-// ---- components --------------------------------------------------------------------------------------
+// ---- components ----------------------------------------------------------------------------
 
 static int root_of(int *parent, int i)
 {
@@ -55,7 +57,7 @@ static void find_components(struct finder *s)
         s->component[i] = root_of(s->component, i);
 }
 
-// What component c depends on.
+// Dependencies of component c.
 static const bool *component_on(struct finder *s, int c)
 {
     const struct ct_equations *e = s->e;
@@ -96,7 +98,7 @@ static void add_acceleration(struct finder *s, size_t i, bool *on)
         add(on, component_on(s, s->component[i]), s->n);
 }
 
-// Of an expression, u' and multipliers in it included.
+// Dependencies of an expression, including those of u' and multipliers in it.
 static bool *depends_on(struct finder *s, ct_ex e)
 {
     const struct ct_export *x = &s->f->w->x;
@@ -125,13 +127,13 @@ static bool *derivative_on(struct finder *s, size_t k)
     return on;
 }
 
-// Of a parameter, in terms of those that are set.
+// Dependencies of a parameter on those that can be set.
 static bool *parameter_on(struct finder *s, size_t index)
 {
     const struct ct_model *m = &s->f->w->sim->system->model;
     bool *on = CT_NEWN(s->f->w->ctx->model, bool, s->n + 1);
     mark(s, m->x, &m->parameter[index - 1].definition, 1, on);
-    for (size_t i = index; i-- > 1;) // definitions use parameters before them
+    for (size_t i = index; i-- > 1;) // definitions use only parameters before them
         if (on[i] && !ct_ex_is_const(m->x, m->parameter[i - 1].definition, NULL)) {
             on[i] = false;
             mark(s, m->x, &m->parameter[i - 1].definition, 1, on);
@@ -139,7 +141,8 @@ static bool *parameter_on(struct finder *s, size_t index)
     return on;
 }
 
-// Quaternions count as their direction: what depends on one number of one depends on all four.
+// Completes quaternions: a quantity that depends on one number of a quaternion depends on all
+// four.
 static void complete_quaternions(const struct finder *s, bool *on)
 {
     bool *q = on + s->f->w->x.at_q;
@@ -167,7 +170,7 @@ void ct_fmu_find_dependencies(struct ct_fmu *f)
             on = parameter_on(&s, v->reference);
         if (on)
             complete_quaternions(&s, on);
-        if (v->is_output) { // itself
+        if (v->is_output) { // depends on itself
             on = CT_NEWN(f->w->ctx->model, bool, s.n + 1);
             on[v->reference] = true;
         }
@@ -175,9 +178,9 @@ void ct_fmu_find_dependencies(struct ct_fmu *f)
     }
 }
 
-// ---- directions ----------------------------------------------------------------------------------------
+// ---- directions ----------------------------------------------------------------------------
 
-// States, inputs, u' and multipliers change; the number of a seed is the index in `in`.
+// Seeds for states, inputs, u' and multipliers. The number of a seed is its index in `in`.
 static size_t list_seeds(struct ct_fmu *f, struct ct_seed *seed)
 {
     struct ct_exs *x = f->w->x.e->x;
@@ -199,7 +202,7 @@ static size_t list_seeds(struct ct_fmu *f, struct ct_seed *seed)
     return n;
 }
 
-// d of n expressions, zero where they do not change.
+// Directional derivatives of n expressions; zero for constants.
 static const struct ct_listing *list_along(struct ct_fmu *f, const ct_ex *e, size_t n,
                                            const struct ct_seed *seed, size_t nseed)
 {
@@ -267,7 +270,7 @@ void ct_fmu_list_directions(struct ct_fmu *f)
     struct ct_seed *seed = CT_NEWN(scratch, struct ct_seed, e->x->nsym + 1);
     size_t nseed = list_seeds(f, seed);
     f->source.along_outputs = list_along(f, out, nout, seed, nseed);
-    size_t nheld = 0; // u' and multipliers are held in the residual
+    size_t nheld = 0; // u' and multipliers are inputs of the residual
     for (size_t i = 0; i < nseed; i++) {
         const enum ct_sym_kind kind = ct_ex_symbol(e->x, seed[i].symbol)->kind;
         if (kind != CT_SYM_A && kind != CT_SYM_LAM)

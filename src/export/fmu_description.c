@@ -1,6 +1,7 @@
 // modelDescription.xml of FMI 2.0 and 3.0. See fmu.h.
 //
-// Both say the same of a model; 2.0 counts variables in the order of the file, 3.0 names them by value references.
+// Both versions describe the same variables. FMI 2.0 refers to variables by their order in the
+// file, 3.0 by value references.
 #include "export/fmu.h"
 
 #include "expr/unit.h"
@@ -64,9 +65,9 @@ static bool is_third(const struct xml *x)
     return x->f->version == 3;
 }
 
-// ---- units --------------------------------------------------------------------------------------------
+// ---- units ---------------------------------------------------------------------------------
 
-// Exponent of rad in a product of units, which counts as one elsewhere.
+// Exponent of rad in a product of units; elsewhere rad counts as 1.
 static int exponent_of_rad(const char *text)
 {
     int sign = 1, sum = 0;
@@ -127,7 +128,7 @@ static void put_units(struct xml *x)
     put(x, "  </UnitDefinitions>\n");
 }
 
-// ---- variables ------------------------------------------------------------------------------------------
+// ---- variables -----------------------------------------------------------------------------
 
 static const char *describe(const struct ct_fmu_variable *v)
 {
@@ -186,9 +187,10 @@ static void put_variable(struct xml *x, const struct ct_fmu_variable *v)
     put(x, is_third(x) ? "/>\n" : "/></ScalarVariable>\n");
 }
 
-// ---- structure ----------------------------------------------------------------------------------------
+// ---- structure -----------------------------------------------------------------------------
 
-// What a derivative or an output may depend on: states, inputs, the time; of parameters those that are set.
+// What a derivative or output may depend on: states, inputs, time, and the parameters that can
+// be set.
 static bool is_known(const struct ct_fmu_variable *v, bool of_parameter)
 {
     return of_parameter
@@ -237,7 +239,8 @@ static bool is_calculated(const struct ct_fmu_variable *v)
         || v->role == CT_FMU_DERIVED;
 }
 
-// The start is assembled from all that is set, so that only parameters depend on less.
+// The start is assembled from all settable values, so initial unknowns depend on all of them,
+// except that parameters depend on parameters only.
 static void put_list(struct xml *x, const char *name, const char *list,
                      bool (*is_in)(const struct ct_fmu_variable *v))
 {
@@ -257,7 +260,7 @@ static void put_list(struct xml *x, const char *name, const char *list,
         putf(x, "    </%s>\n", list);
 }
 
-// ---- the whole ----------------------------------------------------------------------------------------
+// ---- the whole -----------------------------------------------------------------------------
 
 static void put_kind(struct xml *x, const char *kind)
 {

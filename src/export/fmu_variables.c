@@ -67,7 +67,7 @@ static void add_derivatives(struct ct_fmu *f, size_t first_state)
     }
 }
 
-// An output of a state's name that is the state is one variable with it.
+// Is this output, which has a state's name, that state? Then both are one variable.
 static bool is_state(struct ct_fmu *f, const struct ct_result *r, size_t first_state)
 {
     const struct ct_equations *e = f->w->x.e;
@@ -98,7 +98,8 @@ static void add_outputs(struct ct_fmu *f, size_t first_state)
                    .reference = f->first_root + i});
 }
 
-// Outputs keep their names; others of the same name say what they are.
+// Makes names unique. Outputs keep theirs; other variables of the same name get a suffix that
+// tells their kind.
 static void separate_names(struct ct_fmu *f)
 {
     struct ct_arena *a = f->w->ctx->model;

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-// ---- lists of names -----------------------------------------------------------------------------
+// ---- lists of names ------------------------------------------------------------------------
 
 static bool has_name(const char *names, const char *name)
 {
@@ -25,7 +25,7 @@ static const char *add_name(struct ct_arena *a, const char *names, const char *n
     return *names ? ct_arena_printf(a, "%s %s", names, name) : name;
 }
 
-// ---- the graph ----------------------------------------------------------------------------------
+// ---- the graph -----------------------------------------------------------------------------
 
 const char *ct_components_of_edge(struct ct_arena *a, const struct ct_system *sys, int edge)
 {
@@ -43,7 +43,7 @@ const char *ct_components_of_node(struct ct_arena *a, const struct ct_system *sy
     return add_name(a, v->name, body);
 }
 
-// ---- expressions --------------------------------------------------------------------------------
+// ---- expressions ---------------------------------------------------------------------------
 
 static bool is_component(const struct ct_model *m, const char *name)
 {
@@ -129,7 +129,7 @@ const char *ct_components_of_result(struct ct_arena *a, const struct ct_system *
     return *names ? names : "system";
 }
 
-// ---- lines of the model -------------------------------------------------------------------------
+// ---- lines of the model --------------------------------------------------------------------
 
 struct lines {
     struct ct_arena *a;
@@ -150,7 +150,7 @@ static bool says_nothing(const char *line)
     return !c || c == '#' || c == '\r';
 }
 
-// The line of a key and the deeper ones that follow it.
+// Adds the line of a key and the more deeply indented lines after it.
 static void add_lines(struct lines *l, const struct ct_model *m, const char *name,
                       struct ct_mark mark)
 {
@@ -168,7 +168,7 @@ static void add_lines(struct lines *l, const struct ct_model *m, const char *nam
     CT_PUSH(l->a, l->at, l->n, l->cap, found);
 }
 
-// Keys at the left edge that belong to no component of their own.
+// Adds keys at the left edge that do not belong to a component.
 static void add_top_level(struct lines *l, const struct ct_model *m)
 {
     static const char *const keys[][2] = {{"gravity", "gravity"},
@@ -183,7 +183,7 @@ static void add_top_level(struct lines *l, const struct ct_model *m)
         }
 }
 
-// The arm to a centre of mass is written at the key `com`, or follows from the rest of its body.
+// The arm to a centre of mass is defined at the key `com`, or else by its body.
 static void add_centre(struct lines *l, const struct ct_model *m, const struct ct_body *body)
 {
     const struct ct_value *com = ct_instance_value(&body->instance, "com");
@@ -191,7 +191,7 @@ static void add_centre(struct lines *l, const struct ct_model *m, const struct c
     add_lines(l, m, name, com && com->given ? com->mark : body->instance.mark);
 }
 
-// The entry of an output, with what it depends on.
+// Adds the entry of an output, with the components on which it depends.
 static void add_outputs(struct lines *l, const struct ct_system *sys)
 {
     const struct ct_model *m = &sys->model;
@@ -208,7 +208,7 @@ static void add_outputs(struct lines *l, const struct ct_system *sys)
     }
 }
 
-// `ground` is a body that has no mark where it is not listed.
+// `ground` is a body without a mark if the file does not list it.
 struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
                                                     const struct ct_system *sys,
                                                     const char *const *line, size_t n,

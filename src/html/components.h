@@ -1,29 +1,32 @@
-// Which components parts of the page belong to: the names of data-component.
+// Finds which components the parts of a page belong to: the values of the attribute
+// data-component.
 //
-// Names are those of bodies, joints, forces, frames, parameters and arms, and `ground`, `gravity`, `system`; several are separated by
-// blanks. They are identifiers of the model, with a dot in those of frames.
+// The names are those of bodies, joints, forces, frames, parameters and arms, and `ground`,
+// `gravity`, `system`; several names are separated by blanks. They are identifiers of the
+// model; those of frames contain a dot.
 #ifndef CT_HTML_COMPONENTS_H
 #define CT_HTML_COMPONENTS_H
 
 #include "system.h"
 
-/// Of an edge and of a node of the linear graph: of arms and frames also their body.
+/// Components of an edge or a node of the linear graph; for arms and frames also their body.
 const char *ct_components_of_edge(struct ct_arena *a, const struct ct_system *sys, int edge);
 const char *ct_components_of_node(struct ct_arena *a, const struct ct_system *sys, int node);
-/// Those whose names stand in a text, as in an expression; "system" for quantities of the whole system.
+/// Components whose names occur in a text such as an expression; "system" for quantities of the
+/// whole system.
 const char *ct_components_in_text(struct ct_arena *a, const struct ct_model *m,
                                   const char *text, size_t n);
-/// Those that an output depends on.
+/// Components on which an output depends.
 const char *ct_components_of_result(struct ct_arena *a, const struct ct_system *sys,
                                     size_t result);
 
-/// Lines of the model file that a component is written in: the line of its key, and those that belong to it; and of an
-/// output, with the components that it depends on.
+/// Lines of the model file that define a component: the line of its key and the lines that
+/// belong to it. For an output: its lines, with the components on which it depends.
 struct ct_component_lines {
     const char *name; // several: separated by blanks
     int first, last;  // from 0
 };
-/// All of them, for n lines of text; *count (out).
+/// Finds all of them in n lines of text; *count (out).
 struct ct_component_lines *ct_components_find_lines(struct ct_arena *a,
                                                     const struct ct_system *sys,
                                                     const char *const *line, size_t n,

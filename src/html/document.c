@@ -1,4 +1,4 @@
-// The file of the report; see html.h.
+// Writes the file of the report; see html.h.
 #include "html/html.h"
 
 #include "base/sha256.h"
@@ -14,17 +14,17 @@
 struct report {
     struct ct_ctx *ctx, own;
     struct ct_system *given;
-    struct ct_system *sys;   // what is printed: with its mass matrix and forces
-    struct ct_system *moved; // what is run: as a run wants it
+    struct ct_system *sys;   // for printing: with mass matrix and forces
+    struct ct_system *moved; // for the run
     const struct ct_report_options *options;
     struct ct_sim *sim;
     struct ct_terms_recording terms;
     struct ct_recording recording;
     struct ct_source source;
-    bool stopped; // before the end of the run
+    bool stopped; // the run ended before its end time
 };
 
-// ---- what the page is made from -----------------------------------------------------------------
+// ---- what the page is made from ------------------------------------------------------------
 
 static void split_lines(struct ct_arena *a, struct ct_source *s)
 {
@@ -51,7 +51,7 @@ static void read_source(struct ct_arena *a, const struct ct_system *sys, struct 
         split_lines(a, s);
 }
 
-// A system of its own: what is derived on top leaves the caller's as it is.
+// Makes a copy of the system, so that further derivations do not change the caller's.
 static struct ct_system *copy(struct report *r)
 {
     struct ct_system *s = ct_system_borrow(&r->own, r->given);
@@ -74,7 +74,7 @@ static bool prepare(void *task)
     return true;
 }
 
-// ---- the head -----------------------------------------------------------------------------------
+// ---- the head ------------------------------------------------------------------------------
 
 static void put_hash(FILE *out, struct ct_arena *a, const unsigned char *bytes, size_t n)
 {
@@ -119,7 +119,7 @@ bool ct_html_is_built(struct ct_ctx *ctx)
                     "this cotree was built without the report; see -Dreport in README.md");
 }
 
-// ---- sections -----------------------------------------------------------------------------------
+// ---- sections ------------------------------------------------------------------------------
 
 static const struct {
     const char *id, *name; // in the list of contents
@@ -181,12 +181,12 @@ static bool write(void *task)
     return ct_outfile_close(r->ctx, &file);
 }
 
-// ---- the whole ----------------------------------------------------------------------------------
+// ---- the whole -----------------------------------------------------------------------------
 
 static bool make(struct report *r)
 {
     struct ct_sim_options run = r->options->run;
-    run.verify = true; // the page says how large the error is
+    run.verify = true; // the page shows the estimate of the error
     r->sim = ct_sim_create(r->ctx, r->moved, &run);
     if (!r->sim)
         return false;

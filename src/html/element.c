@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- text ---------------------------------------------------------------------------------------
+// ---- text ----------------------------------------------------------------------------------
 
 void ct_html_put(FILE *out, const char *text)
 {
@@ -32,7 +32,7 @@ void ct_html_put_components(FILE *out, const char *names)
     fputc('"', out);
 }
 
-// 1.2e-08 as 1.2 times a power of ten.
+// Writes 1.2e-08 as 1.2 times a power of ten.
 void ct_html_put_number(FILE *out, double v)
 {
     char text[40];
@@ -63,7 +63,7 @@ void ct_html_put_equation(FILE *out, const char *left, const char *right)
                                                          .right = {&term[1], right ? 1 : 0}});
 }
 
-// ---- sections -----------------------------------------------------------------------------------
+// ---- sections ------------------------------------------------------------------------------
 
 void ct_html_open_section(struct ct_html *h, const char *id, const char *title)
 {
@@ -77,9 +77,9 @@ void ct_html_close_section(struct ct_html *h)
     fputs("</section>\n", h->out);
 }
 
-// ---- data ---------------------------------------------------------------------------------------
+// ---- data ----------------------------------------------------------------------------------
 
-// A stream into memory that goes with an arena.
+// A stream into memory that lives as long as an arena.
 struct ct_text_stream {
     FILE *out;
     char *text;
@@ -126,7 +126,8 @@ void ct_html_open_data(struct ct_html *h, struct ct_html_data *d, const char *id
     ct_json_object(&d->json, NULL);
 }
 
-// In JSON `<` stands in texts alone, where the escape means the same: no end of the element, no comment.
+// In JSON `<` occurs in strings only. It is escaped, so that no string can end the element or
+// begin a comment.
 void ct_html_close_data(struct ct_html_data *d)
 {
     FILE *out = d->h->out;

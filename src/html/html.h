@@ -1,16 +1,18 @@
-// The report: a model, its equations and its motion as one HTML file.
+// This folder writes HTML pages: the report of a model, its equations and its motion, and the
+// page of animated modes. A page is one file.
 //
 //     document.c    the file: head, sections in their order, data, script
-//     recording.c   the run, sample by sample, thinned where it is long
+//     recording.c   the samples of the run, thinned if there are many
 //     element.c     escaping, headings, data blocks
-//     html_*.c   one section each: plain HTML, complete without scripts
+//     html_*.c      one section each: plain HTML, complete without scripts
 //     modes_page.c  the page of `modes --report`
-//     layout.c      where the vertices of the linear graph stand
+//     layout.c      positions of the vertices of the linear graph
 //
-// The scripts in web/ make it move and link it; web/README.md has the data they read.
+// The scripts in web/ add animation and links between sections; web/README.md describes the
+// data they read.
 //
-// What always holds: the same system and options give the same bytes; text that comes from a model goes through
-// ct_html_put, so that it is text whatever it contains; the file asks for nothing from outside.
+// What always holds: the same system and options give the same bytes. Text from a model is
+// written by ct_html_put, which escapes it. The page loads nothing from outside.
 #ifndef CT_HTML_HTML_H
 #define CT_HTML_HTML_H
 
@@ -19,7 +21,7 @@
 
 /// The model file, as it was written.
 struct ct_source {
-    const char *text; // NULL: not at hand
+    const char *text; // NULL: not available
     size_t n;         // bytes
     const char **line;
     size_t nline;
@@ -27,10 +29,10 @@ struct ct_source {
 
 struct ct_html {
     FILE *out;
-    struct ct_ctx *ctx;    // of the caller: its diagnostics are shown
-    struct ct_arena *a;    // for the time of the call
+    struct ct_ctx *ctx;    // of the caller; its diagnostics are shown on the page
+    struct ct_arena *a;    // for the duration of the call
     struct ct_system *sys; // a copy
-    struct ct_sim *sim;    // that has run
+    struct ct_sim *sim;    // after its run
     const struct ct_recording *recording;
     struct ct_terms_recording *terms; // terms.h
     const struct ct_source *source;
@@ -38,49 +40,49 @@ struct ct_html {
     const struct ct_report_options *options;
 };
 
-// ---- element.c --------------------------------------------------------------------------------
+// ---- element.c -----------------------------------------------------------------------------
 
-/// Text, also in attributes in double quotes, see ct_html_text.
+/// Writes text, escaped for content and for attributes in double quotes; see ct_html_text.
 void ct_html_put(FILE *out, const char *text);
-/// The same, isolated from the direction of what stands beside it.
+/// The same, isolated from the text direction of its surroundings.
 void ct_html_put_name(FILE *out, const char *text);
-/// <section id=""><h2>...</h2>; ends with </section>.
+/// Opens <section id=""><h2>...</h2>; the caller writes </section>.
 void ct_html_open_section(struct ct_html *h, const char *id, const char *title);
 void ct_html_close_section(struct ct_html *h);
-/// data-component="": a blank before it; nothing without names.
+/// Writes data-component="" after a blank; nothing without names.
 void ct_html_put_components(FILE *out, const char *names);
-/// Five digits, as numbers in sentences and tables.
+/// Writes a number with five digits, as in sentences and tables.
 void ct_html_put_number(FILE *out, double v);
 
-/// Mathematics of a page of CT_LOOK_HTML as one <math>; right NULL: left alone.
+/// Writes mathematics of a page of CT_LOOK_HTML as one <math>; right NULL: left only.
 void ct_html_put_equation(FILE *out, const char *left, const char *right);
 
-/// JSON that comes into a <script type="application/json" id=""> when it ends.
+/// JSON that is written into a <script type="application/json" id=""> when it is closed.
 struct ct_html_data {
     struct ct_html *h;
     const char *id;
     struct ct_json json;
     struct ct_text_stream *stream;
 };
-/// A stream into memory, which goes with h->a.
+/// Opens a stream into memory that lives as long as h->a.
 struct ct_text_stream *ct_html_open_text(struct ct_html *h);
 FILE *ct_html_text_stream(struct ct_text_stream *s);
-/// What was written. Raises the guard without memory.
+/// Closes it and returns its text. Raises the guard if memory is exhausted.
 const char *ct_html_close_text(struct ct_text_stream *s);
-/// An object is open.
+/// Opens JSON data with an open object.
 void ct_html_open_data(struct ct_html *h, struct ct_html_data *d, const char *id);
-/// Closes the object.
+/// Closes the object and writes the data.
 void ct_html_close_data(struct ct_html_data *d);
 
-// ---- document.c: what all pages have -----------------------------------------------------------
+// ---- document.c: what all pages have -------------------------------------------------------
 
-/// False with a diagnostic where the program was built without pages.
+/// False, with a diagnostic, if the program was built without pages.
 bool ct_html_is_built(struct ct_ctx *ctx);
-/// Up to </head>, with the style; the script and the end.
+/// Writes the page up to </head>, with the style; writes the script and the end.
 void ct_html_put_head(struct ct_html *h);
 void ct_html_put_script(struct ct_html *h);
 
-// ---- sections, in the order of the page ---------------------------------------------------------
+// ---- sections, in the order of the page ----------------------------------------------------
 
 void ct_html_summary(struct ct_html *h);
 void ct_html_motion(struct ct_html *h);
@@ -95,7 +97,7 @@ void ct_html_accuracy(struct ct_html *h);
 void ct_html_left_out(struct ct_html *h);
 void ct_html_manifest(struct ct_html *h);
 
-/// The data of the scripts that belong to no section.
+/// Writes the data of scripts that belong to no section.
 void ct_html_write_run(struct ct_html *h);
 
 #endif

@@ -1,5 +1,6 @@
-// Section `accuracy`: the error asked for and estimated, what is left of balances, and the work. Nothing that depends on the
-// computer stands here: the same input gives the same page.
+// Section `accuracy`: the wanted and the estimated error, residuals of balances, and the work
+// of the run. It contains nothing that depends on the computer: the same input gives the same
+// page.
 #include "html/html.h"
 
 #include "accuracy/accuracy.h"

@@ -1,4 +1,5 @@
-// Section `derivation`: the six stages from the terminal equations of the components to the reduced equations, folded.
+// Section `derivation`: the six stages from the terminal equations of the components to the
+// reduced equations, folded.
 #include "html/html.h"
 #include "html/terms.h"
 

@@ -1,5 +1,5 @@
-// Section `equations`: the equations of motion and of the constraints, a row per term with its value, the components that each
-// term comes from, and the named expressions that they use.
+// Section `equations`: the equations of motion and of the constraints, a row per term with its
+// value, the components that each term comes from, and the named expressions that they use.
 #include "html/components.h"
 #include "html/html.h"
 #include "html/terms.h"
@@ -22,9 +22,10 @@ static const char *origins_of(struct ct_html *h, const struct ct_equation_term *
     return *names ? names : "system";
 }
 
-// ---- equations ----------------------------------------------------------------------------------
+// ---- equations -----------------------------------------------------------------------------
 
-// An equation: terms first .. middle - 1 on the left, middle .. last - 1 on the right.
+// An equation: terms first to middle - 1 are its left side, terms middle to last - 1 its right
+// side.
 struct range {
     size_t first, middle, last;
 };
@@ -42,7 +43,7 @@ static const char *value_of(const struct writer *w, size_t column)
     return t->nvalue && t->nrow ? ct_arena_printf(w->h->a, "%.5g", t->value[column]) : NULL;
 }
 
-// A side without terms is zero.
+// A side without terms is 0.
 static struct ct_mathml_side side_of(const struct writer *w, size_t first, size_t last)
 {
     const struct ct_terms_recording *t = w->h->terms;
@@ -62,7 +63,7 @@ static struct ct_mathml_side side_of(const struct writer *w, size_t first, size_
     return (struct ct_mathml_side){term, last - first};
 }
 
-// The output whose terms begin with number `first`: its name is the left side.
+// The left side of an output whose first term has the number `first`: its name.
 static struct ct_mathml_side output_of(const struct writer *w, size_t first, const char *name)
 {
     const struct ct_terms_recording *t = w->h->terms;
@@ -74,7 +75,8 @@ static struct ct_mathml_side output_of(const struct writer *w, size_t first, con
     return (struct ct_mathml_side){term, 1};
 }
 
-// The equation whose terms begin with number `first`; returns the number behind them.
+// Writes the equation whose first term has the number `first`; returns the number after its
+// last term.
 static size_t put_equation(const struct writer *w, size_t first)
 {
     struct ct_html *h = w->h;
@@ -150,7 +152,7 @@ static void put_definitions(const struct writer *w)
     fprintf(out, "%s</details>\n", w->plain ? "</pre>" : "</div>");
 }
 
-// ---- all of it ----------------------------------------------------------------------------------
+// ---- all of it -----------------------------------------------------------------------------
 
 static void put_data(struct ct_html *h)
 {
@@ -194,7 +196,7 @@ static const char *write_all(struct ct_html *h, struct ct_derivation *plain, boo
     return ct_html_close_text(s);
 }
 
-// As `cotree equations` prints them, folded.
+// The text of `cotree equations`, in a folded block.
 static void put_text(struct ct_html *h, struct ct_derivation *plain)
 {
     struct ct_text_stream *s = ct_html_open_text(h);
@@ -216,8 +218,8 @@ static void put_text(struct ct_html *h, struct ct_derivation *plain)
     fputs("</pre></details>\n", h->out);
 }
 
-// Plain text for readers without scripts; a script replaces it by the same typeset, equation by equation (web/equations.js). False: too long
-// for that.
+// Plain text for readers without scripts; a script replaces it by the same typeset, equation by
+// equation (web/equations.js). False: too long for that.
 static bool put_packed(struct ct_html *h, struct ct_derivation *plain)
 {
     const char *text = write_all(h, NULL, true);

@@ -1,5 +1,5 @@
-// Section `graph`: the linear graph as a picture, a list of its edges, and the cutset or circuit equation of each edge in each
-// tree.
+// Section `graph`: the linear graph as a picture, a list of its edges, and the cutset or
+// circuit equation of each edge in each tree.
 #include "html/components.h"
 #include "html/html.h"
 #include "formulate/build.h"
@@ -33,7 +33,7 @@ struct picture {
     double left, top, width, height;
 };
 
-// ---- the picture --------------------------------------------------------------------------------
+// ---- the picture ---------------------------------------------------------------------------
 
 static void fit(struct picture *p)
 {
@@ -57,7 +57,8 @@ static bool joins_same(const struct ct_edge *a, const struct ct_edge *b)
         || (a->tail == b->head && a->head == b->tail);
 }
 
-// How far the middle of an edge is off the straight line, to its left as seen from the smaller vertex to the larger [px].
+// Distance of the middle of an edge from the straight line, to its left in the direction from
+// the smaller vertex number to the larger [px].
 static double offset_of(const struct ct_graph *g, int edge)
 {
     int before = 0, all = 0;
@@ -145,7 +146,8 @@ static void put_edge(struct picture *p, int i)
     fputs("</text></g>\n", out);
 }
 
-// Away from the middle of the neighbours, so that the name is off the edges.
+// Writes a vertex. Its name stands on the side away from its neighbours, where there are no
+// edges.
 static void put_node(struct picture *p, int v)
 {
     const struct ct_graph *g = p->e->graph;
@@ -199,7 +201,7 @@ static void put_picture(struct ct_html *h)
     fputs("</svg></div>\n", h->out);
 }
 
-// ---- equations ----------------------------------------------------------------------------------
+// ---- equations -----------------------------------------------------------------------------
 
 static void put_sides(FILE *out, const struct ct_derivation *d, const char *left,
                       const char *right)
@@ -265,7 +267,7 @@ static void put_equations(struct ct_html *h)
         }
 }
 
-// ---- data ---------------------------------------------------------------------------------------
+// ---- data ----------------------------------------------------------------------------------
 
 // Rows of cutsets are those of branches in ascending order, and so those of circuits.
 static void put_members(struct ct_html *h, struct ct_json *j, const char *key,
@@ -311,7 +313,7 @@ static void put_data(struct ct_html *h)
     ct_html_close_data(&d);
 }
 
-// ---- the list of edges --------------------------------------------------------------------------
+// ---- the list of edges ---------------------------------------------------------------------
 
 static void put_list(struct ct_html *h)
 {

@@ -1,4 +1,5 @@
-// Sections `left-out` and `manifest`: what is not in the equations; what the page was made from, and how it is made again.
+// Sections `left-out` and `manifest`: what is not in the equations; what the page was made
+// from, and how it is made again.
 #include "base/sha256.h"
 #include "html/html.h"
 

@@ -1,4 +1,5 @@
-// Section `motion`: the mechanism at its start as a line drawing; the script puts the moving one in its place.
+// Section `motion`: the mechanism at its start as a line drawing; the script puts the moving
+// one in its place.
 #include "html/html.h"
 
 #include "draw/picture.h"

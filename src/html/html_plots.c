@@ -1,4 +1,5 @@
-// Section `plots`: a figure for each unit with the names of its columns; curves are drawn by the script.
+// Section `plots`: a figure for each unit with the names of its columns; curves are drawn by
+// the script.
 #include "draw/dimension.h"
 #include "html/components.h"
 #include "html/html.h"

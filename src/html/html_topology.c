@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- trees --------------------------------------------------------------------------------------
+// ---- trees ---------------------------------------------------------------------------------
 
 static void put_branches(struct ct_html *h, const bool *is_branch)
 {
@@ -79,7 +79,7 @@ void ct_html_trees(struct ct_html *h)
     ct_html_close_section(h);
 }
 
-// ---- loops --------------------------------------------------------------------------------------
+// ---- loops ---------------------------------------------------------------------------------
 
 static const char *edge_components(struct ct_html *h, const char *name)
 {

@@ -7,7 +7,7 @@ enum { MOST_SWEEPS = 300 }; // Limit: of the time of the layout
 // Layout: [px] vertices move by less than a pixel in all sweeps that would follow.
 static const double still = 1e-2;
 
-// d (n x n) = shortest ways along edges, by Floyd and Warshall.
+// d (n x n) = lengths of shortest paths along edges, by the algorithm of Floyd and Warshall.
 static void find_distances(const struct ct_graph *g, const double *length, double *d)
 {
     const size_t n = (size_t)g->nnode;
@@ -23,7 +23,8 @@ static void find_distances(const struct ct_graph *g, const double *length, doubl
                 d[i + n * j] = fmin(d[i + n * j], d[i + n * k] + d[k + n * j]);
 }
 
-// On a circle in the order of the vertices, ground in its middle: no two at one place.
+// Initial positions: vertices on a circle in their order, ground in its middle. No two
+// coincide.
 static void start(struct ct_place *at, size_t n, double radius)
 {
     const double turn = 2 * acos(-1) / (double)n;
@@ -32,7 +33,8 @@ static void start(struct ct_place *at, size_t n, double radius)
                                   i ? radius * sin(turn * (double)i) : 0};
 }
 
-// Moves vertex i to where its stress against the others, weights d^-2, is least to first order. Returns how far.
+// Moves vertex i to the minimum of its stress, with weights d^-2, to first order. Returns the
+// distance moved.
 static double move(struct ct_place *at, const double *d, size_t n, size_t i)
 {
     double x = 0, y = 0, sum = 0;
@@ -55,7 +57,7 @@ static double move(struct ct_place *at, const double *d, size_t n, size_t i)
     return moved;
 }
 
-// The axis of the largest spread becomes x; the first vertex is to the left.
+// Rotates the layout so that its largest extent is along x and the first vertex is on the left.
 static void align(struct ct_place *at, size_t n)
 {
     double cx = 0, cy = 0, xx = 0, xy = 0, yy = 0;

@@ -1,10 +1,11 @@
-// The page of `modes --report`: a mode is chosen, and the system swings in it.
+// The page of `modes --report`: the user selects a mode, and the system moves in it.
 //
-//     row 0         places at the configuration
-//     row 2 i + 1   their derivatives by the real part of mode i
-//     row 2 i + 2   by its imaginary part
+//     row 0         positions at the configuration
+//     row 2 i + 1   their derivatives along the real part of mode i
+//     row 2 i + 2   along its imaginary part
 //
-// The script shows row 0 + a (real part cos phi - imaginary part sin phi): a linear motion, as modes are.
+// The script shows row 0 + a (real part cos phi - imaginary part sin phi). The motion is linear
+// in the amplitude a, as a mode is.
 #include "analysis/modes.h"
 #include "draw/picture.h"
 #include "html/html.h"
@@ -24,13 +25,14 @@ struct modes_page {
     size_t nrow;
 };
 
-// ---- rows ---------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
-// By central differences: they err by step^2 of the curvature, and by round-off over step.
+// Derivatives by central differences. Their error is step^2 times a third derivative, plus
+// round-off over step.
 static void differentiate(struct modes_page *p, const double *y0, const double *shape,
                           double *out)
 {
-    // Derived: near the cube root of the unit round-off both are some 1e-11
+    // Derived: near the cube root of eps; both errors are then about 1e-11.
     const double step = 1e-5;
     struct ct_evaluator *m = p->modes->at.l->m;
     const size_t n = p->animation.ncolumn;
@@ -64,7 +66,7 @@ static void find_rows(struct modes_page *p)
     memcpy(l->y, y0, ny * sizeof *y0);
 }
 
-// ---- the page -----------------------------------------------------------------------------------
+// ---- the page ------------------------------------------------------------------------------
 
 static void put_picture(struct ct_html *h, const struct modes_page *p)
 {

@@ -15,7 +15,7 @@ void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
                         &r->animation);
 }
 
-// Singular values cost more than a sample does: so many of them at most.
+// Measures the loops at some samples only, since singular values cost more than a sample.
 static void measure_loops(struct ct_recording *r, double t, bool is_last)
 {
     enum { MOST_MEASURED = 501 }; // Limit: of the page
@@ -56,7 +56,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-// What there is to see at the start.
+// Records the start of a system without an end time.
 static bool look_at_start(void *task)
 {
     struct ct_recording *r = task;
@@ -80,7 +80,7 @@ static bool keep_start(void *task)
     struct ct_recording *r = task;
     double *value = CT_NEWN(r->sim->own.model, double, r->ncolumn + 1);
     ct_run_results(r->sim->run, 0, ct_run_state(r->sim->run),
-                   value); // the evaluator stands there now
+                   value); // the evaluator is at this sample
     keep(r, 0, value, true);
     return true;
 }

@@ -1,6 +1,7 @@
-// A run for the page: its samples, and the first place of the mechanism.
+// A run recorded for the page: its samples and the first position of the mechanism.
 //
-// What always holds: rows are every `stride`-th sample and the last one; a system without an end time has one row, its start.
+// What always holds: rows are every `stride`-th sample and the last one. A system without an
+// end time has one row, its start.
 #ifndef CT_HTML_RECORDING_H
 #define CT_HTML_RECORDING_H
 
@@ -11,7 +12,7 @@
 
 struct ct_recording {
     struct ct_sim *sim;
-    struct ct_animation animation; // its rows are those of this
+    struct ct_animation animation; // has the same rows
     double *first;                 // values of its scene at the start
     struct ct_terms_recording *terms;
     size_t stride, nsample; // samples of the run
@@ -19,18 +20,18 @@ struct ct_recording {
     size_t time_cap, value_cap;
     double *time;  // (nrow) [s]
     double *value; // nrow x ncolumn, a row after the other
-    size_t seen;   // samples so far
+    size_t seen;   // number of samples so far
     struct ct_loops loops;
     size_t nnear, near_cap, near_time_cap;
-    double *near;      // how near to a singular configuration: nnear x (1 + loops.nloop)
+    double *near;      // distance from a singular configuration: nnear x (1 + loops.nloop)
     double *near_time; // (nnear) [s]
 };
 
-/// Prepare, before the run of `sys` (a private copy, see ct_system_borrow) is made. terms: ct_terms_create has filled
-/// them. Raises the guard.
+/// Prepares a recording before the run of `sys` is created. sys is a private copy, see
+/// ct_system_borrow. terms: filled by ct_terms_create. Raises the guard.
 void ct_recording_create(struct ct_recording *r, struct ct_system *sys,
                          struct ct_terms_recording *terms);
-/// Run and record. False with a diagnostic.
+/// Runs and records. False with a diagnostic.
 bool ct_recording_run(struct ct_ctx *ctx, struct ct_recording *r, struct ct_sim *sim,
                       FILE *progress);
 

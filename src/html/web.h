@@ -1,4 +1,5 @@
-// The bundled script and style of the page, made from web/ when cotree is built; sizes are 0 where it is built without.
+// The bundled script and style of the pages, made from web/ during the build. Their sizes are 0
+// if cotree is built without pages.
 #ifndef CT_HTML_WEB_H
 #define CT_HTML_WEB_H
 

@@ -23,12 +23,12 @@ struct import {
     struct ct_urdf u;
 };
 
-// ---- values ---------------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
 static void put_number(FILE *out, double v)
 {
     char text[CT_DECIMAL_SIZE];
-    ct_decimal_format(text, v + 0.0); // no negative zero
+    ct_decimal_format(text, v + 0.0); // + 0.0 turns -0 into 0
     fputs(text, out);
 }
 
@@ -42,7 +42,7 @@ static void put_list(FILE *out, const double *v, size_t n)
     fputc(']', out);
 }
 
-// In quotes, as any text may stand there.
+// Writes a text in quotes, because it may contain any character.
 static void put_text(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -61,7 +61,7 @@ static bool is_zero(const double v[3])
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
-// Rz(yaw) Ry(pitch) Rx(roll), each about an axis turned so far.
+// Writes Rz(yaw) Ry(pitch) Rx(roll) as rotations about axes.
 static void put_rotation(FILE *out, const double rpy[3])
 {
     const char *separator = "";
@@ -95,7 +95,7 @@ static bool is_identity(const struct ct_urdf_pose *p)
     return is_zero(p->xyz) && is_zero(p->rpy);
 }
 
-// ---- bodies ---------------------------------------------------------------------------------------
+// ---- bodies --------------------------------------------------------------------------------
 
 static void put_solid(FILE *out, const struct ct_urdf_solid *s)
 {
@@ -128,7 +128,7 @@ static void put_solid(FILE *out, const struct ct_urdf_solid *s)
     fputs("}\n", out);
 }
 
-// What turning leaves of zeros: sums of nine products.
+// Sets entries to zero that are round-off of the rotation: sums of nine products.
 static void clear_roundoff(double I[6])
 {
     double most = 0;
@@ -186,9 +186,9 @@ static void put_link(FILE *out, const struct ct_urdf *u, int i)
         put_solid(out, &l->solid[k]);
 }
 
-// ---- joints ---------------------------------------------------------------------------------------
+// ---- joints --------------------------------------------------------------------------------
 
-// Where a joint starts: all that mimic none at 0.
+// Initial value of a joint: 0, or for a joint that mimics another one what follows from that.
 static double start_of(const struct ct_urdf *u, const struct ct_urdf_joint *j)
 {
     return j->mimic < 0 ? 0 : j->multiplier * start_of(u, &u->joint[j->mimic]) + j->offset;
@@ -207,7 +207,7 @@ static void put_joint(FILE *out, const struct ct_urdf *u, size_t i)
     static const char *const types[]
         = {"revolute", "revolute", "prismatic", "weld", "free", "planar"};
     const struct ct_urdf_joint *j = &u->joint[i];
-    if (j->limits) // may hold anything but a line's end
+    if (j->limits) // may contain anything except a line break
         fprintf(out, "  # limits: %s\n", j->limits);
     fprintf(out, "  %s: {type: %s, from: %s%s%s, to: %s", j->id, types[j->type],
             u->link[j->parent].id, is_identity(&j->pose) ? "" : ".",

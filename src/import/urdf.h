@@ -1,11 +1,12 @@
-// A robot of the Unified Robot Description Format, on its way to a model file.
+// This folder converts robot descriptions in URDF (Unified Robot Description Format) to model
+// files.
 //
 //     urdf_read.c      XML -> links and joints, checked
 //     urdf_geometry.c  rotations, inertias in other axes
 //     urdf.c           links and joints -> text of a model
 //
-// What always holds after ct_urdf_read: links and joints form one tree, every number is finite,
-// every `id` is a name that the model format takes and stands for one thing alone.
+// What always holds after ct_urdf_read: links and joints form one tree; every number is finite;
+// every `id` is a valid and unique name of the model format.
 #ifndef CT_IMPORT_URDF_H
 #define CT_IMPORT_URDF_H
 
@@ -18,7 +19,7 @@ struct ct_urdf_pose {
 
 struct ct_urdf_solid {
     enum { CT_URDF_BOX, CT_URDF_CYLINDER, CT_URDF_SPHERE, CT_URDF_MESH } kind;
-    double size[3];    // edges; radius, length; radius; of a mesh its scale
+    double size[3];    // box: edges; cylinder: radius, length; sphere: radius; mesh: scale
     const char *file;  // of a mesh, as the model file names it
     const char *color; // "#rrggbb", or NULL
     struct ct_urdf_pose pose;
@@ -31,7 +32,7 @@ struct ct_urdf_link {
     double inertia[6]; // xx yy zz xy xz yz about the centre of mass, in axes of the link
     struct ct_urdf_solid *solid;
     size_t nsolid, solid_cap;
-    int joint; // that moves it; -1: the root
+    int joint; // joint that moves it; -1: root
 };
 
 enum ct_urdf_type {
@@ -50,8 +51,8 @@ struct ct_urdf_joint {
     int parent, child; // links
     struct ct_urdf_pose pose;
     double axis[3], damping;
-    const char *limits; // in words; NULL: none
-    int mimic;          // the joint it follows; -1: none
+    const char *limits; // as text for a comment; NULL: none
+    int mimic;          // joint that it follows; -1: none
     double multiplier, offset;
     const char *mimic_id; // of the gear
 };
@@ -65,13 +66,14 @@ struct ct_urdf {
     int root;
 };
 
-/// Read a file. What is ignored is named by warnings. model: where the text will stand, for the
-/// places of meshes; NULL: not known. Errors: CT_E_XML, CT_E_URDF, CT_E_XACRO, E002.
+/// Reads a file. Ignored elements give warnings. model: path of the model file to be written,
+/// for the paths of meshes; NULL: not known. Errors: CT_E_XML, CT_E_URDF, CT_E_XACRO, E002.
 bool ct_urdf_read(struct ct_ctx *ctx, const char *path, const char *model, struct ct_urdf *u);
 
-/// R (3 x 3, out, column-major) = Rz(yaw) Ry(pitch) Rx(roll): from the turned axes to the others.
+/// R (3 x 3, out, column-major) = Rz(yaw) Ry(pitch) Rx(roll): maps components in the rotated
+/// axes to components in the fixed ones.
 void ct_urdf_rotation(double R[9], const double rpy[3]);
-/// out <- R I R' for tensors as in ct_urdf_link.
+/// out <- R I R' for tensors [kg m^2] in the order of ct_urdf_link.
 void ct_urdf_turn_inertia(double out[6], const double I[6], const double R[9]);
 
 #endif

@@ -20,17 +20,17 @@ struct reader {
     struct ct_urdf *u;
     const struct ct_xml *robot;
     const char *path, *model;
-    struct ct_names link, joint, id; // names -> indices; ids that are taken
+    struct ct_names link, joint, id; // names -> indices; names already used
 };
 
-// ---- attributes ---------------------------------------------------------------------------------
+// ---- attributes ----------------------------------------------------------------------------
 
 static bool wrong(struct reader *r, const struct ct_xml *e, const char *what)
 {
     return ct_error(r->ctx, e->mark, CT_E_URDF, "<%s>: %s", e->name, what);
 }
 
-// What is not used; owner: "link 'arm'".
+// Warns of an element that is ignored; owner: "link 'arm'".
 static void ignore(struct reader *r, const struct ct_xml *e, const char *owner)
 {
     ct_warning(r->ctx, e->mark, CT_E_URDF_IGNORED, "<%s>%s%s is ignored", e->name,
@@ -45,7 +45,7 @@ static const char *wanted(struct reader *r, const struct ct_xml *e, const char *
     return value;
 }
 
-// n numbers with blanks between them. False, reported, if there are others.
+// Reads n numbers separated by blanks. False, with a diagnostic, for anything else.
 static bool read_numbers(struct reader *r, const struct ct_xml *e, const char *attribute,
                          double *value, size_t n)
 {
@@ -80,7 +80,7 @@ static bool read_number(struct reader *r, const struct ct_xml *e, const char *at
     return wanted(r, e, attribute) && read_numbers(r, e, attribute, value, 1);
 }
 
-// The <origin> of e, or none.
+// Reads the <origin> of e; identity if there is none.
 static bool read_origin(struct reader *r, const struct ct_xml *e, struct ct_urdf_pose *p)
 {
     const struct ct_xml *origin = ct_xml_child(e, "origin");
@@ -90,7 +90,7 @@ static bool read_origin(struct reader *r, const struct ct_xml *e, struct ct_urdf
             & read_optional(r, origin, "rpy", p->rpy, 3));
 }
 
-// Children of e that are not in the list, blanks between, are ignored.
+// Warns of the children of e that are not in the list (names separated by blanks).
 static void ignore_others(struct reader *r, const struct ct_xml *e, const char *known,
                           const char *owner)
 {
@@ -105,7 +105,7 @@ static void ignore_others(struct reader *r, const struct ct_xml *e, const char *
     }
 }
 
-// ---- names ----------------------------------------------------------------------------------------
+// ---- names ---------------------------------------------------------------------------------
 
 static bool is_free(const struct reader *r, const char *id)
 {
@@ -116,7 +116,8 @@ static bool is_free(const struct reader *r, const char *id)
     return !ct_is_reserved(id) && ct_names_get(&r->id, id) < 0;
 }
 
-// A name that the model format takes for one of the file, which may be any text; `sort` makes it another one.
+// Returns a valid name of the model format for a name in the file, which may be any text;
+// `sort` makes it unique.
 static const char *take_id(struct reader *r, const char *name, const char *sort)
 {
     char *id = ct_arena_printf(r->a, "%s%s", *name >= '0' && *name <= '9' ? "_" : "",
@@ -134,7 +135,7 @@ static const char *take_id(struct reader *r, const char *name, const char *sort)
     return free_id;
 }
 
-// ---- links ----------------------------------------------------------------------------------------
+// ---- links ---------------------------------------------------------------------------------
 
 static bool read_inertial(struct reader *r, const struct ct_xml *e, struct ct_urdf_link *l,
                           const char *owner)
@@ -160,7 +161,7 @@ static bool read_inertial(struct reader *r, const struct ct_xml *e, struct ct_ur
     return ok;
 }
 
-// "#rrggbb" of <material>, its own or that of its name.
+// "#rrggbb" of <material>: its own color or that of the material of its name.
 static const char *read_color(struct reader *r, const struct ct_xml *material,
                               const char *owner)
 {
@@ -194,7 +195,8 @@ static const char *folder_of(struct reader *r, const char *path)
     return slash ? ct_arena_strndup(r->a, path, (size_t)(slash + 1 - path)) : "";
 }
 
-// Where a mesh is, seen from the robot's file: package://NAME/PATH is sought under folders above that are NAME or have PATH.
+// Path of a mesh relative to the robot's file. package://NAME/PATH is searched in the folders
+// above that are called NAME or contain PATH.
 static const char *find_mesh(struct reader *r, const char *name)
 {
     const char *folder = folder_of(r, r->path);
@@ -215,7 +217,7 @@ static const char *find_mesh(struct reader *r, const char *name)
     return NULL;
 }
 
-// As the model file names it: beside it, if both stand in one folder; else in full.
+// Path of a mesh in the model file: relative if both are in one folder, otherwise absolute.
 static const char *seen_from_model(struct reader *r, const char *path)
 {
     const char *folder = folder_of(r, r->path);
@@ -237,7 +239,7 @@ static bool ends_with(const char *text, const char *end)
     return true;
 }
 
-// False where the mesh cannot be used, which has been said.
+// False, after a diagnostic, if the mesh cannot be used.
 static bool read_mesh(struct reader *r, const struct ct_xml *e, struct ct_urdf_solid *s)
 {
     const char *name = wanted(r, e, "filename"), *why = NULL, *path = NULL;
@@ -325,7 +327,7 @@ static void read_link(struct reader *r, const struct ct_xml *e)
     CT_PUSH(r->a, r->u->link, r->u->nlink, r->u->link_cap, l);
 }
 
-// ---- joints ---------------------------------------------------------------------------------------
+// ---- joints --------------------------------------------------------------------------------
 
 static bool read_type(struct reader *r, const struct ct_xml *e, enum ct_urdf_type *type)
 {
@@ -345,7 +347,7 @@ static bool read_type(struct reader *r, const struct ct_xml *e, enum ct_urdf_typ
                                  text));
 }
 
-// The link that <parent> or <child> names; -1 after an error.
+// Index of the link that <parent> or <child> names; -1 after an error.
 static int read_end(struct reader *r, const struct ct_xml *e, const char *which)
 {
     const struct ct_xml *end = ct_xml_child(e, which);
@@ -463,7 +465,7 @@ static void read_mimic(struct reader *r, const struct ct_xml *e)
     j->mimic_id = take_id(r, ct_arena_printf(r->a, "%s_mimic", j->id), "gear");
 }
 
-// ---- the robot ------------------------------------------------------------------------------------
+// ---- the robot -----------------------------------------------------------------------------
 
 static bool is_xacro(const struct ct_xml *e)
 {
@@ -481,7 +483,7 @@ static const struct ct_xml *find_xacro(const struct ct_xml *e)
     return found;
 }
 
-// One root, from which joints lead to every link.
+// Checks that there is one root from which joints lead to every link.
 static bool check_tree(struct reader *r)
 {
     struct ct_urdf *u = r->u;

@@ -14,7 +14,7 @@ struct reading {
     XML_Parser parser;
     struct ct_xml *root, *open;
     int depth;
-    bool failed; // reported
+    bool failed; // a diagnostic has been given
 };
 
 static struct ct_mark mark_here(const struct reading *r)
@@ -69,7 +69,7 @@ static void XMLCALL end(void *user, const char *name)
     r->open = r->open->parent;
 }
 
-// Entities could make a small file very large.
+// Rejects entity declarations, which could make a small file very large.
 static void XMLCALL declare(void *user, const char *name, int is_parameter, const char *value,
                             int length, const char *base, const char *system, const char *id,
                             const char *notation)
@@ -88,7 +88,8 @@ const struct ct_xml *ct_xml_parse(struct ct_ctx *ctx, struct ct_arena *a, const 
                                   const char *text, size_t n)
 {
     struct reading r = {.ctx = ctx, .a = a, .file = file};
-    // freed with it at the latest: an arena that runs out jumps past the end of this function
+    // freed with `a` at the latest, because memory exhaustion jumps past the end of this
+    // function
     struct ct_arena *own = ct_arena_create_under(a);
     r.parser = XML_ParserCreate(NULL);
     if (!r.parser || n > INT_MAX) {

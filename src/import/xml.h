@@ -1,6 +1,6 @@
-// XML as a tree of elements with their places. The only user of expat.
+// XML as a tree of elements with marks. The only user of expat.
 //
-// What always holds: an element's parent stands before it; names and values live in the arena.
+// What always holds: an element comes after its parent; names and values live in the arena.
 // Text between tags is not kept.
 #ifndef CT_IMPORT_XML_H
 #define CT_IMPORT_XML_H
@@ -13,19 +13,19 @@ struct ct_xml_attribute {
 
 struct ct_xml {
     const char *name;
-    struct ct_mark mark; // of its tag
+    struct ct_mark mark; // of its start tag
     struct ct_xml_attribute *attribute;
     size_t nattribute;
-    struct ct_xml *parent, *child, *last, *next; // child: the first; next: the one beside
+    struct ct_xml *parent, *child, *last, *next; // child: the first; next: the next sibling
 };
 
-/// Parse n bytes; `file` names them in marks. NULL with CT_E_XML, at line and column, where the
-/// text is not well-formed, declares entities, or where the program was built without expat.
+/// Parses n bytes; `file` is their name in marks. NULL with CT_E_XML, at line and column, if
+/// the text is not well-formed or declares entities, or if the program was built without expat.
 const struct ct_xml *ct_xml_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file,
                                   const char *text, size_t n);
-/// The first child of this name, or NULL.
+/// Returns the first child of this name, or NULL.
 const struct ct_xml *ct_xml_child(const struct ct_xml *e, const char *name);
-/// The value of an attribute, or NULL.
+/// Returns the value of an attribute, or NULL.
 const char *ct_xml_get(const struct ct_xml *e, const char *name);
 
 #endif

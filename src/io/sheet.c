@@ -30,7 +30,8 @@ static void skip_break(struct scan *s)
     s->line_start = s->p;
 }
 
-// The contents move to the front over the doubled quotes; *last is where the NUL goes.
+// Reads a quoted field. Its contents move to the front, over the doubled quotes; *last is the
+// place for the NUL.
 static bool scan_quoted(struct scan *s, char **last)
 {
     const struct ct_mark open = here(s);
@@ -78,7 +79,7 @@ static bool scan_field(struct scan *s, size_t row, bool *row_ends)
         s->p++;
     else if (s->p < s->end)
         skip_break(s);
-    *last = 0; // after the separator was read: it may stand right there
+    *last = 0; // after the separator has been read, which may be at this place
     return true;
 }
 

@@ -12,8 +12,9 @@ struct ct_sheet {
     struct ct_mark *mark; // of each
 };
 
-/// Cut text (changed in place, NUL behind its n bytes) into fields; a byte order mark and empty
-/// lines at the end are skipped. All in arena a. Errors: E135 with a mark in the file.
+/// Splits text (changed in place, with a NUL behind its n bytes) into fields. Skips a byte
+/// order mark, and empty lines at the end. All in arena a. Errors: E135 with a mark in the
+/// file.
 bool ct_sheet_parse(struct ct_ctx *ctx, struct ct_arena *a, const char *file, char *text,
                     size_t n, struct ct_sheet *csv);
 

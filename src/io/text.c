@@ -35,7 +35,7 @@ static enum ct_text_result read_all(struct ct_arena *a, FILE *f, size_t most, ch
     return ferror(f) ? CT_TEXT_UNREADABLE : CT_TEXT_OK;
 }
 
-// f is closed in the end.
+// Reads f and closes it.
 static enum ct_text_result read_and_close(struct ct_arena *a, FILE *f, size_t most, char **text,
                                           size_t *n)
 {
@@ -45,7 +45,7 @@ static enum ct_text_result read_and_close(struct ct_arena *a, FILE *f, size_t mo
         errno = EISDIR;
         return CT_TEXT_UNREADABLE;
     }
-    // without memory the file is closed before the jump goes on outwards
+    // if memory runs out, f is closed before the error goes on
     struct ct_guard g;
     ct_guard_push(&g);
     if (setjmp(g.env)) {
@@ -72,7 +72,8 @@ enum ct_text_result ct_text_read(struct ct_arena *a, const char *path, size_t mo
 enum ct_text_result ct_text_read_regular(struct ct_arena *a, const char *path, size_t most,
                                          char **text, size_t *n)
 {
-    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a FIFO is not waited for
+    // O_NONBLOCK: does not wait for a FIFO
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     struct stat s;
     if (fd < 0)
         return CT_TEXT_UNREADABLE;

@@ -1,5 +1,5 @@
-// The one user of libyaml: its events become nodes by recursive descent. Depth, size and the growth
-// through aliases are bounded here, so that everything after may recurse and walk freely.
+// The only user of libyaml. Converts its events to nodes by recursive descent. Depth, size and
+// growth by aliases are bounded here, so that later stages may recurse over the tree.
 #include "io/yaml.h"
 
 #include "base/guard.h"
@@ -17,10 +17,10 @@ static const size_t max_bytes = (size_t)16 << 20;
 
 struct anchor {
     const char *name;
-    const struct ct_node *node; // NULL while its own content is being read
+    const struct ct_node *node; // NULL while its content is being read
 };
 
-// The owner of what libyaml allocates.
+// Owns what libyaml allocates.
 struct source {
     struct ct_ctx *ctx;
     const char *file;
@@ -45,7 +45,7 @@ static void drop_event(struct source *s)
     s->has_event = false;
 }
 
-// Line and column of a byte; libyaml gives none when it cannot decode the text.
+// Line and column of a byte, for text that libyaml cannot decode.
 static struct ct_mark mark_of_byte(const struct source *s, size_t offset)
 {
     struct ct_mark m = {s->file, 0, 0};
@@ -66,7 +66,7 @@ static bool character_is_tab(const struct source *s, yaml_mark_t m)
     size_t i = 0;
     for (size_t line = 0; line < m.line && i < s->size; i++)
         line += s->text[i] == '\n';
-    i += m.column; // before the tab there is only white space
+    i += m.column; // only white space comes before the tab
     return i < s->size && s->text[i] == '\t';
 }
 
@@ -112,7 +112,7 @@ static bool open_anchor(struct source *s, const yaml_char_t *name)
     return true;
 }
 
-// A tag asks for a type; models have none, so it could only be ignored in silence.
+// A tag requests a type. Models have none, so tags are errors instead of being ignored.
 static bool check_tag(struct source *s, const yaml_char_t *tag, struct ct_mark at)
 {
     if (!tag || strcmp((const char *)tag, YAML_STR_TAG) == 0
@@ -199,10 +199,10 @@ static int compare_keys(const void *a, const void *b)
 {
     const struct ct_node_pair *const *p = a, *const *q = b;
     const int c = strcmp((*p)->key, (*q)->key);
-    return c ? c : (*p < *q ? -1 : 1); // both in one array: the file's order
+    return c ? c : (*p < *q ? -1 : 1); // both point into one array: order of the file
 }
 
-// Equal keys stand side by side after sorting, the earlier one first.
+// Reports equal keys, which are neighbours after sorting, the earlier one first.
 static bool check_distinct(struct source *s, const struct ct_node_pair *pair, size_t n)
 {
     if (n < 2)
@@ -231,7 +231,8 @@ static bool read_map(struct source *s, struct ct_node *node, size_t depth)
     while (next_event(s)) {
         if (s->event.type == YAML_MAPPING_END_EVENT) {
             node->pair = pair;
-            // the tree is whole also with a key twice: the rest is read for more errors
+            // the tree is complete in spite of duplicate keys, so reading continues to find
+            // more errors
             check_distinct(s, pair, node->n);
             return true;
         }
@@ -265,7 +266,7 @@ static bool read_alias(struct source *s, size_t depth, const struct ct_node **ou
                     name, name);
 }
 
-// The node that starts with the current event.
+// Reads the node that starts with the current event.
 static bool read_node(struct source *s, size_t depth, const struct ct_node **out)
 {
     const struct ct_mark at = mark_of(s, s->event.start_mark);
@@ -278,7 +279,7 @@ static bool read_node(struct source *s, size_t depth, const struct ct_node **out
     struct ct_node *node = CT_NEW(s->ctx->model, struct ct_node);
     node->mark = at;
     node->weight = 1;
-    const size_t own = s->nanchor; // its anchor, if it opens one
+    const size_t own = s->nanchor; // index of its anchor, if it has one
     bool ok, has_anchor = false;
     switch (s->event.type) {
     case YAML_SCALAR_EVENT:
@@ -334,7 +335,7 @@ bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_
     *s = (struct source){.ctx = ctx, .file = file, .text = text, .size = n};
     if (!yaml_parser_initialize(&s->parser))
         ct_guard_raise();
-    // without memory libyaml's part is freed before the jump goes on outwards
+    // if memory runs out, libyaml's objects are freed before the error goes on
     struct ct_guard g;
     ct_guard_push(&g);
     if (setjmp(g.env)) {

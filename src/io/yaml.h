@@ -1,7 +1,7 @@
-// YAML text -> a tree of nodes with marks.
+// This folder reads text files: whole files (text.h), CSV tables (sheet.h) and YAML. It checks
+// syntax and limits sizes. The meaning of keys and values belongs to src/component.
 //
-// src/io reads text files: whole files (text.h), CSV tables (sheet.h) and YAML. It checks syntax
-// and bounds sizes; what keys and values mean is for src/component.
+// This header: YAML text -> a tree of nodes with marks.
 //
 //     map   { key (mark) -> node, ... }   in the order of the file
 //     list  [ node, ... ]
@@ -35,32 +35,31 @@ struct ct_node {
     // scalars
     const char *text;
     bool is_plain; // neither quoted nor a block scalar
-    bool
-        is_exact; // character k of the text stands at column mark.column + (is_plain ? 0 : 1) + k
+    bool is_exact; // character k of the text is at column mark.column + (is_plain ? 0 : 1) + k
     // lists and maps
     size_t n;
     const struct ct_node *const *item;
     const struct ct_node_pair *pair;
-    // measures of the tree below, aliases counted as often as they are used
+    // of the subtree; aliases count each time they are used
     size_t height, weight;
 };
 
-/// Read a file: *root in the model arena, NULL if there is no tree. With a key given twice there
-/// is a tree and false is returned: the caller may look for more errors. Marks show a copy of
-/// path. Errors: E002, E101 to E104.
+/// Reads a file: *root in the model arena, NULL if there is no tree. A duplicate key returns
+/// false but still gives a tree, so that the caller can look for more errors. Marks refer to a
+/// copy of path. Errors: E002, E101 to E104.
 bool ct_yaml_read(struct ct_ctx *ctx, const char *path, const struct ct_node **root);
 
-/// The same for n bytes of text; `file` names it in marks.
+/// The same for n bytes of text; `file` is its name in marks.
 bool ct_yaml_parse(struct ct_ctx *ctx, const char *file, const char *text, size_t n,
                    const struct ct_node **root);
 
-/// The pair with this key, or NULL. node may be NULL or no map.
+/// Returns the pair with this key, or NULL. node may be NULL or not a map.
 const struct ct_node_pair *ct_node_find(const struct ct_node *node, const char *key);
-/// The value of this key, or NULL.
+/// Returns the value of this key, or NULL.
 const struct ct_node *ct_node_get(const struct ct_node *node, const char *key);
-/// `~`, `null` or nothing at all.
+/// Is the node `~`, `null` or empty?
 bool ct_node_is_null(const struct ct_node *node);
-/// What a node is, for messages: "a list", "a map", "a text".
+/// Describes a node for messages: "a list", "a map", "a text".
 const char *ct_node_what(const struct ct_node *node);
 
 #endif

@@ -1,4 +1,4 @@
-// States: creation, values, time and steps. See live.h.
+// States of a system: creation, values, time and steps. See live.h.
 #include "live/live.h"
 
 #include "analysis/linearization.h"
@@ -11,14 +11,14 @@
 
 static const struct ct_mark none = {0};
 
-// ---- creation -----------------------------------------------------------------------------------------------
+// ---- creation ------------------------------------------------------------------------------
 
 static const char *keep(struct ct_arena *a, const char *text)
 {
     return text ? ct_arena_strdup(a, text) : NULL;
 }
 
-// Steps of a few stages: those of the owner are short.
+// Chooses a method whose steps have few stages, because the steps of the caller are short.
 static void choose_method(struct ct_data *d)
 {
     const char *model = d->sim.system->model.simulation.method;
@@ -112,7 +112,7 @@ static struct ct_data *make(struct ct_ctx *ctx, struct ct_system *origin,
 struct ct_data *ct_data_create(struct ct_ctx *ctx, const struct ct_system *sys,
                                const struct ct_sim_options *options)
 {
-    union { // copies are made of it, nothing is written
+    union { // removes const: make only copies the system
         const struct ct_system *given;
         struct ct_system *system;
     } u = {sys};
@@ -155,7 +155,8 @@ static bool copy_state(void *task)
     to->is_start = from->is_start;
     to->known = 0;
     to->is_moved = from->is_moved;
-    if (!to->is_moved && to->nrow) { // rows and columns that suit the state
+    // chooses rows and columns of the partitioning for this state
+    if (!to->is_moved && to->nrow) {
         ct_evaluator_set(m, to->t, to->y);
         ct_evaluator_constraint(m);
         if (!ct_partition_choose(ct_run_partition(to->sim.run)))
@@ -167,7 +168,7 @@ static bool copy_state(void *task)
     return true;
 }
 
-// Run work on a state and hand over what is said.
+// Runs work on a state and passes its diagnostics on.
 struct task {
     struct ct_ctx *ctx;
     struct ct_data *d;
@@ -212,7 +213,7 @@ static bool reset(void *task)
         return start(d);
     memcpy(ct_run_evaluator(d->sim.run)->input, before, ninput * sizeof *before);
     ct_evaluator_prepare(ct_run_evaluator(d->sim.run));
-    d->is_moved = true; // the run is not where the state is any more
+    d->is_moved = true; // the state is no longer where the run is
     d->known = 0;
     return false;
 }
@@ -222,7 +223,7 @@ bool ct_data_reset(struct ct_ctx *ctx, struct ct_data *data)
     return ctx && data && enter(ctx, data, reset, data);
 }
 
-// ---- values --------------------------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
 struct setting {
     struct ct_ctx *ctx;
@@ -230,7 +231,7 @@ struct setting {
     enum ct_kind kind;
     const double *value;
     size_t n;
-    const char *name; // of one; NULL: all
+    const char *name; // of one value; NULL: all
 };
 
 static bool take_parameter(struct setting *s, size_t i, double value)
@@ -255,7 +256,7 @@ static bool take_parameter(struct setting *s, size_t i, double value)
     return true;
 }
 
-// Parameters that are derived from others, and are not set themselves.
+// Updates the parameters that are defined by others and not set themselves.
 static bool derive(struct setting *s)
 {
     struct ct_model *m = &s->d->sim.system->model;
@@ -266,13 +267,13 @@ static bool derive(struct setting *s)
     return true;
 }
 
-// Values that parameters had, for when one of them cannot be taken.
+// Sets parameters; restores all of them if one cannot be set.
 static bool set_parameters(struct setting *s, size_t one)
 {
     struct ct_data *d = s->d;
     struct ct_model *m = &d->sim.system->model;
     struct ct_evaluator *machine = ct_run_evaluator(d->sim.run);
-    double *before = machine->input + 1; // parameters as they are
+    double *before = machine->input + 1; // the present parameters
     bool ok = true;
     for (size_t i = 0; ok && i < s->n; i++) {
         const size_t k = ct_item_parameter(m, s->kind, s->name ? one : i);
@@ -378,7 +379,7 @@ double ct_data_time(const struct ct_data *data)
     return data ? data->t : NAN;
 }
 
-// ---- the state where it was put --------------------------------------------------------------------------------
+// ---- moving the run to the state -----------------------------------------------------------
 
 bool ct_data_enter(struct ct_data *d)
 {
@@ -454,9 +455,10 @@ bool ct_data_assemble(struct ct_ctx *ctx, struct ct_data *data)
     return ctx && data && enter(ctx, data, assemble_state, data);
 }
 
-// ---- steps --------------------------------------------------------------------------------------------------------
+// ---- steps ---------------------------------------------------------------------------------
 
-// Rows are closed by projections to ct_position_tolerance of their scale; what is wanted of outputs is more than that.
+// Does the state violate the constraints? Projection satisfies them to ct_position_tolerance,
+// relative to their scale, which is stricter than the accuracy of outputs.
 static bool is_off(struct ct_data *d)
 {
     const struct ct_evaluator *m = ct_run_evaluator(d->sim.run);
@@ -468,7 +470,7 @@ static bool is_off(struct ct_data *d)
              && ct_vector_largest(m->v, m->nrow) <= most);
 }
 
-// Steps begin at a state that was put there, by the caller or by new values of parameters.
+// Moves the run to a state that the caller has set, directly or by new parameters.
 static bool put(struct ct_data *d)
 {
     struct ct_evaluator *m = ct_run_evaluator(d->sim.run);
@@ -512,7 +514,7 @@ static bool step(void *task)
     struct ct_ctx *said;
     double t;
     const bool ok = ct_advance_to(d->advance, d->t, d->t + s->dt, &t, &said);
-    if (!ok) { // as with runs: notes follow the error
+    if (!ok) { // as for runs: notes follow the error
         ct_ctx_hand_over(s->ctx, said);
         t = t > d->t ? t : d->t;
     }

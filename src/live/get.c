@@ -1,4 +1,4 @@
-// What follows from a state, computed when it is asked for. See live.h.
+// Quantities at a state, computed on demand. See live.h.
 #include "live/live.h"
 
 #include "formulate/kinematics/kinematics.h"
@@ -16,7 +16,7 @@ bool ct_data_accelerate(struct ct_data *d)
     if (ct_partition_accelerate_at(r->s, ct_run_time_before_event(r, d->t), d->y) != CT_EVAL_OK)
         return ct_error(&d->sim.own, (struct ct_mark){.file = d->sim.system->model.file},
                         CT_E_SINGULAR, "the accelerations at t = %.9g cannot be found", d->t);
-    // M, Q and J of the machine may be those of before
+    // M, Q and J of the evaluator may belong to an earlier state
     d->known = (d->known & ~(unsigned)CT_KNOWS_MOTION) | CT_KNOWS_ACCELERATION;
     return true;
 }
@@ -45,7 +45,7 @@ bool ct_data_find_outputs(struct ct_data *d)
     return true;
 }
 
-// A program that few ask for.
+// Compiles a program when it is first needed.
 static void compile(struct ct_data *d, const ct_ex *out, size_t n, struct ct_program *p)
 {
     struct ct_evaluator *m = ct_run_evaluator(d->sim.run);
@@ -78,7 +78,7 @@ static void find_motion(struct ct_data *d)
         return;
     ct_data_enter(d);
     ct_evaluator_dynamics(m);
-    for (size_t k = 0; k < d->nu; k++) // symmetric
+    for (size_t k = 0; k < d->nu; k++) // M is symmetric
         memcpy(d->M + d->nu * k, m->M + m->nu * k, d->nu * sizeof *d->M);
     for (size_t i = 0; i < d->nrow; i++)
         for (size_t k = 0; k < d->nu; k++)
@@ -175,18 +175,20 @@ const double *ct_data_get(struct ct_ctx *ctx, struct ct_data *data, enum ct_quan
     return ok ? a.value : NULL;
 }
 
-// ---- single values -------------------------------------------------------------------------------------------
+// ---- single values -------------------------------------------------------------------------
 
 static bool find_silently(void *task)
 {
     struct answer *a = task;
     const bool ok
         = a->quantity == CT_Q_OUTPUTS ? ct_data_find_outputs(a->d) : find_multipliers(a->d);
-    a->d->sim.own.ndiagnostic = a->d->sim.own.nerror = 0; // values tell by themselves: NaN
+    // the caller learns of a failure by NaN
+    a->d->sim.own.ndiagnostic = a->d->sim.own.nerror = 0;
     return ok;
 }
 
-// Results are kept in the state, which is the same before and after.
+// Computes a quantity of a const state. Results are cached in it, which does not change its
+// value.
 static bool know(const struct ct_data *data, enum ct_quantity quantity)
 {
     union {
@@ -223,9 +225,9 @@ double ct_data_value(const struct ct_data *data, enum ct_kind kind, size_t i)
     return NAN;
 }
 
-// ---- frames ------------------------------------------------------------------------------------------------------
+// ---- frames --------------------------------------------------------------------------------
 
-// R, row by row, and p of each frame.
+// Compiles the program for R (row by row) and p of each frame.
 static void compile_frames(struct ct_data *d)
 {
     struct ct_build *b = d->sim.system->equations.build;

@@ -1,9 +1,10 @@
-// Efforts that give accelerations. See live.h.
+// Inverse dynamics: efforts that give prescribed accelerations. See live.h.
 //
 //     M u' = Q + J' lam + S tau,    P S tau = P (M u' - Q),    P = 1 - J^+ J
 //
-// S has a column for each speed that an effort acts along. P takes the multipliers out, so that what is left determines tau alone: in the
-// sense of least squares, and the shortest where several do.
+// S has a column for each speed along which an effort acts. The projector P eliminates the
+// multipliers; the remaining equations are solved for tau by least squares, with least norm if
+// the solution is not unique.
 #include "live/live.h"
 
 #include "numeric/dense.h"
@@ -13,7 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: half of the digits, as accelerations come from elsewhere, as those of a plan or of another program.
+// Derived: the square root of eps, as accelerations may come from a plan or another program and
+// have half the digits.
 static const double met = 1.5e-8;
 
 struct inverse {
@@ -21,7 +23,7 @@ struct inverse {
     struct ct_data *d;
     const double *a;
     double *effort;
-    int *speed; // along which efforts act (n)
+    int *speed; // speeds along which efforts act (n)
     int n;
     double *A, *x, *work;
     int *iwork;
@@ -32,7 +34,7 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-// v (nu) = P v.
+// v (nu) <- P v.
 static void take_out(struct inverse *s, double *v)
 {
     const struct ct_evaluator *m = ct_run_evaluator(s->d->sim.run);
@@ -69,7 +71,7 @@ static bool reserve(struct inverse *s)
     return true;
 }
 
-// Do constraints allow these accelerations?
+// Do the constraints allow these accelerations?
 static bool are_allowed(const struct inverse *s)
 {
     const struct ct_data *d = s->d;

@@ -1,4 +1,4 @@
-// What a system has names for. See live.h.
+// The named items of a system. See live.h.
 #include "live/live.h"
 
 #include "expr/unit.h"
@@ -16,7 +16,8 @@ size_t ct_item_parameter(const struct ct_model *m, enum ct_kind kind, size_t i)
     return m->nparameter;
 }
 
-// Reading the marks asks for no store to change.
+// Has the value of parameter i determined the form of the equations? Reads the marks of all
+// stores of expressions without changing them.
 bool ct_item_has_decided(const struct ct_system *s, size_t i)
 {
     const struct ct_model *m = &s->model;
@@ -60,15 +61,16 @@ size_t ct_system_count(const struct ct_system *sys, enum ct_kind kind)
         return e->nresult;
     case CT_FRAME:
         return sys->model.nframe;
-    case CT_COMPONENT: // ground is no component
+    case CT_COMPONENT: // the ground is not a component
         return sys->model.nbody - 1 + sys->model.njoint + sys->model.nforce;
     }
     return 0;
 }
 
-// ---- values at the start -----------------------------------------------------------------------------------
+// ---- values at the start -------------------------------------------------------------------
 
-// By a state of its own, made when somebody asks; of two threads that do the first one's is kept.
+// Values at the start, from a state that is created when first needed. If two threads create
+// one, that of the first is kept.
 static const double *find_start(const struct ct_system *sys)
 {
     const struct ct_equations *e = &sys->equations;
@@ -98,7 +100,7 @@ static double start_of(const struct ct_system *sys, size_t i)
     return start ? start[i] : NAN;
 }
 
-// ---- items --------------------------------------------------------------------------------------------------
+// ---- items ---------------------------------------------------------------------------------
 
 static void place(struct ct_item *item, struct ct_mark mark)
 {
@@ -106,7 +108,7 @@ static void place(struct ct_item *item, struct ct_mark mark)
     item->column = mark.file ? (size_t)mark.column + 1 : 0;
 }
 
-// Values are in SI units, whatever unit they were given with.
+// SI unit of a value, whatever unit it was given in.
 static const char *si_unit(const char *text)
 {
     struct ct_unit u;
@@ -138,7 +140,7 @@ static bool ends_with(const char *name, const char *end)
     return n >= k && strcmp(name + n - k, end) == 0;
 }
 
-// Of a signal, by its property.
+// Unit of a signal, from its property.
 static const char *unit_of_signal(const struct ct_equations *e, const char *name)
 {
     static const struct {
@@ -241,7 +243,7 @@ static void describe_output(const struct ct_system *sys, size_t i, struct ct_ite
     else if (symbol && symbol->kind == CT_SYM_U && ct_speed_is_state(e, symbol->index))
         item->unit = si_unit(m->state[symbol->index - e->nmotion].unit);
     item->meaning = "output";
-    for (size_t k = 0; k < m->noutput; k++) // a vector's columns begin with its name
+    for (size_t k = 0; k < m->noutput; k++) // the columns of a vector begin with its name
         if (strncmp(m->output[k].name, item->name, strlen(m->output[k].name)) == 0)
             place(item, m->output[k].mark);
 }
@@ -330,7 +332,7 @@ bool ct_system_item(const struct ct_system *sys, enum ct_kind kind, size_t i,
 static const char *name_of(const struct ct_system *sys, enum ct_kind kind, size_t i)
 {
     struct ct_item item;
-    switch (kind) { // these would ask for the start
+    switch (kind) { // kinds whose values need a start
     case CT_COORDINATE:
         return sys->equations.q[i].name;
     case CT_SPEED:

@@ -1,12 +1,14 @@
-// One state of a system, from inside: what its files share.
+// This folder provides a state of a system that the caller sets, queries and steps, as a
+// controller or optimiser does. This header is what its files share.
 //
 //     data.c     creation, values, time, steps
-//     get.c      what follows from the state
-//     inverse.c  efforts for accelerations
-//     item.c     what a system has names for
+//     get.c      quantities at the state
+//     inverse.c  inverse dynamics
+//     item.c     named items of a system
 //
-// What always holds: a state has a copy of the system in which it may derive more, and a run that is kept from step to step; its values of
-// parameters are those of the copy. y is the state as the caller has it; what is computed from it is computed when it is asked for.
+// What always holds: a state has a copy of the system, in which it may derive more, and one run
+// for all its steps. Its parameter values are those of the copy. y is the state as the caller
+// has set it; other quantities are computed on demand.
 #ifndef CT_LIVE_H
 #define CT_LIVE_H
 
@@ -16,7 +18,7 @@
 struct ct_linear;
 
 enum {
-    CT_KNOWS_MOTION = 1,       // M, Q, J, gam of the machine
+    CT_KNOWS_MOTION = 1,       // M, Q, J, gam of the evaluator
     CT_KNOWS_CONSTRAINT = 2,   // phi, v
     CT_KNOWS_ACCELERATION = 4, // u'
     CT_KNOWS_MULTIPLIERS = 8,
@@ -26,20 +28,20 @@ enum {
 };
 
 struct ct_data {
-    struct ct_sim sim;             // its context, its copy of the system, its run
-    struct ct_system *origin;      // whose names are used
-    struct ct_sim_options options; // with strings in the context
+    struct ct_sim sim;             // context, copy of the system and run of the state
+    struct ct_system *origin;      // owner of the names
+    struct ct_sim_options options; // strings are in the context
     struct ct_assembly *assembly;  // NULL: beams start in equilibrium
     struct ct_advance *advance;
     struct ct_linear *linear; // for ct_data_assemble
     size_t nq, nu, nrow,
-        ny; // nu: speeds without the model's states, which stand behind them in y
+        ny; // nu: number of speeds without model states, which follow them in y
     double t, *y;
-    bool *is_own;    // by parameter: it has been set, whatever its definition says
-    bool is_moved;   // the state is not where steps have come to
-    bool is_changed; // values of parameters are others than in the last step
-    bool is_start;   // it is as it was assembled at t = 0
-    unsigned known;  // of what follows from the state
+    bool *is_own;    // by parameter: it has been set and no longer follows its definition
+    bool is_moved;   // the state differs from that of the run
+    bool is_changed; // parameters have changed since the last step
+    bool is_start;   // the state is as assembled at t = 0
+    unsigned known;  // bits of enum: quantities that are up to date
     double *M, *J;   // row by row
     double *value;   // outputs (nresult)
     double energy[5];
@@ -47,20 +49,24 @@ struct ct_data {
     bool has_strain, has_frames;
 };
 
-/// Make the machine's input that of the state, memories and sides of switches included. False with a diagnostic.
+/// Sets the evaluator's input to the state, memories and switches included. False with a
+/// diagnostic.
 bool ct_data_enter(struct ct_data *d);
-/// u' at the state, in the coordinate partitioning and the machine's input. False with a diagnostic.
+/// Computes u' at the state into the coordinate partitioning and the evaluator's input. False
+/// with a diagnostic.
 bool ct_data_accelerate(struct ct_data *d);
-/// phi and v at the state.
+/// Computes phi and v at the state.
 void ct_data_constrain(struct ct_data *d);
 bool ct_data_find_outputs(struct ct_data *d);
 
-/// ct_system_item without the values of coordinates, speeds and outputs, which need a start.
+/// As ct_system_item, but without the values of coordinates, speeds and outputs, which need a
+/// start.
 bool ct_item_describe(const struct ct_system *sys, enum ct_kind kind, size_t i,
                       struct ct_item *item);
-/// Has the value of parameter i of the model decided about the equations?
+/// Has the value of parameter i of the model determined the form of the equations?
 bool ct_item_has_decided(const struct ct_system *sys, size_t i);
-/// Parameters of the model that are inputs, or those that are not, in order: number i of them; nparameter: there is none.
+/// Index of parameter number i among those that are inputs, or among those that are not;
+/// nparameter if it does not exist.
 size_t ct_item_parameter(const struct ct_model *m, enum ct_kind kind, size_t i);
 
 #endif

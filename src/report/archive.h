@@ -1,9 +1,11 @@
-// Named arrays in one file, for other programs: FILE.npz for NumPy, FILE.mat for MATLAB, Octave and SciPy.
+// Named arrays in one file, for other programs: FILE.npz for NumPy, FILE.mat for MATLAB, Octave
+// and SciPy.
 //
 //     numpy.load("file.npz")["A"]        load("file.mat"); A
 //
-// .npz is a ZIP archive with one compressed .npy file for each array; .mat is of version 4. Matrices are column-major
-// in memory and in both files. What always holds: the same arrays give the same bytes.
+// .npz is a ZIP archive with one compressed .npy file for each array; .mat is of version 4.
+// Matrices are column-major in memory and in both files. What always holds: the same arrays
+// give the same bytes.
 #ifndef CT_REPORT_ARCHIVE_H
 #define CT_REPORT_ARCHIVE_H
 
@@ -25,7 +27,7 @@ struct ct_archive {
     bool is_too_long; // for the format
 };
 
-/// An array of n rows and m columns, as a matrix or, of .npz, as a vector.
+/// Shape of an array: n rows and m columns; in .npz it may also be a vector.
 struct ct_archive_shape {
     size_t n, m;
     bool is_vector;
@@ -39,28 +41,31 @@ struct ct_archive_format {
 };
 extern const struct ct_archive_format ct_archive_npz, ct_archive_mat;
 
-/// suffix: CT_SUFFIX_NPZ or CT_SUFFIX_MAT; onto a file that is open.
+/// Begins an archive in an open file. suffix: CT_SUFFIX_NPZ or CT_SUFFIX_MAT.
 void ct_archive_init(struct ct_archive *z, struct ct_arena *a, enum ct_suffix suffix,
                      struct ct_outfile *file);
-/// A (n x m, column-major) under a name.
+/// Writes A (n x m, column-major) under a name.
 void ct_archive_matrix(struct ct_archive *z, const char *name, const double *A, size_t n,
                        size_t m);
-/// A column of n numbers.
+/// Writes a column of n numbers.
 void ct_archive_vector(struct ct_archive *z, const char *name, const double *v, size_t n);
-/// Texts in UTF-8: of .npz an array of strings, of .mat a matrix of characters with a row for each.
+/// Writes n texts in UTF-8: an array of strings in .npz, a matrix of characters with one row
+/// each in .mat.
 void ct_archive_names(struct ct_archive *z, const char *name, const char *const *text,
                       size_t n);
-/// Nothing more is to come; the file stays open. Errors: E002 for what the format has no room for.
+/// Completes the archive; the file stays open. Errors: E002 for contents that exceed the
+/// format.
 bool ct_archive_finish(struct ct_ctx *ctx, struct ct_archive *z);
 
 struct ct_archive_bytes;
-/// A ZIP archive without a format: z has an arena and an open file, all else zero. Files come in the order they are added.
+/// Adds a file to a plain ZIP archive: z has an arena and an open file, all else zero. Files
+/// keep their order.
 void ct_archive_add_file(struct ct_archive *z, const char *name,
                          const struct ct_archive_bytes *content);
-/// The directory; too much for the format: z->is_too_long.
+/// Writes the directory. Sets z->is_too_long if the contents exceed the format.
 void ct_archive_finish_files(struct ct_archive *z);
 
-// ---- for the formats -------------------------------------------------------------------------
+// ---- for the formats -----------------------------------------------------------------------
 
 struct ct_archive_bytes {
     struct ct_arena *arena;
@@ -68,16 +73,16 @@ struct ct_archive_bytes {
     size_t n, cap;
 };
 
-/// The lowest `size` bytes of v, the lowest first.
+/// Appends the lowest `size` bytes of v, lowest first.
 void ct_archive_put(struct ct_archive_bytes *out, uint64_t v, int size);
 void ct_archive_put_text(struct ct_archive_bytes *out, const char *text);
-/// n doubles.
+/// Appends n doubles.
 void ct_archive_put_numbers(struct ct_archive_bytes *out, const double *v, size_t n);
-/// The next code point of UTF-8; what is not well-formed becomes U+FFFD.
+/// Returns the next code point of UTF-8; U+FFFD for invalid bytes.
 uint32_t ct_archive_next_point(const char **text);
-/// Of n texts the largest number of code points, 1 at least.
+/// Largest number of code points of n texts; at least 1.
 size_t ct_archive_longest(const char *const *text, size_t n);
-/// Onto the file.
+/// Writes the bytes to the file.
 void ct_archive_write(struct ct_archive *z, const struct ct_archive_bytes *bytes);
 
 #endif

@@ -10,7 +10,7 @@ enum { LEAST_COORDINATES = 2 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
 
-// ---- symbols ------------------------------------------------------------------------------------
+// ---- symbols -------------------------------------------------------------------------------
 
 static ct_ex symbol(struct ct_exs *x, enum ct_sym_kind kind, const char *name)
 {
@@ -18,7 +18,7 @@ static ct_ex symbol(struct ct_exs *x, enum ct_sym_kind kind, const char *name)
     return ct_ex_sym(x, kind, ct_arena_strdup(x->arena, name), not_a_number);
 }
 
-// An axis along which no coordinate moves the beam has no name.
+// An axis along which no coordinate moves the beam gets no symbol.
 static void name_axes(struct ct_arena *a, struct ct_exs *x, const char *letter,
                       const struct ct_flexible *f, const ct_ex3 *column, ct_ex *row,
                       ct_ex *transposed)
@@ -34,7 +34,7 @@ static void name_axes(struct ct_arena *a, struct ct_exs *x, const char *letter,
     }
 }
 
-// Is V_q all K_f q_f?
+// Is V_q equal to K_f q_f with a constant K_f?
 static bool is_linear(struct ct_exs *x, const struct ct_flexible *f, const ct_ex *q,
                       const ct_ex *zero, const ct_ex *elastic)
 {
@@ -82,7 +82,7 @@ static void name_block(struct ct_arena *a, const struct ct_equations *e,
     s->applied = symbol(x, CT_SYM_LOCAL, ct_arena_printf(a, "Q_%s", f->name));
 }
 
-// The integrals of a beam, the same symbols for all of its coordinates; m_ff apart.
+// The integrals of a beam with the same symbols for all its coordinates, except m_ff.
 static struct ct_inertia *block_inertia(struct ct_arena *a, const struct ct_inertia *parts,
                                         const struct ct_beam_block *s)
 {
@@ -102,7 +102,7 @@ static struct ct_inertia *block_inertia(struct ct_arena *a, const struct ct_iner
     return I;
 }
 
-// ---- parts of an expression ---------------------------------------------------------------------
+// ---- parts of an expression ----------------------------------------------------------------
 
 struct finder {
     struct ct_arena *a;
@@ -141,7 +141,8 @@ static bool find_symbols(const struct ct_exs *x, size_t n, const ct_ex symbol[NS
     return any;
 }
 
-// v = own + rest: own is linear in the symbols of a block. transposed: own as a column.
+// Splits v into own + rest, where own is linear in the symbols of a block. transposed: own
+// becomes a column.
 static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool transposed,
                   ct_ex *own, ct_ex *rest)
 {
@@ -165,7 +166,7 @@ static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool
     *rest = ct_ex_subst_within(x, v, from, to, n);
 }
 
-// ---- rows ---------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 static size_t add_row(struct finder *f, const char *label, int beam, int coordinate, ct_ex left)
 {
@@ -189,9 +190,10 @@ static void add_left(struct finder *f, int row, ct_ex coef, ct_ex of)
     CT_PUSH(f->a, r->left, r->nleft, r->left_cap, t);
 }
 
-// A coordinate that moves the frame of its own beam, as the rotation of its start where the frame is the chord: M[k][l] has
-// c_k m_l + m_k c_l for coordinates k and l of a beam, c_k the motion of the frame. With the same symbol for m_k and m_l
-// half the derivative of M[k][k] is c_k.
+// Treats a coordinate that moves the frame of its own beam, as the rotation at the start of a
+// beam whose frame is the chord. For coordinates k and l of the beam, M[k][l] contains c_k m_l
+// + m_k c_l, where c_k is the motion of the frame. With the same symbol for m_k and m_l, half
+// the derivative of M[k][k] by it is c_k.
 static void add_own_motion(struct finder *f, size_t k, ct_ex v)
 {
     struct ct_exs *x = f->e->x;
@@ -203,7 +205,7 @@ static void add_own_motion(struct finder *f, size_t k, ct_ex v)
     add_left(f, f->row[k], ct_ex_scale(x, 0.5, row), s->acceleration);
 }
 
-// M[i][j] u_j'' on the left side of row i.
+// Adds M[i][j] u_j' to the left side of row i.
 static void add_entry(struct finder *f, size_t i, size_t j, ct_ex v)
 {
     const struct ct_beam_block *row = f->beam[i] < 0 ? NULL : &f->out->block[f->beam[i]],
@@ -225,7 +227,8 @@ static void add_entry(struct finder *f, size_t i, size_t j, ct_ex v)
     add_left(f, f->row[i], rest, u);
 }
 
-// Rows in the order of speeds; a block stands where its first coordinate would, the lines of all below it.
+// Orders the rows by speeds. A block takes the place of its first coordinate; the lines of all
+// its coordinates come below it.
 static void lay_out(struct finder *f)
 {
     struct ct_equations *e = f->e;
@@ -274,7 +277,7 @@ static void add_forces(struct finder *f, const struct ct_named_dynamics *named)
     }
 }
 
-// Accelerations on a line below a block move to its right side; a line on which nothing stands goes.
+// On the lines below a block, moves accelerations to the right side. Removes empty lines.
 static void close_lines(struct finder *f)
 {
     struct ct_block_row *row = f->out->row, *block = NULL;
@@ -303,7 +306,7 @@ static void close_lines(struct finder *f)
     f->out->n = kept;
 }
 
-// ---- for reading --------------------------------------------------------------------------------
+// ---- for reading ---------------------------------------------------------------------------
 
 // What is collected and shared, term by term.
 struct list {

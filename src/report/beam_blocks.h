@@ -1,12 +1,15 @@
-// Equations of motion with the elastic coordinates of a beam as one vector, as liang2017 prints them (4.11).
+// Equations of motion with the elastic coordinates of each beam as one vector, in the form of
+// liang2017 (4.11).
 //
 //     rod.x:  m*rod.x'' - ... + (m_rf_rod.x*cos(a) - m_rf_rod.y*sin(a))*q_rod'' = ...
-//     q_rod:  m_rf_rod.x'*(rod.x''*cos(a) + ...) + m_thetaf_rod.z'*a'' + m_ff_rod*q_rod'' = Q_vf_rod - V_q_rod + Q_rod
+//     q_rod:  m_rf_rod.x'*(rod.x''*cos(a) + ...) + m_thetaf_rod.z'*a'' + m_ff_rod*q_rod''
+//             = Q_vf_rod - V_q_rod + Q_rod
 //             Q_rod.2.u = sin(a)*lambda(guide.across)
 //
-// q_rod is a column, m_rf_rod.x the row of what beam_parts.h calls m_rf_rod.1.u.x and so on. Q_rod is what joints, loads
-// and bodies farther out do along each coordinate; what is not listed is zero.
-// What always holds: with the entries of beam_parts.h put in, row k of q_rod is the equation of coordinate k.
+// q_rod is a column; m_rf_rod.x is the row whose entries beam_parts.h calls m_rf_rod.1.u.x and
+// so on. Q_rod contains the generalised forces of joints, loads and outboard bodies; entries
+// that are not listed are zero. What always holds: after substitution of the entries, row k of
+// q_rod is the equation of coordinate k.
 #ifndef CT_REPORT_BEAM_BLOCKS_H
 #define CT_REPORT_BEAM_BLOCKS_H
 
@@ -14,13 +17,13 @@
 
 /// Vectors and matrices of one beam, as symbols.
 struct ct_beam_block {
-    const struct ct_flexible *f;  // NULL: its coordinates stand one by one
+    const struct ct_flexible *f;  // NULL: its coordinates are listed one by one
     ct_ex moved[3], swept[3];     // rows m_rf, m_thetaf by axis of the beam
     ct_ex moved_t[3], swept_t[3]; // their transposes
     ct_ex acceleration;           // q''
     ct_ex inertia;                // m_ff*q''
     ct_ex velocity, elastic;      // Q_vf; V_q, or K_f*q where that is linear
-    ct_ex applied;                // Q, zero where nothing acts
+    ct_ex applied;                // Q; zero if no force acts
 };
 
 /// A coefficient times an acceleration or a multiplier.
@@ -30,10 +33,10 @@ struct ct_block_term {
 
 /// An equation: sum of left terms = right + sum of right terms.
 struct ct_block_row {
-    const char *label; // NULL: one of the lines below a block
-    ct_ex symbol;      // its left side then
-    int beam;          // of a block and of the lines below it; -1: of none
-    int coordinate;    // of such a line: number among those of the beam; -1: of none
+    const char *label; // NULL: a line below a block
+    ct_ex symbol;      // its left side in that case
+    int beam;          // beam of a block and of the lines below it; -1: none
+    int coordinate;    // of such a line: index among the coordinates of the beam; -1: none
     struct ct_block_term *left, *right_term;
     size_t nleft, left_cap, nright, right_cap;
     ct_ex right;
@@ -47,11 +50,11 @@ struct ct_beam_blocks {
     struct ct_definitions definitions;
 };
 
-/// With blocks for the beams whose parts are known. false: none has any.
+/// Derives the equations with blocks for the beams whose parts are known. False: there is none.
 bool ct_beam_blocks_derive(struct ct_arena *a, struct ct_equations *e,
                            const struct ct_beam_parts *parts, struct ct_reduced *r,
                            struct ct_beam_blocks *out);
-/// Sides of an equation.
+/// Left and right side of an equation.
 ct_ex ct_block_left(struct ct_exs *x, const struct ct_block_row *r);
 ct_ex ct_block_right(struct ct_exs *x, const struct ct_block_row *r);
 

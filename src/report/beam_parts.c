@@ -48,8 +48,8 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
     return make(a, x, p, value, name);
 }
 
-// In space, where there are several beams, an angular velocity has a name however short it is: beams on one body then
-// differ by their names alone.
+// In space, where there are several beams, an angular velocity has a name however short it is:
+// beams on one body then differ by their names alone.
 static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
                             ct_ex value, const char *name, bool always)
 {
@@ -99,7 +99,8 @@ static void name_rigid(struct ct_arena *a, struct ct_build *b, const struct ct_f
     }
 }
 
-// Forces with u' = 0: quadratic velocity ones, elastic ones, those of the motion relative to the frame.
+// Forces with u' = 0: quadratic velocity ones, elastic ones, those of the motion relative to
+// the frame.
 static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_flexible *f,
                         struct ct_beam_parts *p, struct ct_named_inertia *out)
 {
@@ -243,7 +244,8 @@ void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_lo
 {
     const size_t n = e->build->nflexible;
     *p = (struct ct_beam_parts){.inertia = CT_NEWN(a, struct ct_inertia *, n + 1)};
-    // terms of higher order in `small` coordinates are left out by derivatives, for which names are constants
+    // terms of higher order in `small` coordinates are left out by derivatives, for which names
+    // are constants
     for (size_t i = 0; i < n && !ct_small_motion_is_wanted(e->build); i++)
         ct_beam_parts_add(a, e, i, which, p);
 }

@@ -10,8 +10,8 @@
 //     om_rod.x            angular velocity of the frame in its own axes, in which forces and torques stand
 //     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f where that is linear (4.11)
 //
-// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation with its parts put in is the
-// equation without them, up to round-off.
+// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation
+// with its parts put in is the equation without them, up to round-off.
 #ifndef CT_REPORT_BEAM_PARTS_H
 #define CT_REPORT_BEAM_PARTS_H
 
@@ -29,34 +29,36 @@ struct ct_beam_parts {
         *inertia; // by beam: its integrals by name, NULL where it has none; NULL: not wanted
 };
 
-/// What is too long to be written without names of its own.
+/// Whether to include parts that are too long to print without definitions.
 enum ct_long_parts { CT_LONG_PARTS_NONE, CT_LONG_PARTS_TOO };
 
-/// Of all beams; those of more than 12 elastic coordinates or of sections that vary have none. Nodes live in e->x, lists
-/// in a.
+/// Derives the parts of all beams, except those with more than 12 elastic coordinates or with
+/// varying sections. Nodes live in e->x, lists in a.
 void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_long_parts which,
                           struct ct_beam_parts *p);
-/// Adds those of one beam, number i; false: it has none.
+/// Adds the parts of beam number i; false if it has none.
 bool ct_beam_parts_add(struct ct_arena *a, struct ct_equations *e, size_t i,
                        enum ct_long_parts which, struct ct_beam_parts *p);
-/// Has a beam parts, if they are not too long?
+/// Does a beam have parts that are not too long?
 bool ct_beam_parts_exist(const struct ct_equations *e);
-/// Are definitions too long to be written without names of their own?
+/// Are definitions too long to print without further definitions?
 bool ct_beam_parts_are_long(const struct ct_exs *x, const struct ct_definitions *list);
-/// The name of a node; itself where it has none.
+/// The name of a node; the node itself if it has no name.
 ct_ex ct_beam_parts_name(const struct ct_beam_parts *p, ct_ex node);
 
-/// Mass matrix (lower triangle), forces and efforts of drivers of branches with integrals of beams by name.
+/// Mass matrix (lower triangle), forces, and efforts of drivers of branches, with the integrals
+/// of beams by name.
 struct ct_named_dynamics {
     struct ct_entry *M;
     size_t nM;
     ct_ex *Q;      // nu
     ct_ex *effort; // ndriver
 };
-/// Derives them again from the kinematics of e; inertia: by beam, NULL for that of the engine.
+/// Derives them from the kinematics of e; inertia: by beam, NULL for the engine's own
+/// integrals.
 void ct_named_dynamics_derive(struct ct_arena *a, const struct ct_equations *e,
                               struct ct_inertia *const *inertia, struct ct_named_dynamics *out);
-/// Of n elastic coordinates, all zero.
+/// Creates integrals for n elastic coordinates, all zero.
 struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n);
 
 #endif

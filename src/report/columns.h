@@ -1,5 +1,5 @@
-// Tables, column by column, written whole: CSV, as FILE.json an object of columns, as FILE.npz or FILE.mat an array for
-// each.
+// Tables, column by column, written whole: CSV, as FILE.json an object of columns, as FILE.npz
+// or FILE.mat an array for each.
 #ifndef CT_REPORT_COLUMNS_H
 #define CT_REPORT_COLUMNS_H
 
@@ -28,9 +28,11 @@ size_t ct_columns_add(struct ct_columns *t, const char *name, enum ct_column_kin
 /// Append to a column. Not finite, and NULL: an empty field, null in JSON.
 void ct_columns_number(struct ct_columns *t, size_t column, double value);
 void ct_columns_text(struct ct_columns *t, size_t column, const char *text);
-/// path NULL or "-": CSV on standard output. All columns have the same length. Errors: E002, E006, E007.
+/// path NULL or "-": CSV on standard output. All columns have the same length. Errors: E002,
+/// E006, E007.
 bool ct_columns_write(struct ct_ctx *ctx, const struct ct_columns *t, const char *path);
-/// All of the table onto a file that is open and stays so; suffix: none of those of CSV. Errors: E002.
+/// All of the table onto a file that is open and stays so; suffix: none of those of CSV.
+/// Errors: E002.
 bool ct_columns_put(struct ct_ctx *ctx, const struct ct_columns *t, enum ct_suffix suffix,
                     struct ct_outfile *file);
 

@@ -3,8 +3,9 @@
 //     t,crank.q,"atan2(y, x)"         header: quoted where a comma, quote or line end asks for it
 //     0,0.5,1.25                      numbers: fewest digits that read back to the same bits
 //
-// What always holds: each row has as many fields as the header (asserted); what has reached the system ends with a
-// whole row; the file appears under its name only when it is complete (outfile.h).
+// What always holds: each row has as many fields as the header (asserted); what has reached the
+// system ends with a whole row; the file appears under its name only when it is complete
+// (outfile.h).
 #ifndef CT_REPORT_CSV_H
 #define CT_REPORT_CSV_H
 
@@ -21,25 +22,26 @@ struct ct_csv {
     size_t n, cap;
 };
 
-/// Open path (NULL: standard output) and write the header. Errors: E002, E006.
+/// Opens path (NULL: standard output) and writes the header. Errors: E002, E006.
 bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path, enum ct_suffix suffix,
                  const char *const *column, size_t ncolumn);
 
-/// One row of numbers, value (ncolumn). Errors: E002.
+/// Writes one row of numbers, value (ncolumn). Errors: E002.
 bool ct_csv_row(struct ct_ctx *ctx, struct ct_csv *w, const double *value);
 
-/// A row field by field: numbers and texts ("" for an empty field), then the end.
+/// Writes a row field by field, numbers and texts ("" for an empty field), and its end.
 void ct_csv_number(struct ct_csv *w, double value);
 void ct_csv_text(struct ct_csv *w, const char *text);
 bool ct_csv_end_row(struct ct_ctx *ctx, struct ct_csv *w);
 
-/// Rows so far have reached the system, but for what compression keeps. Errors: E002.
+/// Passes the rows so far to the system, except those that the compressor holds. Errors: E002.
 bool ct_csv_flush(struct ct_ctx *ctx, struct ct_csv *w);
 
-/// Complete the file under its own name. Errors: E002.
+/// Completes the file under its own name. Errors: E002.
 bool ct_csv_close(struct ct_ctx *ctx, struct ct_csv *w);
 
-/// Give up: the rows so far stay in PATH.partial. Accepts all zeros and a closed writer.
+/// Closes the file unfinished: the rows so far stay in PATH.partial. Accepts all zeros and a
+/// closed writer.
 void ct_csv_abandon(struct ct_csv *w);
 
 #endif

@@ -82,7 +82,7 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     return d->e->nrow == 1 ? "\\lambda" : ct_arena_printf(a, "\\lambda_{%u}", s->index + 1);
 }
 
-// ---- the order of parameters ------------------------------------------------------------------------
+// ---- the order of parameters ---------------------------------------------------------------
 
 // Masses and inertias stand before lengths, gravity last: m*g*l reads m*l*g.
 static int *rank_parameters(struct ct_derivation *d)
@@ -236,7 +236,7 @@ void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
                          ct_derivation_text(d, list->at[i].value), NULL);
 }
 
-// ---- inertia ------------------------------------------------------------------------------------------
+// ---- inertia -------------------------------------------------------------------------------
 
 const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body)
 {

@@ -1,4 +1,4 @@
-// What the stages of the derivation share while they fill a page: names and texts in the page's look.
+// Names and texts that the stages of the derivation share, in the look of the page.
 #ifndef CT_REPORT_DERIVATION_H
 #define CT_REPORT_DERIVATION_H
 
@@ -6,8 +6,9 @@
 #include "report/page.h"
 #include "report/reduced.h"
 
-/// Systems of more speeds are shown in recursive form, and in lists of their first and last few unless all is asked
-/// for: a mass matrix of as many columns as a line has characters is not read.
+/// Systems of more speeds than this are printed in recursive form, with lists shortened to
+/// their first and last entries unless all is requested. A larger mass matrix has more columns
+/// than a line has characters.
 enum { CT_MOST_MATRIX_SPEEDS = CT_PAGE_WIDTH };
 
 struct ct_derivation {
@@ -25,7 +26,8 @@ struct ct_derivation {
 void ct_derivation_init(struct ct_derivation *d, struct ct_arena *a, struct ct_equations *e,
                         const struct ct_model *m, enum ct_look look);
 
-/// A text that grows at its end, at a cost of what is added. Starts all zero.
+/// A text that grows at its end at a cost proportional to the added text. Initialise with
+/// zeros.
 struct ct_growing_text {
     char *at; // ends with a zero, which n does not count; NULL while nothing was added
     size_t n, cap;
@@ -51,37 +53,38 @@ const char *ct_derivation_vector(struct ct_derivation *d, ct_ex3 v);
 /// A direction: x, -y, or [a, b, c].
 const char *ct_derivation_axis(struct ct_derivation *d, ct_ex3 n);
 
-/// Lines that v takes, about.
+/// Approximate number of lines of v.
 size_t ct_derivation_lines(struct ct_derivation *d, ct_ex v);
-/// Under a heading; nothing if there are none.
+/// Prints definitions under a heading; nothing if there are none.
 void ct_derivation_put_definitions(struct ct_derivation *d, const char *heading,
                                    const struct ct_definitions *list);
 
-/// Inertia less weight, m*(a(C) - g) and I*al + w x I*w of a body that is no beam; NULL where they are zero. The
-/// body's through variables are their negatives.
+/// Inertia minus weight, m*(a(C) - g), and I*al + w x I*w, of a body that is not a beam; NULL
+/// if zero. The through variables of the body are their negatives.
 const char *ct_derivation_inertia_force(struct ct_derivation *d, const struct ct_body *body);
 const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct ct_body *body);
 
-/// Is mathematics of the page LaTeX, which HTML takes too?
+/// Is mathematics of the page in LaTeX? HTML uses it too.
 static inline bool ct_derivation_is_latex(const struct ct_derivation *d)
 {
     return d->page.look != CT_LOOK_TEXT;
 }
 
-/// The reduced equations as a reader wants them: collected, or with names where they are long.
+/// Prepares the reduced equations for reading: collected, or with definitions if they are long.
 void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r);
 
-/// The same with the elastic coordinates of each beam as one vector; r: constraints and efforts. false: equations are
-/// short without that, or no beam has named parts.
+/// The same with the elastic coordinates of each beam as one vector; r: constraints and
+/// efforts. False: equations are short without this, or no beam has named parts.
 struct ct_beam_blocks;
 bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
                           struct ct_beam_blocks *s);
 
-/// The mass matrix and the Jacobian of the constraints; of more than a page it is said how large they are.
+/// Prints the mass matrix and the Jacobian of the constraints; if they are larger than a page,
+/// only their sizes.
 void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r);
 
-/// Circuits with the terminal equations put in: places of the bodies that are chords, and constraint rows, by their
-/// definitions where they are long.
+/// Circuit equations after substitution of the terminal equations: positions of the bodies that
+/// are chords, and constraint rows. Long ones are given by their definitions.
 struct ct_substituted {
     int *edge;  // of the bodies: chords of translation
     ct_ex3 *at; // centres of mass in ground axes [m]
@@ -91,10 +94,11 @@ struct ct_substituted {
 };
 void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
 
-/// F(own) + F(...) - ..., zero, for row i of a cutset matrix (rows: its transpose), that of the branch `own`.
+/// The cutset equation F(own) + F(...) - ... of branch `own`; row i of a cutset matrix (rows:
+/// its transpose).
 const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
                                  int i, int own, const char *letter);
-/// What d or S of a chord is, from the branches on the way from its tail to its head.
+/// d or S of a chord as a sum over the branches from its tail to its head.
 const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
                                   bool of_rotation);
 
@@ -105,7 +109,7 @@ void ct_stage_cutset(struct ct_derivation *d);
 void ct_stage_circuit(struct ct_derivation *d);
 void ct_stage_reduced(struct ct_derivation *d);
 
-/// The formats for programs.
+/// Prints the formats for programs.
 void ct_derivation_print_json(FILE *out, struct ct_derivation *d, unsigned stages);
 void ct_derivation_print_c(FILE *out, struct ct_derivation *d);
 

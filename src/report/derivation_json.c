@@ -1,7 +1,7 @@
 // The derivation for programs.
 //
-// Rows and columns count from 0; M holds its lower triangle. Expressions are in the grammar of model
-// files with speeds as J.u and accelerations as J.a; definitions use earlier ones only.
+// Rows and columns count from 0; M holds its lower triangle. Expressions are in the grammar of
+// model files with speeds as J.u and accelerations as J.a; definitions use earlier ones only.
 #include "report/stage_beam.h"
 
 #include "formulate/build.h"
@@ -22,7 +22,7 @@ static const char *text(struct writer *w, ct_ex v)
     return ct_derivation_text_as(w->d, v, &plain);
 }
 
-// ---- topology -----------------------------------------------------------------------------------
+// ---- topology ------------------------------------------------------------------------------
 
 // Coordinates of an element by the names of its dofs; those that are fixed are left out.
 static void put_element(struct writer *w, const struct ct_flexible *f, int k)
@@ -39,7 +39,8 @@ static void put_element(struct writer *w, const struct ct_flexible *f, int k)
     ct_json_end(&w->j);
 }
 
-// The element as a function of its dofs, xi and h; s: its stretch. Energy is not there where sections vary.
+// The element as a function of its dofs, xi and h; s: its stretch. Energy is not there where
+// sections vary.
 static void put_function(struct writer *w, const struct ct_flexible *f)
 {
     struct ct_beam_element e;
@@ -262,7 +263,7 @@ static void put_topology(struct writer *w, bool cutsets)
     ct_json_end(&w->j);
 }
 
-// ---- the reduced equations --------------------------------------------------------------------------
+// ---- the reduced equations -----------------------------------------------------------------
 
 static void put_matrix(struct writer *w, const char *key, const struct ct_entry *entry,
                        const ct_ex *value, size_t n)

@@ -8,10 +8,10 @@
 //     ct_json_numbers(j, "q", q, 2);                  "q": [0.5, 1]
 //     ct_json_end(j);                             }
 //
-// Every function that starts a value takes its key first: a name in an object, NULL in an array and
-// at the top. What always holds: the output is valid JSON in UTF-8 whatever the strings contain;
-// numbers have the fewest digits that read back, and what is not finite is null. To write to memory instead of a file, pass
-// what open_memstream gives.
+// Every function that starts a value takes its key first: a name in an object, NULL in an array
+// and at the top. What always holds: the output is valid JSON in UTF-8 whatever the strings
+// contain; numbers have the fewest digits that read back, and what is not finite is null. To
+// write to memory instead of a file, pass what open_memstream gives.
 #ifndef CT_REPORT_JSON_H
 #define CT_REPORT_JSON_H
 

@@ -6,8 +6,8 @@ struct labels {
     enum ct_level level;
 };
 
-// Of -e the label, with a sign, stands at e: in the recursive form alone (share.h takes it off again), as elsewhere
-// the same text without its sign belongs to someone else.
+// Of -e the label, with a sign, stands at e: in the recursive form alone (share.h takes it off
+// again), as elsewhere the same text without its sign belongs to someone else.
 static void label(const struct labels *l, ct_ex e, const char *letter, const char *name,
                   const char *part)
 {
@@ -38,8 +38,8 @@ static void label33(const struct labels *l, const ct_ex33 *A, const char *letter
         label(l, A->e[i], letter, name, part[i]);
 }
 
-// The first node that turns with each cluster, its own body's frame if there is one; and the first at
-// each anchor.
+// The first node that turns with each cluster, its own body's frame if there is one; and the
+// first at each anchor.
 static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
 {
     for (size_t i = 0; i < b->topology->nnode; i++) {
@@ -57,8 +57,8 @@ static bool is_same(ct_ex3 a, ct_ex3 b)
         && ct_ex_same(a.e[2], b.e[2]);
 }
 
-// Anchors where nodes are that are placed from the anchor before: the last of these nodes, which is the frame that
-// goes on from there.
+// Anchors where nodes are that are placed from the anchor before: the last of these nodes,
+// which is the frame that goes on from there.
 static void name_ends_of_links(struct ct_build *b, const char **anchor)
 {
     const struct ct_kinematics *k = b->kinematics;

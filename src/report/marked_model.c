@@ -1,6 +1,7 @@
-// See marked_model.h. Marked are masses, inertias, places of points, section and material of beams, what joints and
-// forces are given by expressions, and gravity; not directions, whose effect shows in the coordinates about or
-// along them, and not initial values, which are in no equation.
+// See marked_model.h. Marked are masses, inertias, places of points, section and material of
+// beams, what joints and forces are given by expressions, and gravity; not directions, whose
+// effect shows in the coordinates about or along them, and not initial values, which are in no
+// equation.
 #include "report/marked_model.h"
 
 #include "base/sort.h"
@@ -24,7 +25,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 
 #define COPY(a, p, n) ((p) = copy((a), (p), (n), sizeof *(p)))
 
-// ---- origins ------------------------------------------------------------------------------------
+// ---- origins -------------------------------------------------------------------------------
 
 // An origin while the list is sorted. at: where its number is to be written.
 struct entry {
@@ -124,7 +125,7 @@ static void add_parameters(struct marker *k)
     }
 }
 
-// ---- marks --------------------------------------------------------------------------------------
+// ---- marks ---------------------------------------------------------------------------------
 
 static ct_ex times(const struct marker *k, uint32_t origin, ct_ex v)
 {

@@ -2,7 +2,8 @@
 //
 //     crank: {mass: m1, com: [r/2, 0, 0]}     mass m1*mark(crank), com [r/2*mark(crank), 0, 0]
 //
-// Marks are parameters of value 1, so that the equations of the marked model are those of the model.
+// Marks are parameters of value 1, so that the equations of the marked model are those of the
+// model.
 #ifndef CT_REPORT_MARKED_MODEL_H
 #define CT_REPORT_MARKED_MODEL_H
 
@@ -23,7 +24,8 @@ struct ct_marked_model {
     uint32_t *of_body, *of_frame, *of_joint, *of_parameter;
 };
 
-/// model with expressions in x, a store that has all of those of the model; x grows. Everything lives in a.
+/// model with expressions in x, a store that has all of those of the model; x grows. Everything
+/// lives in a.
 void ct_marked_model_create(struct ct_arena *a, const struct ct_model *model, struct ct_exs *x,
                             struct ct_marked_model *out);
 

@@ -1,8 +1,8 @@
 // FILE.mat, version 4, little-endian; see archive.h.
 //
-// Each array: type, rows, columns, 0, length of the name with its NUL (32 bits each), the name, the numbers by columns.
-// Names of variables are letters, digits and underscores: other characters become underscores, and a number is put
-// behind what is there already.
+// Each array: type, rows, columns, 0, length of the name with its NUL (32 bits each), the name,
+// the numbers by columns. Names of variables are letters, digits and underscores: other
+// characters become underscores, and a number is put behind what is there already.
 // Source: MathWorks, MAT-File Format, "Version 4 MAT-File Format".
 #include "report/archive.h"
 

@@ -1,7 +1,8 @@
 // Mathematics as presentation MathML Core; see mathml.h.
 //
-// LaTeX is read item by item: a nucleus (a letter, a number, a command with its groups, a pair of delimiters with what
-// they hold) and its scripts. An item becomes one element, a command with a sign of its own an operator.
+// LaTeX is read item by item: a nucleus (a letter, a number, a command with its groups, a pair
+// of delimiters with what they hold) and its scripts. An item becomes one element, a command
+// with a sign of its own an operator.
 #include "report/mathml.h"
 
 #include "base/entry.h"
@@ -29,7 +30,7 @@ const char ct_mathml_style[]
       ".matrix mtr:first-child > mtd.name { border-bottom: 1px solid }\n"
       ".matrix mtd.name:first-child { border-right: 1px solid }\n";
 
-// ---- text -------------------------------------------------------------------------------------
+// ---- text ----------------------------------------------------------------------------------
 
 // Bytes of the character of UTF-8 at s, at most n, and its code; 0: no valid one.
 static size_t decode(const char *s, size_t n, uint32_t *code)
@@ -87,7 +88,7 @@ void ct_html_text(FILE *out, const char *s, size_t n)
         i += put_character(out, s + i, n - i);
 }
 
-// ---- reading ------------------------------------------------------------------------------------
+// ---- reading -------------------------------------------------------------------------------
 
 // A piece of LaTeX.
 struct span {
@@ -154,7 +155,8 @@ static bool starts(const char *s, const char *end, const char *word)
     return (size_t)(end - s) >= n && !memcmp(s, word, n);
 }
 
-// Behind what `open` opens at s and `close` closes, both commands, at the same depth; *inner ends before that.
+// Behind what `open` opens at s and `close` closes, both commands, at the same depth; *inner
+// ends before that.
 static const char *skip_pair(const char *s, const char *end, const char *open,
                              const char *close, const char **inner)
 {
@@ -236,7 +238,7 @@ static struct item read_item(const char *s, const char *end)
     return it;
 }
 
-// ---- leaves -----------------------------------------------------------------------------------
+// ---- leaves --------------------------------------------------------------------------------
 
 static const struct sign {
     const char *name, *text;
@@ -330,7 +332,7 @@ static void put_vector(FILE *out, struct span t)
     fputs("</mi>", out);
 }
 
-// ---- commands ---------------------------------------------------------------------------------
+// ---- commands ------------------------------------------------------------------------------
 
 static void put_delimiter(FILE *out, char c, const char *form, bool is_tall)
 {
@@ -455,7 +457,7 @@ static void put_command(FILE *out, struct span t)
         put_words(out, (struct span){name, name + n});
 }
 
-// ---- rows -------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 // A sign is that of a number or of the first term where nothing stands before it.
 static void put_operator(FILE *out, char c, bool is_first)
@@ -565,10 +567,11 @@ void ct_mathml_inline(FILE *out, const char *latex)
     fputs("</math>", out);
 }
 
-// ---- terms ------------------------------------------------------------------------------------
+// ---- terms ---------------------------------------------------------------------------------
 
-// Widths in LaTeX at 10 pt [pt], so 10 are 1 em. A phone is 390 px wide, 22 em within margins of 1 em: what is wider
-// than a line there, its indent off, may be broken; a piece of half that is long enough to end behind a factor.
+// Widths in LaTeX at 10 pt [pt], so 10 are 1 em. A phone is 390 px wide, 22 em within margins
+// of 1 em: what is wider than a line there, its indent off, may be broken; a piece of half that
+// is long enough to end behind a factor.
 // Layout: as above
 enum { PHONE_LINE = 180, LONG_PIECE = PHONE_LINE / 2 };
 
@@ -748,7 +751,7 @@ void ct_mathml_equation(FILE *out, const struct ct_mathml_equation *e)
     fputs("</math>\n", out);
 }
 
-// ---- matrices ---------------------------------------------------------------------------------
+// ---- matrices ------------------------------------------------------------------------------
 
 void ct_mathml_matrix(FILE *out, const char *const *cell, size_t nrow, size_t ncolumn,
                       bool has_names)

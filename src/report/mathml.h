@@ -1,21 +1,22 @@
 // Mathematics as presentation MathML Core, for pages in HTML.
 //
-// There is one notation, that of LaTeX (expr/print.h, ct_derivation_text and its neighbours for a page of
-// CT_LOOK_HTML or CT_LOOK_LATEX); this module translates it:
+// There is one notation, that of LaTeX (expr/print.h, ct_derivation_text and its neighbours for
+// a page of CT_LOOK_HTML or CT_LOOK_LATEX); this module translates it:
 //
 //     \frac{m \, l^{2}}{3} \, \ddot{\theta}     ->     <mfrac>...</mfrac> <mover><mi>θ</mi><mo>¨</mo></mover>
 //
-// An equation is one element, its sides are rows of terms that wrap, and each term says which components it
-// comes from:
+// An equation is one element, its sides are rows of terms that wrap, and each term says which
+// components it comes from:
 //
 //     <math data-equation="main.u" class="equation">
 //       <mrow class="side"> <mrow class="term" data-component="crank rod"> ... </mrow> ... </mrow>
 //       <mrow class="right"> <mo>=</mo> <mrow class="side"> <mrow class="term" ...> ... </mrow> ... </mrow> </mrow>
 //     </math>
 //
-// What always holds: what is written is well-formed as XML in UTF-8. Text of a model is escaped; characters
-// that XML does not allow, invalid UTF-8, and those that change the direction of text become U+FFFD. Layout is left to
-// ct_mathml_style; a page without it is readable.
+// What always holds: what is written is well-formed as XML in UTF-8. Text of a model is
+// escaped; characters that XML does not allow, invalid UTF-8, and those that change the
+// direction of text become U+FFFD. Layout is left to ct_mathml_style; a page without it is
+// readable.
 #ifndef CT_REPORT_MATHML_H
 #define CT_REPORT_MATHML_H
 
@@ -56,8 +57,8 @@ struct ct_mathml_equation {
 /// left = right, or left alone.
 void ct_mathml_equation(FILE *out, const struct ct_mathml_equation *e);
 
-/// nrow x ncolumn cells of mathematics, row by row; has_names: the first row and the first column are names. "." is an
-/// entry that is zero, "" one that stays blank.
+/// nrow x ncolumn cells of mathematics, row by row; has_names: the first row and the first
+/// column are names. "." is an entry that is zero, "" one that stays blank.
 void ct_mathml_matrix(FILE *out, const char *const *cell, size_t nrow, size_t ncolumn,
                       bool has_names);
 

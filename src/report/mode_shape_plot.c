@@ -1,4 +1,5 @@
-// See mode_shape_plot.h. Lengths in the file are tenths of a pixel, whole numbers: the same text in every locale.
+// See mode_shape_plot.h. Lengths in the file are tenths of a pixel, whole numbers: the same
+// text in every locale.
 #include "report/mode_shape_plot.h"
 
 #include "report/outfile.h"

@@ -4,9 +4,10 @@
 
 #include <string.h>
 
-// ---- .npy ---------------------------------------------------------------------------------------------
+// ---- .npy ----------------------------------------------------------------------------------
 
-// Magic, version, length of the header, the header: a Python dictionary, padded to a multiple of 64.
+// Magic, version, length of the header, the header: a Python dictionary, padded to a multiple
+// of 64.
 static void put_header(struct ct_archive_bytes *out, const char *type, const char *shape)
 {
     // Definition: of NPY files

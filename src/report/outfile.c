@@ -23,7 +23,7 @@ static const char *written_path(const struct ct_outfile *o)
     return o->partial ? o->partial : o->path;
 }
 
-// ---- the partial file ------------------------------------------------------------------------
+// ---- the partial file ----------------------------------------------------------------------
 
 enum grip { HELD, LOST, REFUSED };
 
@@ -113,7 +113,7 @@ bool ct_outfile_reopen(struct ct_ctx *ctx, struct ct_outfile *o, const char *pat
     return open_file(ctx, o, path, true);
 }
 
-// ---- writing and the end ---------------------------------------------------------------------
+// ---- writing and the end -------------------------------------------------------------------
 
 bool ct_outfile_flush(struct ct_ctx *ctx, struct ct_outfile *o)
 {

@@ -3,10 +3,11 @@
 //     open: FILE.partial  -- writing -->  FILE.partial  -- close -->  FILE
 //                                               `-- abandon, crash -->  FILE.partial stays
 //
-// What always holds: until close has succeeded FILE is what it was before; FILE.partial is written by one process at a
-// time (it is locked), is never a link, and has reached the disk before it becomes FILE. Only a file that is not a
-// regular one, such as /dev/null, is written to directly. Where a file system has no locks the last of two writers
-// that begin at the same time wins.
+// What always holds: until close has succeeded FILE is what it was before; FILE.partial is
+// written by one process at a time (it is locked), is never a link, and has reached the disk
+// before it becomes FILE. Only a file that is not a regular one, such as /dev/null, is written
+// to directly. Where a file system has no locks the last of two writers that begin at the same
+// time wins.
 #ifndef CT_REPORT_OUTFILE_H
 #define CT_REPORT_OUTFILE_H
 
@@ -18,23 +19,25 @@ struct ct_outfile {
     const char *partial; // where it is written; NULL: straight to path
 };
 
-/// Open path for writing; NULL means standard output. Strings live in ctx->model.
-/// Errors: E002; E006 where another one is writing it.
+/// Opens path for writing; NULL is standard output. Strings live in ctx->model. Errors: E002;
+/// E006 if another process is writing it.
 bool ct_outfile_open(struct ct_ctx *ctx, struct ct_outfile *o, const char *path);
 
-/// The same with what is in the partial file of an earlier writer, for reading and writing, at its start.
+/// Opens the partial file of an earlier writer with its contents, for reading and writing from
+/// its start.
 bool ct_outfile_reopen(struct ct_ctx *ctx, struct ct_outfile *o, const char *path);
 
-/// Everything written so far has reached the system. Errors: E002.
+/// Passes everything written so far to the system. Errors: E002.
 bool ct_outfile_flush(struct ct_ctx *ctx, struct ct_outfile *o);
 
-/// Finish and move to the final name; on failure the partial file stays. Errors: E002.
+/// Completes the file and gives it its final name. On failure the partial file stays. Errors:
+/// E002.
 bool ct_outfile_close(struct ct_ctx *ctx, struct ct_outfile *o);
 
-/// Give up: the partial file stays. Accepts all zeros and a closed file.
+/// Closes the file unfinished; the partial file stays. Accepts all zeros and a closed file.
 void ct_outfile_abandon(struct ct_outfile *o);
 
-/// Give up, where half a file is of no use: the partial file goes, too.
+/// Closes the file unfinished and deletes the partial file.
 void ct_outfile_discard(struct ct_outfile *o);
 
 #endif

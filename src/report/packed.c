@@ -52,7 +52,8 @@ static int32_t multiple_of(double v, double low, double step)
     return (int32_t)lround(fmin(fmax(k, 0), MOST));
 }
 
-// Second differences of a column as 0, -1, 1, -2 ... -> 0, 1, 2, 3 ..., byte k of number i at plane[k size + i].
+// Second differences of a column as 0, -1, 1, -2 ... -> 0, 1, 2, 3 ..., byte k of number i at
+// plane[k size + i].
 static void put_column(unsigned char *plane, size_t size, const double *value, size_t nrow,
                        size_t ncolumn, double low, double step)
 {

@@ -1,19 +1,21 @@
-// Samples packed as text: what the page of a report carries.
+// Samples packed as text, for the page of a report.
 //
 //     numbers -> multiples k of a step -> second differences -> bytes, plane by plane -> deflate -> base64
 //
-// Columns of samples are smooth, so that second differences are small: most of their bytes are zero. A step is
-// 2^-24 of a column's range, which is far less than a screen or four digits show.
+// Columns of samples are smooth, so that second differences are small: most of their bytes are
+// zero. A step is 2^-24 of a column's range, which is far less than a screen or four digits
+// show.
 //
-// What always holds: the same numbers give the same bytes; unpacked numbers differ by half a step of their column at
-// most; what is not finite comes back as NaN. web/packed.js reads them.
+// What always holds: the same numbers give the same bytes; unpacked numbers differ by half a
+// step of their column at most; what is not finite comes back as NaN. web/packed.js reads them.
 #ifndef CT_REPORT_PACKED_H
 #define CT_REPORT_PACKED_H
 
 #include "base/arena.h"
 #include "report/json.h"
 
-/// A table of nrow rows and ncolumn columns, a row after the other, as the member `key` of an object that is open:
+/// A table of nrow rows and ncolumn columns, a row after the other, as the member `key` of an
+/// object that is open:
 ///
 ///     {"count": nrow, "columns": ncolumn, "low": [...], "step": [...], "data": "base64"}
 ///
@@ -21,12 +23,12 @@
 size_t ct_pack_write(struct ct_json *j, struct ct_arena *a, const char *key,
                      const double *value, size_t nrow, size_t ncolumn);
 
-/// The same where less than resolution[c] of column c is of no use: a step is no shorter. NULL: 0.
+/// The same with a step not smaller than resolution[c] in column c. NULL: 0.
 size_t ct_pack_write_rounded(struct ct_json *j, struct ct_arena *a, const char *key,
                              const double *value, size_t nrow, size_t ncolumn,
                              const double *resolution);
 
-/// n bytes as base64 (RFC 4648), in arena a.
+/// Encodes n bytes in base64 (RFC 4648), in arena a.
 char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n);
 
 #endif

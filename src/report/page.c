@@ -80,9 +80,10 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
     return &b->equation[b->nequation - 1];
 }
 
-// ---- summaries --------------------------------------------------------------------------------
+// ---- summaries -----------------------------------------------------------------------------
 
-// Layout: lines at each end of a list: two points of a chain in a plane, one in space with its rotation.
+// Layout: lines at each end of a list: two points of a chain in a plane, one in space with its
+// rotation.
 enum { FEW = 4 };
 
 static bool is_list(size_t n)

@@ -1,10 +1,9 @@
 // A page of headings, sentences, tables and equations, and its three looks: text, LaTeX, HTML.
 //
-// Who fills a page writes mathematics in the style of the look it is for (expr/print.h knows the
-// styles; HTML takes LaTeX, which mathml.h translates) and says where mathematics stands; the look adds layout, line
-// breaks and quoting.
-// What always holds: equations break between terms only; a line of text is at most CT_PAGE_WIDTH
-// columns unless a single term is wider.
+// Who fills a page writes mathematics in the style of the look it is for (expr/print.h knows
+// the styles; HTML takes LaTeX, which mathml.h translates) and says where mathematics stands;
+// the look adds layout, line breaks and quoting. What always holds: equations break between
+// terms only; a line of text is at most CT_PAGE_WIDTH columns unless a single term is wider.
 #ifndef CT_REPORT_PAGE_H
 #define CT_REPORT_PAGE_H
 
@@ -14,8 +13,8 @@
 enum { CT_PAGE_WIDTH = 100 };
 /// Layout: lines of a screen: beyond, subexpressions get names, and summaries leave equations out.
 enum { CT_MOST_LINES = 30 };
-/// Width of a line of mathematics in HTML on a phone of 390 px [pt] in LaTeX of 10 pt, which is 1 em: 24 em of 16 px
-/// less margins of 1 em.
+/// Width of a line of mathematics in HTML on a phone of 390 px [pt] in LaTeX of 10 pt, which is
+/// 1 em: 24 em of 16 px less margins of 1 em.
 /// Layout: of a page
 enum { CT_PAGE_PHONE = 220 };
 
@@ -36,7 +35,8 @@ struct ct_page_equation {
     const char *note;         // plain words after it; NULL: none
     const char *about;        // the component whose terminal equation it is; NULL: none
     const char *name;         // of the speed or row that it belongs to; NULL: none
-    // the components of each term, in their order on the page: names separated by blanks; NULL: not known
+    // the components of each term, in their order on the page: names separated by blanks; NULL:
+    // not known
     const char *const *left_components, *const *right_components;
 };
 
@@ -77,18 +77,19 @@ void ct_page_row(struct ct_page *p, const char *const *cell, size_t n);
 #define CT_PAGE_ROW(p, ...)                                                                    \
     ct_page_row((p), (const char *const[]){__VA_ARGS__},                                       \
                 COUNT(((const char *const[]){__VA_ARGS__})))
-/// Starts a matrix of ncolumn columns, that of the names of its rows included; cells follow as of a table.
+/// Starts a matrix of ncolumn columns, that of the names of its rows included; cells follow as
+/// of a table.
 void ct_page_matrix(struct ct_page *p, size_t ncolumn);
 /// Ends it: takes it off the page again and returns false where it is wider or longer than a page.
 bool ct_page_matrix_end(struct ct_page *p);
 /// Starts a group of equations.
 void ct_page_equations(struct ct_page *p);
-/// What a page shows of number i of n things of a list: if it is a summary, of long lists the first and last few, and
-/// where the others begin a sign that there are more.
+/// What a page shows of number i of n things of a list: if it is a summary, of long lists the
+/// first and last few, and where the others begin a sign that there are more.
 enum ct_shown { CT_SHOWN, CT_SHOWN_AS_MORE, CT_LEFT_OUT };
 enum ct_shown ct_page_shown(const struct ct_page *p, size_t i, size_t n);
-/// The same for all tables and groups of equations that are on the page, which say how many were left out, and for
-/// sides of equations that fill more than a screen.
+/// The same for all tables and groups of equations that are on the page, which say how many
+/// were left out, and for sides of equations that fill more than a screen.
 void ct_page_shorten(struct ct_page *p);
 /// Adds one, and returns it for what else is known of it.
 struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
@@ -103,12 +104,13 @@ bool ct_page_latex_fits(const struct ct_page_block *b);
 size_t ct_text_width(const char *s);
 
 void ct_page_print_text(FILE *out, const struct ct_page *p);
-/// A fragment for a document that uses amsmath and longtable; lines are as wide as those of article at 10 pt.
+/// A fragment for a document that uses amsmath and longtable; lines are as wide as those of
+/// article at 10 pt.
 void ct_page_print_latex(FILE *out, const struct ct_page *p);
 /// A whole document without scripts; mathematics is MathML.
 void ct_page_print_html(FILE *out, const struct ct_page *p, const char *title);
-/// Its blocks without what is around them; they need ct_page_style and ct_mathml_style. Titles are headings of level
-/// `level`, 1 to 5, headings one below. Writes into p->arena.
+/// Its blocks without what is around them; they need ct_page_style and ct_mathml_style. Titles
+/// are headings of level `level`, 1 to 5, headings one below. Writes into p->arena.
 void ct_page_print_html_blocks(FILE *out, const struct ct_page *p, int level);
 extern const char ct_page_style[];
 

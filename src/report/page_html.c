@@ -7,7 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
-// What browsers would say: readable in print, in the dark, at 390 px; only tables and matrices scroll, and on their own.
+// What browsers would say: readable in print, in the dark, at 390 px; only tables and matrices
+// scroll, and on their own.
 const char ct_page_style[]
     // what is wider than its place scrolls, with a shadow at the end where there is more
     = ".table, .matrix, div.wide, pre.wide { overflow-x: auto; "
@@ -41,7 +42,7 @@ static void put_text(FILE *out, const char *s)
     ct_html_text(out, s, SIZE_MAX);
 }
 
-// ---- equations --------------------------------------------------------------------------------
+// ---- equations -----------------------------------------------------------------------------
 
 static struct ct_mathml_side split_terms(struct ct_arena *a, const char *s,
                                          const char *const *components)
@@ -87,7 +88,8 @@ static void put_equation(FILE *out, struct ct_arena *a, const struct ct_page_equ
     fputs(e->label ? "</div>\n" : "", out);
 }
 
-// Signs of equality stand in a column where left sides leave room for the right ones, a third of a phone's line.
+// Signs of equality stand in a column where left sides leave room for the right ones, a third
+// of a phone's line.
 static bool is_aligned(const struct ct_page_block *b)
 {
     for (size_t i = 0; i < b->nequation; i++) {
@@ -108,7 +110,7 @@ static void put_equations(FILE *out, struct ct_arena *a, const struct ct_page_bl
     fputs("</div>\n", out);
 }
 
-// ---- tables and matrices ------------------------------------------------------------------------
+// ---- tables and matrices -------------------------------------------------------------------
 
 // Columns that hold more than a name or a number wrap.
 static bool *find_words(struct ct_arena *a, const struct ct_page_block *b, size_t n)
@@ -143,7 +145,7 @@ static void put_table(FILE *out, struct ct_arena *a, const struct ct_page_block 
     fputs("</table></div>\n", out);
 }
 
-// ---- blocks -----------------------------------------------------------------------------------
+// ---- blocks --------------------------------------------------------------------------------
 
 static void put_heading(FILE *out, const struct ct_page_block *b, int level)
 {

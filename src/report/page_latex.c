@@ -1,7 +1,8 @@
 // Pages as LaTeX; see page.h.
 //
-// Widths are estimated (ct_latex_width), so that lines end where a margin would be passed. Groups of equations are
-// align*, which may go on on the next page; columns of tables that are too wide become paragraphs.
+// Widths are estimated (ct_latex_width), so that lines end where a margin would be passed.
+// Groups of equations are align*, which may go on on the next page; columns of tables that are
+// too wide become paragraphs.
 #include "report/page.h"
 
 #include "expr/print.h"
@@ -9,7 +10,7 @@
 #include <ctype.h>
 #include <string.h>
 
-// ---- words ------------------------------------------------------------------------------------
+// ---- words ---------------------------------------------------------------------------------
 
 // may_break: a line may end behind the dots and underscores of a name.
 static void put_characters(FILE *out, const char *s, size_t n, bool may_break)
@@ -53,9 +54,10 @@ static size_t words_width(const char *s)
     return width;
 }
 
-// ---- equations --------------------------------------------------------------------------------
+// ---- equations -----------------------------------------------------------------------------
 
-// What lines are indented by: \quad, and again where they go on; the room an estimate may be wrong by.
+// What lines are indented by: \quad, and again where they go on; the room an estimate may be
+// wrong by.
 // Layout: of a page
 enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
@@ -92,7 +94,8 @@ struct line {
     size_t *nline;       // of the environment
 };
 
-// Lines of an environment: TeX holds all of it in memory. Within an equation it may be longer, so that most end behind one.
+// Lines of an environment: TeX holds all of it in memory. Within an equation it may be longer,
+// so that most end behind one.
 // Layout: of a page
 enum { MOST_LINES = 60, MOST_LINES_WITHIN = 200 };
 
@@ -112,8 +115,8 @@ static bool is_over(const struct line *l, size_t width)
     return l->column + width + SLACK > l->room && l->column > l->indent;
 }
 
-// A delimiter cannot be open at the end of a line: invisible ones close and open the `depth` that are. A sign
-// after the empty group is that of a sum.
+// A delimiter cannot be open at the end of a line: invisible ones close and open the `depth`
+// that are. A sign after the empty group is that of a sum.
 static void end_line(struct line *l, int depth)
 {
     for (int i = 0; i < depth; i++)
@@ -294,7 +297,7 @@ static void put_equations(FILE *out, const struct ct_page_block *b)
     fputs("\n\\end{align*}\n", out);
 }
 
-// ---- tables -----------------------------------------------------------------------------------
+// ---- tables --------------------------------------------------------------------------------
 
 static bool is_math(const struct ct_page_block *b, size_t cell)
 {
@@ -305,7 +308,8 @@ static bool is_math(const struct ct_page_block *b, size_t cell)
 // Layout: of a page
 enum { SEPARATION = 12 }; // between columns [pt]
 
-// The widest part of a cell that cannot be broken [pt]: a formula, or what stands between blanks, dots and underscores.
+// The widest part of a cell that cannot be broken [pt]: a formula, or what stands between
+// blanks, dots and underscores.
 static size_t unbroken_width(const struct ct_page_block *b, size_t cell, struct ct_arena *a)
 {
     const char *s = b->cell[cell];
@@ -323,8 +327,9 @@ static size_t unbroken_width(const struct ct_page_block *b, size_t cell, struct 
     return widest;
 }
 
-// Widths of the columns where the table is wider than a line, else zeros: each has room for what cannot be broken, and
-// they share the rest by what they lack. Returns whether even that is too wide.
+// Widths of the columns where the table is wider than a line, else zeros: each has room for
+// what cannot be broken, and they share the rest by what they lack. Returns whether even that
+// is too wide.
 static bool share_line(const struct ct_page_block *b, struct ct_arena *a, size_t *width)
 {
     const size_t n = strlen(b->align), line = LINE - SLACK - SEPARATION * n;
@@ -376,7 +381,7 @@ static void put_table(FILE *out, const struct ct_page_block *b, struct ct_arena 
     fputs("\\end{longtable}}\n", out);
 }
 
-// ---- matrices ---------------------------------------------------------------------------------
+// ---- matrices ------------------------------------------------------------------------------
 
 // Layout: of a page
 enum { COLUMN_GAP = 6, MOST_ROWS = 45 };
@@ -421,7 +426,7 @@ static void put_matrix(FILE *out, const struct ct_page_block *b)
     fputs("    \\end{array}\n\\]}\n", out);
 }
 
-// ---- pages ------------------------------------------------------------------------------------
+// ---- pages ---------------------------------------------------------------------------------
 
 void ct_page_print_latex(FILE *out, const struct ct_page *p)
 {

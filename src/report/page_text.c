@@ -4,7 +4,7 @@
 #include <ctype.h>
 #include <string.h>
 
-// ---- lines ------------------------------------------------------------------------------------
+// ---- lines ---------------------------------------------------------------------------------
 
 static void put_indent(FILE *out, size_t n)
 {
@@ -37,8 +37,9 @@ static void put_words(FILE *out, const char *s, size_t indent)
     fputs("\n", out);
 }
 
-// Where to break s so that at most `room` characters stay before: at the sign of a sum or the comma of a list
-// with the fewest open brackets, the last of those; then before a factor; 0 if nowhere.
+// Where to break s so that at most `room` characters stay before: at the sign of a sum or the
+// comma of a list with the fewest open brackets, the last of those; then before a factor; 0 if
+// nowhere.
 static size_t break_place(const char *s, size_t room)
 {
     size_t best = 0;
@@ -88,7 +89,7 @@ static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
     fputs(s, out);
 }
 
-// ---- blocks -----------------------------------------------------------------------------------
+// ---- blocks --------------------------------------------------------------------------------
 
 static void put_note(FILE *out, const char *note)
 {
@@ -223,7 +224,7 @@ static void put_row(FILE *out, const struct ct_page_block *b, size_t row, const 
     fputs("\n", out);
 }
 
-// ---- matrices ---------------------------------------------------------------------------------
+// ---- matrices ------------------------------------------------------------------------------
 
 static size_t column_width(const struct ct_page_block *b, size_t column)
 {
@@ -265,7 +266,7 @@ static void put_matrix(FILE *out, struct ct_arena *a, const struct ct_page_block
     }
 }
 
-// ---- tables -----------------------------------------------------------------------------------
+// ---- tables --------------------------------------------------------------------------------
 
 static void put_table(FILE *out, struct ct_arena *a, const struct ct_page_block *b)
 {

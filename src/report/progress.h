@@ -2,8 +2,8 @@
 //
 //     simulate [##########..........]  50 %
 //
-// What always holds: nothing is written unless the stream is a terminal and something has changed, so
-// an update costs nothing worth counting and logs stay clean.
+// What always holds: nothing is written unless the stream is a terminal and something has
+// changed, so an update costs nothing worth counting and logs stay clean.
 #ifndef CT_REPORT_PROGRESS_H
 #define CT_REPORT_PROGRESS_H
 
@@ -19,9 +19,9 @@ struct ct_progress {
 
 /// out is stderr except in tests.
 void ct_progress_init(struct ct_progress *p, FILE *out, const char *label);
-/// Show the fraction done, 0 to 1; others are clipped, NaN is ignored.
+/// Shows the fraction done, 0 to 1; other values are clipped, NaN is ignored.
 void ct_progress_update(struct ct_progress *p, double fraction);
-/// Erase the bar. Accepts all zeros.
+/// Erases the bar. Accepts all zeros.
 void ct_progress_finish(struct ct_progress *p);
 
 #endif

@@ -15,12 +15,12 @@
 #include <math.h>
 #include <string.h>
 
-// Beyond this many operators and operands a side is not multiplied out: where it is written by definitions, bodies
-// that are tidied have fewer than 1000 (reduced.c).
-// Limit: of the time to expand; beyond, a side has no table of terms
+// Above this number of operators and operands a side is not expanded. If a side uses
+// definitions, collected definitions have fewer than 1000 (reduced.c).
+// Limit: of the time to expand; beyond it a side has no table of terms.
 static const double longest = 20000;
 
-// ---- sets of origins ----------------------------------------------------------------------------
+// ---- sets of origins -----------------------------------------------------------------------
 
 // Each set has a number; 0 is the empty one.
 struct sets {
@@ -95,7 +95,7 @@ static uint32_t unite(struct sets *s, uint32_t a, uint32_t b)
     return intern(s);
 }
 
-// ---- the marked equations -----------------------------------------------------------------------
+// ---- the marked equations ------------------------------------------------------------------
 
 struct finder {
     struct ct_derivation *d;
@@ -118,7 +118,7 @@ struct finder {
     uint32_t *with; // by origin: one that is named with it, the body of a frame; itself: none
 };
 
-// The same equations from the marked model, on the same trees.
+// Derives the same equations from the marked model on the same trees.
 static struct ct_build *derive_marked(struct finder *f)
 {
     const struct ct_build *like = f->d->e->build;
@@ -228,7 +228,7 @@ static void take_marked(struct finder *f, struct ct_build *b)
     f->x = b->x;
 }
 
-// ---- marks of nodes -----------------------------------------------------------------------------
+// ---- marks of nodes ------------------------------------------------------------------------
 
 static ct_ex label_of(struct finder *f, uint32_t set)
 {
@@ -250,7 +250,8 @@ static ct_ex with_label(struct finder *f, ct_ex e, uint32_t set)
     return set ? ct_ex_mul(f->x, e, label_of(f, set)) : e;
 }
 
-// Products and sums are multiplied out; whatever else is in a denominator or a function has its marks outside.
+// Products and sums are multiplied out; whatever else is in a denominator or a function has its
+// marks outside.
 static ct_ex labelled(struct finder *f, uint32_t id, const struct ct_exnode *n)
 {
     struct ct_exs *x = f->x;
@@ -286,7 +287,7 @@ static uint32_t *origin_of_symbols(struct finder *f)
     return origin;
 }
 
-// ---- definitions --------------------------------------------------------------------------------
+// ---- definitions ---------------------------------------------------------------------------
 
 // A definition by the values of what it names.
 struct named {
@@ -326,9 +327,10 @@ static double value_of(const struct finder *f, uint32_t id, int point)
                        narg > 2 ? f->value[n.c][point] : 0);
 }
 
-// Sums of some hundred products differ by that much of their size where they are written in another order; that two
-// different expressions agree as well at two points is not to be expected.
-// Derived: n eps, n of some hundred, of products of some factors
+// Two values are equal if their relative difference is below this. Sums of some hundred
+// products in a different order differ by less; different expressions are not expected to agree
+// at two points.
+// Derived: n eps, n of some hundred, of products of some factors.
 static const double same_value = 1e-10;
 
 static bool is_same(double a, double b)
@@ -357,7 +359,8 @@ static ct_ex definition_with(struct finder *f, const struct named *list, size_t 
     return CT_EX_ZERO;
 }
 
-// Definitions of nodes that the marked equations have but for marks, by node; the others by value, in *out.
+// Definitions of nodes that the marked equations have but for marks, by node; the others by
+// value, in *out.
 static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struct named **out)
 {
     const struct ct_definitions *list = &f->r->definitions;
@@ -429,7 +432,7 @@ static void mark_nodes(struct finder *f)
     }
 }
 
-// ---- origins of terms ---------------------------------------------------------------------------
+// ---- origins of terms ----------------------------------------------------------------------
 
 // A side of an equation: what is printed, and what of the marked equations is the same.
 struct side {
@@ -441,7 +444,8 @@ struct side {
     uint32_t set; // of all its marks
 };
 
-// An expression of f->x in a store of its own, so that work on it does not depend on the size of that one.
+// An expression of f->x in a store of its own, so that work on it does not depend on the size
+// of that one.
 struct small {
     struct ct_exs x;
     struct ct_exs *from;
@@ -487,7 +491,8 @@ static size_t copy_quaternions(struct finder *f, struct small *s, struct ct_aren
     return n;
 }
 
-// Marks of an acceleration's or multiplier's coefficient where a term is such a product; of the whole side otherwise.
+// Marks of an acceleration's or multiplier's coefficient where a term is such a product; of the
+// whole side otherwise.
 static uint32_t marks_of_coefficient(const struct finder *f, const struct side *side,
                                      ct_ex term)
 {
@@ -573,7 +578,7 @@ static void match(struct finder *f, const struct side *side, const ct_ex *term, 
     ct_arena_destroy(a);
 }
 
-// ---- sides --------------------------------------------------------------------------------------
+// ---- sides ---------------------------------------------------------------------------------
 
 static ct_ex expression_of(struct ct_equations *e, const struct ct_reduced *r,
                            enum ct_equation_kind kind, size_t i, bool is_right)
@@ -655,7 +660,7 @@ static void find_full(struct finder *f)
         p->term[i].full = full[i];
 }
 
-// ---- symbols ------------------------------------------------------------------------------------
+// ---- symbols -------------------------------------------------------------------------------
 
 static void name_symbol(uint32_t *of, const struct ct_exs *x, ct_ex symbol, uint32_t origin)
 {
@@ -672,7 +677,8 @@ static uint32_t owner_of_edge(const struct finder *f, int edge, bool *is_known)
                                    : 0;
 }
 
-// By symbol of the equations: the component whose coordinate, speed or multiplier it is, or the parameter; plus one.
+// By symbol of the equations: the component whose coordinate, speed or multiplier it is, or the
+// parameter; plus one.
 static uint32_t *owners_of_symbols(const struct finder *f)
 {
     const struct ct_equations *e = f->d->e;
@@ -737,7 +743,7 @@ static void find_bodies_of_frames(struct finder *f)
         f->with[f->marked.of_frame[i]] = f->marked.of_body[m->frame[i].body];
 }
 
-// ---- the entry ----------------------------------------------------------------------------------
+// ---- the entry -----------------------------------------------------------------------------
 
 static bool has(const struct sets *s, uint32_t set, uint32_t origin)
 {
@@ -827,7 +833,8 @@ static void find_marks(struct finder *f, struct side *side, size_t nside, uint32
     }
 }
 
-// Outputs that are reactions or accelerations, collected as the equations are; others have no terms to list. NULL: none.
+// Outputs that are reactions or accelerations, collected as the equations are; others have no
+// terms to list. NULL: none.
 static ct_ex *list_outputs(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const unsigned wanted = 1u << CT_SYM_A | 1u << CT_SYM_LAM;

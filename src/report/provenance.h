@@ -2,18 +2,20 @@
 //
 //     (r^2*(m1/4 + m2 + m3) + J1)*main.q''     crank, crank.pin, rod, slider, main; r, m1, J1, m2, m3
 //
-// A term names a component if its value depends on the data of that component (masses, places, stiffnesses,
-// pitches, efforts ...) or shows one of its coordinates or multipliers. Directions of axes count with the
-// coordinates that they belong to.
+// A term names a component if its value depends on the data of that component (masses, places,
+// stiffnesses, pitches, efforts ...) or shows one of its coordinates or multipliers. Directions
+// of axes count with the coordinates that they belong to.
 //
-// Method: the equations are derived once more, on the same trees, from a model in which every number of a
-// component is multiplied by a symbol of that component, its mark, whose value is 1. Marks are carried through the
-// derivation like any parameter. A term that was simplified and collected is expanded, as is the marked equation,
-// and each monomial of the term has the marks that this monomial has in the marked equation; where terms merge
-// these are united. Nothing of this is done unless it is asked for.
+// Method: the equations are derived once more, on the same trees, from a model in which every
+// number of a component is multiplied by a symbol of that component, its mark, whose value is
+// 1. Marks are carried through the derivation like any parameter. A term that was simplified
+// and collected is expanded, as is the marked equation, and each monomial of the term has the
+// marks that this monomial has in the marked equation; where terms merge these are united.
+// Nothing of this is done unless it is asked for.
 //
-// What always holds: the terms of a side sum to that side of the equation; a component that a term depends on is
-// in its list. Where a sum is too long to be expanded the list may be longer than needed.
+// What always holds: the terms of a side sum to that side of the equation; a component that a
+// term depends on is in its list. Where a sum is too long to be expanded the list may be longer
+// than needed.
 #ifndef CT_REPORT_PROVENANCE_H
 #define CT_REPORT_PROVENANCE_H
 

@@ -8,9 +8,9 @@
 
 #include <stdint.h>
 
-// Beyond this many nodes of an expanded expression nobody reads it as a formula of its own, and
-// collecting takes seconds.
-// Limit: of the time to collect; beyond, expressions stay as they are
+// Above this number of nodes an expanded expression is not collected: it is too long to read,
+// and collecting takes seconds.
+// Limit: of the time to collect; beyond it expressions stay as they are.
 static const double largest_collected = 20000;
 
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most)
@@ -133,7 +133,8 @@ static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
     return size;
 }
 
-// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and gears do on it.
+// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and
+// gears do on it.
 static void find_efforts(struct ct_equations *e, ct_ex *effort)
 {
     struct ct_build *b = e->build;
@@ -202,7 +203,7 @@ void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_redu
     ct_reduced_share(a, e, r);
 }
 
-// ---- sharing ----------------------------------------------------------------------------------
+// ---- sharing -------------------------------------------------------------------------------
 
 // All expressions one after the other; where = NULL: only their number.
 static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r, ct_ex **where)
@@ -325,7 +326,7 @@ void ct_reduced_collect_all(struct ct_arena *a, struct ct_equations *e, struct c
     r->is_collected = ct_reduced_collect(a, e, where, n);
 }
 
-// ---- equations --------------------------------------------------------------------------------
+// ---- equations -----------------------------------------------------------------------------
 
 // M is symmetric and holds its lower triangle.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i)

@@ -1,14 +1,17 @@
-// The reduced equations prepared for reading: collected where that pays, shared where it must be.
+// Prepares the reduced equations for reading: collects short expressions and introduces
+// definitions for repeated ones.
 //
 //     matrix form      sum over j of M[i][j] u'[j]  =  Q[i] + sum over r of J[r][i] lam[r]
 //     recursive form   cutset[i]  =  effort[i]
 //
-// The recursive form has the cutset of each branch projected on its motion, with all accelerations and multipliers in
-// it, as the full sweep of the dynamics makes it (formulation 5.3). Its definitions are the recursion: accelerations
-// from ground outwards, forces and torques from the leaves inwards. Their number grows as that of the bodies, where M
-// has entries for all pairs of speeds along a chain.
+// In the recursive form the cutset of each branch is projected on its motion and contains all
+// accelerations and multipliers (formulation 5.3). Its definitions are the recursion:
+// accelerations from the ground outwards, forces and torques from the leaves inwards. The
+// number of definitions grows linearly with the number of bodies, while M has entries for all
+// pairs of speeds along a chain.
 //
-// What always holds: each expression equals its namesake in struct ct_equations up to round-off.
+// What always holds: each expression equals the member of the same name in struct ct_equations
+// up to round-off.
 #ifndef CT_REPORT_REDUCED_H
 #define CT_REPORT_REDUCED_H
 
@@ -39,38 +42,39 @@ struct ct_reduced {
     bool is_collected;
     struct ct_definitions definitions; // none if everything is short
     size_t npart;                      // of these, the first: parts of beams (beam_parts.h)
-    double size; // of the whole print in characters, about; known once there are definitions
+    double size; // approximate size of the print in characters; set with the definitions
 };
 
-/// The recursive form with its definitions.
+/// Derives the recursive form with its definitions.
 void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
-/// The matrix form: collect if allowed and the system is small enough. No definitions yet.
+/// Derives the matrix form; collects it if allowed and the system is small enough. Without
+/// definitions.
 void ct_reduced_prepare(struct ct_arena *a, struct ct_equations *e, bool may_collect,
                         struct ct_reduced *r);
-/// Collects what it holds (ct_reduced_collect).
+/// Collects all its expressions (ct_reduced_collect).
 void ct_reduced_collect_all(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
-/// A force collected, as Q is: what is there at rest stays apart from what the speeds add.
+/// Collects a force such as Q: terms at rest stay apart from terms of the speeds.
 ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v);
-/// Collects n expressions in place, forces and others, if they are small enough together and no rotation is a
-/// quaternion: that would be multiplied out. false: they stay.
+/// Collects n expressions in place. False, without a change, if they are too large together or
+/// a rotation is a quaternion, which would be expanded.
 bool ct_reduced_collect(struct ct_arena *a, struct ct_equations *e, ct_ex *const *where,
                         size_t n);
 
-/// Names for what is written more than once: the expressions then use the symbols of definitions.
+/// Introduces definitions for repeated subexpressions; the expressions then use their symbols.
 void ct_reduced_share(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r);
 
-/// The same for n expressions, which are replaced in place; size: of the whole print in characters, about.
-/// names_first: what has a name by meaning is defined wherever it is used twice.
+/// The same for n expressions, replaced in place. size: approximate size of the print in
+/// characters. names_first: a labelled expression gets a definition wherever it is used twice.
 struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equations *e,
                                           ct_ex *const *where, size_t n, bool names_first,
                                           double *size);
 
-/// Operators and operands that a full print of e shows, counted up to `most`. Cost O(most).
+/// Number of operators and operands in a full print of e, counted up to `most`. Cost O(most).
 double ct_reduced_size(const struct ct_exs *x, ct_ex e, double most);
 
-/// Left and right side of the equation of speed i; of row r: J u' and -gam.
+/// Left and right side of the equation of speed i; of constraint row r: J u' and -gam.
 ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row);
@@ -83,8 +87,9 @@ ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, si
 ///     d_pin.x, v_pin.x, a_pin.x   vector from the previous joint to pin; its rates with all u' = 0
 ///     F_pin.x, T_rod.x        force and torque that the branch must supply, with all u' = 0
 ///
-/// At CT_FULL these are those of the recursive form, with the symbols u'. There a is less gravity, and F is the force
-/// that all outboard of pin needs beyond m*a. What is lumped has names, too:
+/// At CT_FULL these are those of the recursive form, with the symbols u'. There a is less
+/// gravity, and F is the force that all outboard of pin needs beyond m*a. What is lumped has
+/// names, too:
 ///
 ///     m_pin, h_rod.x, I_rod.zz    mass outboard of pin; first moment and inertia of rod with what hangs on it
 void ct_reduced_label(struct ct_equations *e, enum ct_level level);

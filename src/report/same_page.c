@@ -1,5 +1,6 @@
-// See same_page.h. Mathematics is read by the grammar that expr/print.h writes: sums of products of powers, each made a
-// number of its parts; sums and products add those of theirs, so that their order does not count. All else is words.
+// See same_page.h. Mathematics is read by the grammar that expr/print.h writes: sums of
+// products of powers, each made a number of its parts; sums and products add those of theirs,
+// so that their order does not count. All else is words.
 #include "report/same_page.h"
 
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static bool is_word(char c)
         || (unsigned char)c >= 0x80;
 }
 
-// ---- words --------------------------------------------------------------------------------------
+// ---- words ---------------------------------------------------------------------------------
 
 // Length of a name t1, t2, ... at p; 0: there is none.
 static size_t short_name(const char *p)
@@ -70,7 +71,7 @@ static uint64_t read_words(const struct reader *r, const char *p, size_t n)
     return value;
 }
 
-// ---- mathematics --------------------------------------------------------------------------------
+// ---- mathematics ---------------------------------------------------------------------------
 
 static uint64_t read_sum(struct reader *r);
 
@@ -143,7 +144,7 @@ static uint64_t read_text(struct reader *r, const char *text)
     return *r->at ? read_words(r, text, strlen(text)) : value;
 }
 
-// ---- blocks -------------------------------------------------------------------------------------
+// ---- blocks --------------------------------------------------------------------------------
 
 static uint64_t read_equation(struct reader *r, const struct ct_page_equation *e)
 {

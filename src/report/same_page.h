@@ -1,10 +1,10 @@
-// Do two parts of a page of text say the same of things that differ by their names alone?
+// Tests whether two parts of a page of text differ only by names.
 //
 //     t1 = 0.5*part2.v;  m_part2 = t1*b + a        t7 = 0.5*part3.v;  m_part3 = a + b*t7        the same, with part3 for part2
 //
-// A part becomes a number. The name, the numbers of t1, t2, ... and the order of terms and factors do not count: short
-// names stand for what they are defined to be. What always holds: equal numbers come from equal parts, but for a
-// coincidence of 64 bits.
+// A part becomes a number. The name, the numbers of t1, t2, ... and the order of terms and
+// factors do not count: short names stand for what they are defined to be. What always holds:
+// equal numbers come from equal parts, but for a coincidence of 64 bits.
 #ifndef CT_REPORT_SAME_PAGE_H
 #define CT_REPORT_SAME_PAGE_H
 
@@ -12,7 +12,8 @@
 
 #include <stdint.h>
 
-/// The number of the blocks of p from number `from` on, which are about `name`. Work space in the arena of the page.
+/// Hash of the blocks of p from block `from` on, which are about `name`. Workspace in the arena
+/// of the page.
 uint64_t ct_page_meaning(const struct ct_page *p, size_t from, const char *name);
 
 #endif

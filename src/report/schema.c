@@ -1,7 +1,7 @@
 // JSON Schema (draft 2020-12) of the model file, from the class tables.
 //
-// It checks shapes, keys, required keys and words. What a schema cannot know (units, names, expressions)
-// is left to the reader: a number or text stands for every scalar.
+// It checks shapes, keys, required keys and words. What a schema cannot know (units, names,
+// expressions) is left to the reader: a number or text stands for every scalar.
 #include "base/entry.h"
 #include "report/schema.h"
 
@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-// ---- components -------------------------------------------------------------------------------------------
+// ---- components ----------------------------------------------------------------------------
 
 static const char *const families[] = {"body", "joint", "force"};
 
@@ -60,7 +60,8 @@ static void write_class(struct ct_json *j, const struct ct_component_class *c)
     ct_json_end(j);
 }
 
-// if type is NAME then the object is a NAME, as it is without type if NAME is the standard class of its family
+// if type is NAME then the object is a NAME, as it is without type if NAME is the standard
+// class of its family
 static void write_choice(struct ct_json *j, const struct ct_component_class *c)
 {
     char name[64];
@@ -107,7 +108,7 @@ static void write_family(struct ct_json *j, enum ct_family family)
     ct_json_end(j);
 }
 
-// ---- parts that are not components ---------------------------------------------------------------------
+// ---- parts that are not components ---------------------------------------------------------
 
 static void write_table(struct ct_json *j)
 {
@@ -459,7 +460,7 @@ static void write_definitions(struct ct_json *j)
     ct_json_end(j);
 }
 
-// ---- the file ------------------------------------------------------------------------------------------------
+// ---- the file ------------------------------------------------------------------------------
 
 // A section: names -> components, or nothing.
 static void write_section(struct ct_json *j, const char *key, const char *item, bool has_ground)

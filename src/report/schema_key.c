@@ -63,7 +63,7 @@ void ct_schema_named_keys(struct ct_json *j)
     ct_json_end(j);
 }
 
-// ---- values ---------------------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
 static const char *scalar_of(const struct ct_key *key)
 {

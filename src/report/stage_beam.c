@@ -11,7 +11,7 @@
 // Layout: of a page
 enum { MOST_ELEMENTS = 40, MOST_COORDINATES = 120, LARGEST_ARM = 300 };
 
-// ---- what a beam is --------------------------------------------------------------------------------------
+// ---- what a beam is ------------------------------------------------------------------------
 
 static const struct {
     unsigned bit;
@@ -70,7 +70,7 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f)
                            beam->theory == CT_BEAM_TIMOSHENKO ? "; timoshenko" : "");
 }
 
-// ---- the element -----------------------------------------------------------------------------------------
+// ---- the element ---------------------------------------------------------------------------
 
 static bool varies(struct ct_build *b, ct_ex v)
 {
@@ -180,7 +180,7 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
     derive_energies(b, &one, out);
 }
 
-// ---- terminal equations ------------------------------------------------------------------------------------
+// ---- terminal equations --------------------------------------------------------------------
 
 // A line in the page's look.
 static void put(struct ct_derivation *d, const char *left, const char *text, const char *latex,
@@ -499,7 +499,7 @@ void ct_beams_put_terminal(struct ct_derivation *d)
     }
 }
 
-// ---- arms ----------------------------------------------------------------------------------------------------
+// ---- arms ----------------------------------------------------------------------------------
 
 static const char *place_text(struct ct_derivation *d, const struct ct_edge_info *e)
 {
@@ -553,7 +553,7 @@ void ct_beams_put_arms(struct ct_derivation *d)
     }
 }
 
-// ---- cutsets of the elastic coordinates --------------------------------------------------------------------------
+// ---- cutsets of the elastic coordinates ----------------------------------------------------
 
 static const char *partial(struct ct_derivation *d, const char *letter, const char *arm,
                            const char *through)

@@ -1,13 +1,15 @@
 // Beams on the pages of the derivation.
 //
-// An element is shown once, as a function of its own dofs; a table says which coordinates each element has for them.
+// An element is shown once, as a function of its own dofs; a table says which coordinates each
+// element has for them.
 #ifndef CT_REPORT_STAGE_BEAM_H
 #define CT_REPORT_STAGE_BEAM_H
 
 #include "formulate/beam/flexible_body.h"
 #include "report/derivation.h"
 
-/// The element of a beam, with symbols instead of its dofs; constants of the sections where these do not vary.
+/// The element of a beam, with symbols instead of its dofs; constants of the sections where
+/// these do not vary.
 struct ct_beam_element {
     struct ct_exs *x;
     ct_ex dof[CT_DOF]; // zero where the beam does not deform that way
@@ -29,7 +31,8 @@ void ct_beam_element_derive(struct ct_build *b, const struct ct_flexible *f,
 
 /// As in model files.
 const char *ct_beam_formulation_name(enum ct_beam_formulation f);
-/// "2 elements, 12 elastic coordinates; deforms by axial, bending-z; foreshortening (auto); frame clamped"
+/// "2 elements, 12 elastic coordinates; deforms by axial, bending-z; foreshortening (auto);
+/// frame clamped"
 const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
 
 /// Terminal equations: inertia, elastic coordinates, the element and its coordinates.

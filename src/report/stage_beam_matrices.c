@@ -1,12 +1,14 @@
-// The matrices of a beam under the names and numbers of liang2017: (3.41), (3.75), (3.87), (3.92), appendix A.1.
+// The matrices of a beam under the names and numbers of liang2017: (3.41), (3.75), (3.87),
+// (3.92), appendix A.1.
 //
 //     [ m_rr  m_rtheta      m_rf     ] [ R''  ]
 //     [       m_thetatheta  m_thetaf ] [ w'   ] = Q_g + Q_v - [0, 0, K_f q_f] + what joints and loads give   (4.11)
 //     [ sym                 m_ff     ] [ q_f'']
 //
-// R: place of the beam's frame, ground axes; w: its angular velocity, its own axes; A: its rotation. They are those of the
-// program (beam_dynamics.h), so what liang2017 leaves out is in them: rotary inertia of the sections, lumped masses.
-// Signs are those of a right side; errors of the printed formulas are put right, and said so in docs/liang2017.md.
+// R: place of the beam's frame, ground axes; w: its angular velocity, its own axes; A: its
+// rotation. They are those of the program (beam_dynamics.h), so what liang2017 leaves out is in
+// them: rotary inertia of the sections, lumped masses. Signs are those of a right side; errors
+// of the printed formulas are put right, and said so in docs/liang2017.md.
 #include "report/stage_beam.h"
 
 #include "expr/collect.h"
@@ -42,7 +44,7 @@ static void put(struct ct_derivation *d, const char *left, const char *latex_lef
     ct_page_equation(&d->page, NULL, pick(d, left, latex_left), pick(d, text, latex), note);
 }
 
-// ---- matrices with names of rows and columns ----------------------------------------------------------
+// ---- matrices with names of rows and columns -----------------------------------------------
 
 struct matrix {
     const char *name, *latex; // what stands before its entries
@@ -90,7 +92,7 @@ static void put_matrix(struct ct_derivation *d, const struct matrix *m)
 
 static const char *const xyz[] = {"x", "y", "z"};
 
-// ---- shape integrals of an element ---------------------------------------------------------------------
+// ---- shape integrals of an element ---------------------------------------------------------
 
 // An element of length h with the sections of the beam.
 struct element {
@@ -293,7 +295,7 @@ void ct_beam_matrices_put_element(struct ct_derivation *d, const struct ct_flexi
     put_foreshortening(d, &e);
 }
 
-// ---- the beam ------------------------------------------------------------------------------------------
+// ---- the beam ------------------------------------------------------------------------------
 
 // Of a planar mechanism: is axis i of the beam the normal of the plane?
 static bool turns_about(struct ct_build *b, const struct ct_flexible *f, int i)
@@ -469,7 +471,8 @@ static void put_definitions(struct ct_derivation *d, const struct ct_definitions
                          NULL);
 }
 
-// of_frame: the angular velocity of the frame alone, which depends on what carries the beam; or all else.
+// of_frame: the angular velocity of the frame alone, which depends on what carries the beam; or
+// all else.
 static struct ct_definitions some_parts(struct ct_derivation *d, const struct ct_beam_parts *p,
                                         bool of_frame)
 {

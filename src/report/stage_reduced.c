@@ -23,7 +23,7 @@ static void add(struct ct_derivation *d, struct group *g, const char *label, con
     CT_PUSH(d->a, g->at, g->n, g->cap, s);
 }
 
-// ---- origins ----------------------------------------------------------------------------------
+// ---- origins -------------------------------------------------------------------------------
 
 static const char *names_of(struct ct_derivation *d, const struct ct_provenance *p,
                             const struct ct_equation_term *t)
@@ -77,7 +77,7 @@ static const char *speed_label(struct ct_derivation *d, size_t i)
     return u->q >= 0 ? d->e->q[u->q].name : u->name;
 }
 
-// ---- sharing ----------------------------------------------------------------------------------
+// ---- sharing -------------------------------------------------------------------------------
 
 static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
 {
@@ -89,7 +89,7 @@ static bool is_long(struct ct_derivation *d, const struct group *g, size_t n)
     return lines > CT_MOST_LINES;
 }
 
-// ---- groups -----------------------------------------------------------------------------------
+// ---- groups --------------------------------------------------------------------------------
 
 enum { MOTION, STATES, CLOSURE, CLOSURE_RATE, EFFORT, KINEMATIC, NGROUP };
 
@@ -189,15 +189,15 @@ static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
                                  : "constant, from the assembled start");
 }
 
-// ---- matrices ---------------------------------------------------------------------------------
+// ---- matrices ------------------------------------------------------------------------------
 
 static const char *speed_name(struct ct_derivation *d, size_t i)
 {
     return ct_derivation_text(d, d->e->u[i].derivative);
 }
 
-// Entries of nrow rows; row: their names, columns are those of the accelerations. is_symmetric: the lower triangle
-// is given, and the other one stays blank.
+// Entries of nrow rows; row: their names, columns are those of the accelerations. is_symmetric:
+// the lower triangle is given, and the other one stays blank.
 static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t nrow,
                        const struct ct_entry *entry, const ct_ex *value, size_t n,
                        bool is_symmetric)
@@ -323,7 +323,8 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
     }
 }
 
-// M, Q and efforts in names. false: an entry of M that the engine finds to vanish does not in names.
+// M, Q and efforts in names. false: an entry of M that the engine finds to vanish does not in
+// names.
 static bool take_named(const struct ct_equations *e, const struct ct_named_dynamics *named,
                        struct ct_reduced *r)
 {

@@ -11,7 +11,7 @@ static const char *join(struct ct_derivation *d, const char *list, const char *i
     return *list ? ct_arena_printf(d->a, "%s, %s", list, item) : item;
 }
 
-// ---- laws -----------------------------------------------------------------------------------------
+// ---- laws ----------------------------------------------------------------------------------
 
 static bool is_first_of_class(const struct ct_build *b, size_t edge)
 {
@@ -46,7 +46,7 @@ static void put_laws(struct ct_derivation *d)
     }
 }
 
-// ---- bodies and arms --------------------------------------------------------------------------------
+// ---- bodies and arms -----------------------------------------------------------------------
 
 // F = m*(g - a(C))
 static const char *inertia_force(struct ct_derivation *d, const struct ct_body *body,
@@ -149,7 +149,7 @@ static void put_arms(struct ct_derivation *d)
     }
 }
 
-// ---- joints ---------------------------------------------------------------------------------------
+// ---- joints --------------------------------------------------------------------------------
 
 static ct_ex element(const struct ct_value *v, int k)
 {
@@ -266,7 +266,7 @@ static void put_joints(struct ct_derivation *d)
     }
 }
 
-// ---- forces ---------------------------------------------------------------------------------------
+// ---- forces --------------------------------------------------------------------------------
 
 static const char *value_text(struct ct_derivation *d, const struct ct_value *v)
 {

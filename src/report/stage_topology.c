@@ -14,7 +14,7 @@ static int most_equations(const struct ct_derivation *d)
     return d->page.is_full ? INT_MAX : 120;
 }
 
-// ---- matrices ------------------------------------------------------------------------------------
+// ---- matrices ------------------------------------------------------------------------------
 
 static const char *number_text(struct ct_derivation *d, int edge)
 {
@@ -57,7 +57,7 @@ static void put_matrix(struct ct_derivation *d, const struct ct_incidence *S,
                          S->nrow, g->nedge);
 }
 
-// ---- graph ----------------------------------------------------------------------------------------
+// ---- graph ---------------------------------------------------------------------------------
 
 static void put_incidence(struct ct_derivation *d)
 {
@@ -88,9 +88,10 @@ void ct_stage_graph(struct ct_derivation *d)
     put_incidence(d);
 }
 
-// ---- trees ----------------------------------------------------------------------------------------
+// ---- trees ---------------------------------------------------------------------------------
 
-// The f-cutset or f-circuit matrix of a tree: branches first, then chords, so that one block is the unit matrix.
+// The f-cutset or f-circuit matrix of a tree: branches first, then chords, so that one block is
+// the unit matrix.
 static void put_tree_matrix(struct ct_derivation *d, const struct ct_tree *t, bool cutsets)
 {
     const struct ct_equations *e = d->e;
@@ -128,7 +129,7 @@ static void put_tree_matrices(struct ct_derivation *d, bool cutsets)
     put_tree_matrix(d, e->R, cutsets);
 }
 
-// ---- cutsets --------------------------------------------------------------------------------------
+// ---- cutsets -------------------------------------------------------------------------------
 
 static void add_term(struct ct_derivation *d, struct ct_growing_text *sum, bool negative,
                      const char *term)
@@ -184,7 +185,7 @@ static void put_cutsets(struct ct_derivation *d, const struct ct_tree *t, bool o
     put_more(d, n);
 }
 
-// ---- cutsets with the terminal equations of the bodies -----------------------------------------------
+// ---- cutsets with the terminal equations of the bodies -------------------------------------
 
 static const struct ct_body *body_of(const struct ct_derivation *d, int edge)
 {
@@ -192,7 +193,8 @@ static const struct ct_body *body_of(const struct ct_derivation *d, int edge)
     return e->kind == CT_EDGE_BODY && !d->m->body[e->index].beam ? &d->m->body[e->index] : NULL;
 }
 
-// The force of an edge or, of a body, its inertia less weight, of which the force is the negative; NULL: zero.
+// The force of an edge or, of a body, its inertia less weight, of which the force is the
+// negative; NULL: zero.
 static const char *force_text(struct ct_derivation *d, int edge)
 {
     const struct ct_body *body = body_of(d, edge);
@@ -222,7 +224,8 @@ static const char *moment_text(struct ct_derivation *d, int edge, int own)
                            ct_derivation_of(d, "r", d->e->node_name[w[edge].head]), force);
 }
 
-// Row i of a cutset matrix: what the branch itself gives to the left, if it is a body its inertia, the rest to the right.
+// Row i of a cutset matrix: what the branch itself gives to the left, if it is a body its
+// inertia, the rest to the right.
 static void put_balance(struct ct_derivation *d, const struct ct_incidence *rows, int i,
                         int own, bool of_rotation)
 {
@@ -285,7 +288,7 @@ void ct_stage_cutset(struct ct_derivation *d)
     put_balances(d, d->e->R, true);
 }
 
-// ---- circuits -------------------------------------------------------------------------------------
+// ---- circuits ------------------------------------------------------------------------------
 
 const char *ct_derivation_circuit(struct ct_derivation *d, const struct ct_tree *t, int chord,
                                   bool of_rotation)
@@ -332,7 +335,8 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
     put_more(d, n);
 }
 
-// Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them in full.
+// Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them
+// in full.
 // Limit: of the time to collect; beyond, expressions stay as they are
 static const double largest_collected = 5000;
 

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// ---- branches and chords --------------------------------------------------------------------------
+// ---- branches and chords -------------------------------------------------------------------
 
 static const char *role(struct ct_derivation *d, const struct ct_tree *t, const int *weight,
                         int e, bool is_in)
@@ -39,7 +39,7 @@ static void put_trees(struct ct_derivation *d)
                      narm ? "; arms are branches of both trees" : "");
 }
 
-// ---- coordinates ----------------------------------------------------------------------------------
+// ---- coordinates ---------------------------------------------------------------------------
 
 static const struct ct_coordinate *coordinate_of(const struct ct_equations *e, int q)
 {
@@ -90,7 +90,8 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
                                ct_derivation_axis(d, m->along));
 }
 
-// "rod.2.rx": of node 2 of beam rod; "rod.2.rm": in its element 2; "rod.v1", "rod.mode1": of the whole beam.
+// "rod.2.rx": of node 2 of beam rod; "rod.2.rm": in its element 2; "rod.v1", "rod.mode1": of
+// the whole beam.
 static const char *elastic_meaning(struct ct_derivation *d, const char *name, int body,
                                    const char **unit)
 {
@@ -207,7 +208,7 @@ static void put_dependent(struct ct_derivation *d)
                          list.at);
 }
 
-// ---- rows -----------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 static const char *row_meaning(const char *name, const char **unit)
 {

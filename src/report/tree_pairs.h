@@ -1,7 +1,7 @@
 // The pairs of trees that were weighed, and why one of them was chosen.
 //
-// What always holds: each pair that is listed can be chosen again, by its number (`--tree 2`) or by the names of its
-// branches (a tree file).
+// What always holds: each pair that is listed can be chosen again, by its number (`--tree 2`)
+// or by the names of its branches (a tree file).
 #ifndef CT_REPORT_TREE_PAIRS_H
 #define CT_REPORT_TREE_PAIRS_H
 
@@ -9,7 +9,8 @@
 
 #include <stdio.h>
 
-/// The number of the pair of trees that the equations are on, from 0; -1: it is none of those listed.
+/// The number of the pair of trees that the equations are on, from 0; -1: it is none of those
+/// listed.
 int ct_tree_pairs_chosen(const struct ct_equations *e, const struct ct_tree_report *r);
 
 /// A sentence: how the pair was chosen, and what others would cost.

@@ -1,10 +1,11 @@
-// Work and precision: what settings of methods cost and how near they come, as a table and as a plot.
+// Work and precision: what settings of methods cost and how near they come, as a table and as a
+// plot.
 //
 //     method,tolerance,elements,formulation,error,seconds,steps,evaluations
 //     dopri5,0.0001,,,3.1e-05,0.00042,81,487
 //
-// What always holds: points of one method stand together, in the order of the ladder; a failed run has no
-// error (NaN), is an empty field in CSV, null in JSON, and is not drawn.
+// What always holds: points of one method stand together, in the order of the ladder; a failed
+// run has no error (NaN), is an empty field in CSV, null in JSON, and is not drawn.
 #ifndef CT_REPORT_WORK_PRECISION_H
 #define CT_REPORT_WORK_PRECISION_H
 
@@ -36,8 +37,8 @@ bool ct_work_precision_is_alike(const struct ct_work_precision_point *p,
 /// "radau5, N = 5, linear"
 void ct_work_precision_name(char *text, size_t size, const struct ct_work_precision_point *p);
 
-/// The table: JSON (an object of columns) if path ends with .json, else CSV; path NULL or "-": CSV on
-/// standard output. Errors: E002.
+/// The table: JSON (an object of columns) if path ends with .json, else CSV; path NULL or "-":
+/// CSV on standard output. Errors: E002.
 bool ct_work_precision_write(struct ct_ctx *ctx, const char *path,
                              const struct ct_work_precision_point *point, size_t n);
 

@@ -1,5 +1,5 @@
-// The work-precision plot: error against seconds, both axes logarithmic, as SVG. Lengths in the file are
-// tenths of a pixel, whole numbers: the same text in every locale.
+// The work-precision plot: error against seconds, both axes logarithmic, as SVG. Lengths in the
+// file are tenths of a pixel, whole numbers: the same text in every locale.
 #include "report/work_precision.h"
 
 #include "report/outfile.h"
@@ -87,7 +87,7 @@ static void print_power(FILE *out, int x, int y, const char *anchor, int exponen
             x, y, anchor, FONT * 3 / 4, exponent < 0 ? "\u2212" : "", abs(exponent));
 }
 
-// ---- the frame ------------------------------------------------------------------------------------
+// ---- the frame -----------------------------------------------------------------------------
 
 static const char thin[] = "stroke=\"#f0f0f0\" stroke-width=\"8\"";
 static const char strong[] = "stroke=\"#d0d0d0\" stroke-width=\"10\"";
@@ -140,7 +140,7 @@ static void draw_frame(const struct canvas *c, const char *title)
             (c->y.from + c->y.to) / 2);
 }
 
-// ---- the lines ------------------------------------------------------------------------------------
+// ---- the lines -----------------------------------------------------------------------------
 
 // Shapes tell methods apart in black and white, too.
 static void draw_mark(FILE *out, int x, int y, size_t method)

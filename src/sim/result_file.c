@@ -1,4 +1,4 @@
-// Results of a run as a file: rows as CSV, columns in the other formats.
+// The results of a run as a file: CSV row by row, other formats by columns at the end.
 #include "sim/sim.h"
 
 #include "report/columns.h"
@@ -7,13 +7,13 @@
 #include <string.h>
 
 // Limit: of the time to write
-static const double seconds_between_flushes = 0.5; // what an interruption may cost at most
+static const double seconds_between_flushes = 0.5; // results that an interruption may lose
 
 struct ct_result_file {
     enum ct_suffix suffix;
-    struct ct_csv csv;         // rows as they come
-    struct ct_outfile whole;   // else: it is written at the end
-    struct ct_columns columns; // until then
+    struct ct_csv csv;         // CSV: rows are written as they come
+    struct ct_outfile whole;   // other formats: written at the end
+    struct ct_columns columns; // other formats: samples so far
     size_t ncolumn;
     double flushed;
     bool is_by_row;
@@ -46,7 +46,8 @@ bool ct_sim_open_results(struct ct_sim *sim, const char *path)
                        name, n);
 }
 
-// Whoever looks at the file, or is interrupted, has the rows of half a second ago.
+// Flushes at intervals, so that a reader of the file, or an interruption, finds the rows up to
+// half a second ago.
 static bool write_csv_row(struct ct_sim *sim, double t, const double *value)
 {
     struct ct_result_file *f = sim->file;
@@ -83,7 +84,8 @@ void ct_sim_abandon_results(struct ct_sim *sim)
 void ct_sim_interrupt_results(struct ct_sim *sim)
 {
     ct_csv_abandon(&sim->file->csv);
-    ct_outfile_discard(&sim->file->whole); // to write it takes longer than anybody waits
+    // writing it would take longer than an interruption may
+    ct_outfile_discard(&sim->file->whole);
 }
 
 const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial)

@@ -1,4 +1,4 @@
-// Runs: options resolved, the start assembled, the motion integrated and written.
+// Runs: options are resolved, the start is assembled, the motion is integrated and written.
 #include "sim/sim.h"
 
 #include "base/guard.h"
@@ -12,32 +12,36 @@
 #include <float.h>
 #include <string.h>
 
-// The error of a solution is larger than that of its steps, so steps are held to less than what is wanted, as far as
-// double precision has that many digits. Over the reference cases outputs err by up to 3000 times the tolerance of the
-// steps with dopri5 and past singular configurations, by up to 1300 times with dop853 where there are no loops.
-// Derived: those measurements, of which a few cases are left to output error control.
+// The error of a solution is larger than that of its steps. The tolerance of the steps is
+// therefore smaller than the wanted accuracy of the outputs, as far as double precision allows.
+// Over the reference cases the output error is up to 3000 times the tolerance of the steps with
+// dopri5 and past singular configurations, and up to 1300 times with dop853 without loops.
+// Derived: from those measurements; a few cases are left to output error control.
 static const double usual_share = 2e-3, share_of_high_order = 5e-3;
-// Steps of order p err by h^(p+1) and the solution by h^p: T = c tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
+// A step of order p has an error of order h^(p+1), the solution one of order h^p: T = c
+// tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
 // Derived: from those measurements.
 static const double order2_factor = 30;
-// Of Radau's steps the error of an estimate of order 3 is controlled, eased to tol^(2/3)/10: T/10 for this power of T.
-// Derived: so that the eased estimate is a tenth of T.
+// Radau's steps are controlled by an error estimate of order 3, which is relaxed to
+// tol^(2/3)/10. With this power of T the estimate is controlled to T/10.
+// Derived: (T^1.5)^(2/3) = T.
 static const double radau_power = 1.5;
-// Derived: T for tolerances above 1e-4, where that power would ask for less.
+// Derived: the square root of 1e-4; for T above 1e-4 the power would be the looser one.
 static const double radau_share = 1e-2; // for loose tolerances
-// About a hundred round-off errors. With loops it is ct_position_tolerance, as well as projections close them: from steps that are
-// held to less, down to 1e-14, outputs come out no better past singular configurations, and a few times better, below 1e-12,
-// where there are none.
-// Derived: 90 units of round-off
+// Smallest relative tolerance of steps without loops, some ninety round-off errors. With loops
+// it is ct_position_tolerance, to which projection satisfies the constraints. Steps with
+// smaller tolerances, down to 1e-14, do not improve outputs past singular configurations.
+// Elsewhere they improve outputs below 1e-12 a few times.
+// Chosen: 90 eps.
 static const double least_rtol = 2e-14;
-// Above this tolerance high order does not pay for its twelve evaluations: over the reference cases both explicit methods
-// then cost the same.
+// Above this tolerance dop853 does not pay for its twelve evaluations a step: over the
+// reference cases both explicit methods then cost the same.
 // Derived: from those measurements.
 static const double high_order_up_to = 1e-2;
-// Limit: of the time to look
-static const long steps_between_looks = 32; // at the clock, for runs with a deadline
+// Limit: of the time to read the clock.
+static const long steps_between_looks = 32; // reading the clock, for runs with a deadline
 
-// ---- options -------------------------------------------------------------------------------------------
+// ---- options -------------------------------------------------------------------------------
 
 static bool wrong_option(struct ct_sim *sim, const char *name, double value)
 {
@@ -75,7 +79,7 @@ static bool no_method(struct ct_sim *sim, const char *name, bool is_option)
                     ct_suggest_or_list(sim->own.model, name, names, (size_t)ct_nmethod + 1));
 }
 
-// What steps are held to so that outputs err by about `tolerance`.
+// The tolerance of steps that gives outputs an error of about `tolerance`.
 static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_method *m)
 {
     const double t = sim->tolerance;
@@ -93,7 +97,8 @@ static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, 
     *atol = absolute / sim->tolerance * *rtol;
 }
 
-// Third derivatives of cubic tables jump at their points, which a step of order 8 passes with errors that it does not see.
+// Is there a cubic table? Its third derivative is discontinuous at the points of the table, and
+// the error estimate of a step of order 8 does not see that.
 static bool has_cubic_table(const struct ct_exs *x)
 {
     for (size_t k = 0; k < x->ntable; k++)
@@ -129,7 +134,8 @@ static bool choose_method(struct ct_sim *sim, const char *option)
     return true;
 }
 
-// The spacing of the model's samples is kept, as near as both ends allow.
+// The number of samples until a given end time; keeps the model's spacing of samples as nearly
+// as both ends allow.
 static size_t samples_until(const struct ct_simulation *m, double until)
 {
     double spacing = m->interval;
@@ -137,8 +143,9 @@ static size_t samples_until(const struct ct_simulation *m, double until)
         spacing = m->duration / (double)(m->samples - 1);
     if (!(spacing > 0))
         return m->samples > 1 ? (size_t)m->samples : 2;
-    // Derived: some units of round-off
-    return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1; // 10/0.01 may round upwards
+    // Chosen: some thousand eps.
+    // a quotient such as 10/0.01 may be rounded up
+    return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1;
 }
 
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
@@ -179,7 +186,7 @@ const char *ct_sim_refuses_batch(const struct ct_sim *sim)
                                              : ct_batch_obstacle(&sim->run_options);
 }
 
-// Machine code where it can be had, unless the tape is asked for.
+// Evaluates by machine code if it is available, unless the tape is requested.
 bool ct_sim_choose_backend(struct ct_sim *sim, const char *name)
 {
     static const char *const words[] = {"auto", "tape", "native"};
@@ -196,20 +203,20 @@ bool ct_sim_choose_backend(struct ct_sim *sim, const char *name)
                     "there is no back end '%s'; there are auto, native, tape", name);
 }
 
-// ---- the start ---------------------------------------------------------------------------------------
+// ---- the start -----------------------------------------------------------------------------
 
 struct create {
     struct ct_sim *sim;
     const struct ct_sim_options *options;
 };
 
-// Impulses at events need the mass matrix.
+// Does the run need the mass matrix? Impulses at events do.
 static bool needs_dynamics(const struct ct_equations *e)
 {
     return !e->solution || e->nswitch || e->x->ntable;
 }
 
-// Names of the joints of the rows that are marked, each once: "a, b".
+// Names of the joints of the marked rows, each once: "a, b".
 static const char *joints_of(const struct ct_sim *sim, const bool *row, int *first)
 {
     const struct ct_equations *e = &sim->system->equations;
@@ -228,7 +235,8 @@ static const char *joints_of(const struct ct_sim *sim, const bool *row, int *fir
     return names;
 }
 
-// What is said of a start in a singular configuration holds for that position: freedoms, redundant rows.
+// If the start is singular, reports that freedoms and redundant rows hold for that
+// configuration only.
 void ct_sim_warn_of_singular_start(struct ct_sim *sim)
 {
     bool *row = CT_NEWN(sim->own.model, bool, sim->system->equations.nrow + 1);
@@ -254,7 +262,7 @@ static bool prepare(struct ct_sim *sim, const struct ct_sim_options *o)
     if (!ct_sim_resolve(sim, o))
         return false;
     const double start = ct_monotonic_time();
-    if (sim->run_options.method->is_implicit) // made once, when the first run asks for it
+    if (sim->run_options.method->is_implicit) // created once, when the first run needs it
         ct_formulate_residual(&s->equations);
     if (needs_dynamics(&s->equations))
         ct_formulate_dynamics(&s->equations);
@@ -323,7 +331,7 @@ void ct_sim_destroy(struct ct_sim *sim)
     free(sim);
 }
 
-// ---- the run -------------------------------------------------------------------------------------------
+// ---- the run -------------------------------------------------------------------------------
 
 static bool at_row(void *user, double t, const double *value, size_t n)
 {
@@ -339,7 +347,8 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     return go_on;
 }
 
-// Past the deadline; or an eighth of the time is gone, and at the pace so far four times as much would not be enough.
+// Is the deadline past? Or has an eighth of the allowed time passed, and would the run at its
+// present pace need more than four times the allowed time?
 static bool is_hopeless(const struct ct_sim *sim, double t, double end)
 {
     const double now = ct_monotonic_time(), all = sim->deadline - sim->begun,
@@ -357,7 +366,7 @@ static bool at_progress(void *user, double t, double end)
         return false;
     if (ct_guard_is_interrupted())
         sim->is_interrupted = true;
-    // a look at the clock costs as much as a step of a small system
+    // reading the clock costs as much as a step of a small system
     if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
         sim->is_late = is_hopeless(sim, t, end);
     return !sim->is_late && !sim->is_interrupted;
@@ -387,7 +396,7 @@ static void want_residual(void *user)
     ct_formulate_residual(&sim->system->equations);
 }
 
-// Why the method is what it is: known when the run is over.
+// Writes the reason for the method of integration, which is known after the run.
 static void explain_change(struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
@@ -436,13 +445,12 @@ static bool integrate(struct ct_sim *sim)
     return ok;
 }
 
-// What steps say of singular configurations that they were not made to cross.
+// Warns of near-singular configurations that steps met outside the crossing procedure.
 static void warn_of_positions(struct ct_sim *sim)
 {
     const struct ct_rank_monitor *w = sim->report.singular;
-    // Derived: a tenth of a unit of round-off
-    const double roundoff
-        = 0.1 * DBL_EPSILON; // as it is felt of what is divided twice by a pivot
+    // Chosen: a tenth of eps.
+    const double roundoff = 0.1 * DBL_EPSILON; // amplified by two divisions by a pivot
     const struct ct_mark mark = {.file = sim->system->model.file};
     if (!w)
         return;
@@ -465,7 +473,8 @@ static void warn_of_positions(struct ct_sim *sim)
             w->t_closest, w->closest);
 }
 
-// A run that a callback stopped has no diagnostic: it is done, too.
+// Runs the integration. A run that a callback stopped ends without a diagnostic and counts as
+// complete.
 static bool run(struct ct_sim *sim)
 {
     const struct ct_simulation *m = &sim->system->model.simulation;
@@ -549,7 +558,7 @@ bool ct_sim_follow(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_r
     return ct_sim_run(ctx, sim, results);
 }
 
-// How far it came, what is there of it.
+// Reports the time reached and the files that remain.
 static bool report_interrupt(void *task)
 {
     struct work *w = task;
@@ -583,12 +592,12 @@ bool ct_sim_run(struct ct_ctx *ctx, struct ct_sim *sim, const struct ct_sim_resu
     sim->results = &all;
     const bool ok = ct_enter(ctx, run_and_report, &w);
     if (!ok && ctx->was_interrupted && sim->results->path) {
-        if (sim->progress) // a jump led here
+        if (sim->progress) // the run stepped to this time at an event
             ct_progress_finish(sim->progress);
         sim->progress = NULL;
         ct_enter_uninterrupted(ctx, report_interrupt, &w);
     }
-    if (!ok && sim->file) // without memory the file is still open
+    if (!ok && sim->file) // out of memory: the file is still open
         ct_sim_abandon_results(sim);
     sim->results = NULL;
     return ok;

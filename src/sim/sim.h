@@ -1,14 +1,16 @@
-// A run: its options, its start, its results and what is said of it.
+// This folder makes runs: it resolves the options of a simulation, assembles its start,
+// integrates or follows the motion, estimates its error, and writes results and summaries. This
+// header declares a run and the interfaces between its files.
 //
-//     sim.c           options resolved, the start, the motion
-//     solver.c        what finds the accelerations, as asked for
-//     sim_beams.c     what is said of beams
-//     verify.c        the error, by a second run
-//     result_file.c   results as a file
-//     summary.h       figures, for people and programs
+//     sim.c           options, the start, the motion
+//     solver.c        the linear solver of closed loops
+//     sim_beams.c     warnings about beams
+//     verify.c        estimate of the error by a second run
+//     result_file.c   the file of results
+//     summary.h       figures for the summaries
 //
-// What always holds: a run owns a context, so that its memory is its alone; what it says is handed over to the caller's
-// context, as copies, before an entry point returns.
+// What always holds: a run has a context of its own, so that its memory is not shared. Its
+// diagnostics are copied to the caller's context before an entry point returns.
 #ifndef CT_SIM_H
 #define CT_SIM_H
 
@@ -16,108 +18,116 @@
 #include "solve/run/run.h"
 #include "system.h"
 
-/// What multipliers leave open, at the start and at the end of a run.
+/// Which multipliers are not unique, at the start and at the end of a run.
 struct ct_open {
-    bool *row;    // of the equations: its multiplier is not unique
-    bool *result; // depends on such a one
+    bool *row;    // by row of the equations: its multiplier is not unique
+    bool *result; // by output: it depends on such a multiplier
 };
 
 /// The estimated global error of an output.
 struct ct_output_error_estimate {
-    double absolute; // the largest over samples
+    double absolute; // largest over the samples
     double scale;    // largest |value|
-    double relative; // absolute / scale; NaN: the output is zero but for round-off
+    double relative; // absolute / scale; NaN: the output is zero up to round-off
 };
 
-/// What a second run says about the first. See verify.c.
+/// The estimate of the error from a second run; see verify.c.
 struct ct_estimate {
-    const char *how;                         // the second run; NULL: none was made
-    const char *why_not;                     // it failed
-    struct ct_output_error_estimate *output; // (nresult); NULL: not known
-    size_t which;                            // the output that is worst; nresult: there is none
-    double worst;                            // its relative error; NaN: not known
-    double holds_until;                      // the last sample up to which errors are as wanted
+    const char *how;     // description of the second run; NULL: there was none
+    const char *why_not; // reason why the second run failed
+    struct ct_output_error_estimate *output; // (nresult); NULL: no estimate
+    size_t which;       // index of the output with the largest relative error; nresult: none
+    double worst;       // its relative error; NaN: no estimate
+    double holds_until; // time of the last sample up to which errors are within the limit
 };
 
 struct ct_sim {
     struct ct_ctx own;
     struct ct_system *system;
     const char *method_why;
-    const char *solver; // asked for; NULL: the one predicted to be cheapest
-    double tolerance;   // wanted of outputs
-    double least_rtol;  // of steps: what double precision allows
+    const char *solver; // as requested; NULL: the cheapest as predicted
+    double tolerance;   // wanted accuracy of outputs
+    double least_rtol;  // smallest tolerance of steps that double precision allows
     struct ct_run_options run_options;
     struct ct_initial_state start;
     struct ct_run *run;
     struct ct_run_report report;
     struct ct_open open;
-    const enum ct_take_kind *take; // from the last results, over the run  (ntake)
+    const enum ct_take_kind *take; // functions of the last outputs over the run  (ntake)
     size_t ntake;
-    bool is_verified; // a second run is wanted
-    double *kept;     // rows so far, for it  (nkept x nresult)
+    bool is_verified; // a second run is requested
+    double *kept;     // samples so far, for the second run  (nkept x nresult)
     size_t nkept;
-    struct ct_estimate estimate; // what it said
+    struct ct_estimate estimate; // result of the second run
     const struct ct_sim_results *results;
-    struct ct_result_file *file;       // result_file.c; NULL: none is written
-    long nwritten;                     // rows of it
-    struct ct_progress bar, *progress; // NULL: none is shown
-    long nstep;                        // accepted so far, for deadlines
-    double begun;                      // on ct_input_sampling, when steps begin
-    double deadline; // on ct_input_sampling, when the run is given up; 0: none
+    struct ct_result_file *file;       // NULL: no file
+    long nwritten;                     // number of rows written
+    struct ct_progress bar, *progress; // NULL: no progress bar
+    long nstep;                        // accepted steps, for deadlines
+    double begun;    // time on ct_input_sampling's clock when integration began
+    double deadline; // time on the same clock when the run is abandoned; 0: none
     bool has_run, is_done, is_late, is_interrupted, is_followed;
-    double reached;                                   // by accepted steps
-    double time;                                      // of the last sample
-    double compile, integrate, write, verify_seconds; // seconds
+    double reached;                                   // time reached by accepted steps
+    double time;                                      // time of the last sample
+    double compile, integrate, write, verify_seconds; // durations [s]
 };
 
-/// What the options and the model's `simulation` say about runs, into sim->run_options. Errors: E003.
+/// Sets sim->run_options from the options and the model's `simulation`. Errors: E003.
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o);
-/// Why members of a study with these options go one by one, or NULL: side by side (solve/batch/batch.h).
+/// Returns the reason why members of a study with these options cannot run as a batch
+/// (solve/batch/batch.h); NULL: they can.
 const char *ct_sim_refuses_batch(const struct ct_sim *sim);
-/// A run that has no start yet (see ct_run_restart), in a ct_sim of zeros whose context is open.
+/// Prepares a run without a start (see ct_run_restart), in a zeroed ct_sim whose context is
+/// open.
 bool ct_sim_prepare(struct ct_sim *sim, struct ct_system *sys, const struct ct_sim_options *o);
 
-/// Solve by what `name` says, before the run begins; NULL: by the cheapest. Errors: E003.
+/// Chooses the solver by name before the run begins; NULL: the cheapest. Errors: E003.
 bool ct_sim_choose_solver(struct ct_sim *sim, const char *name);
-/// Is it solved as was asked, where the run begins? Systems without loops are solved in one way only. Errors: E003.
+/// Checks that the requested solver is available where the run begins. Systems without loops
+/// have only one solver. Errors: E003.
 bool ct_sim_has_solver(struct ct_sim *sim);
 
-/// Evaluate by what `name` says; NULL: by the best there is. Errors: E003.
+/// Chooses what evaluates the equations by name; NULL: the fastest available. Errors: E003.
 bool ct_sim_choose_backend(struct ct_sim *sim, const char *name);
-/// After the run has begun: notes, and warns, that it does so in a singular configuration.
+/// After the run has begun: records and warns if the start is a singular configuration.
 void ct_sim_warn_of_singular_start(struct ct_sim *sim);
 
-/// After a run that was made: the same again from its start, nothing made anew; for timing. Not of one that is verified or
-/// followed.
+/// After a complete run: repeats it from its start without new allocations, for timing. Not for
+/// runs that are verified or follow a motion.
 bool ct_sim_run_again(struct ct_ctx *ctx, struct ct_sim *sim,
                       const struct ct_sim_results *results);
 
-/// Results as a file, sim->file, in sim->own, in the format its suffix names; "-": CSV on standard output.
-/// Errors: E002, E006, E007.
+/// Opens the file of results, sim->file, in sim->own. The suffix of path determines the format;
+/// "-" is CSV on standard output. Errors: E002, E006, E007.
 bool ct_sim_open_results(struct ct_sim *sim, const char *path);
 bool ct_sim_write_row(struct ct_sim *sim, double t, const double *value);
-/// ok: the run succeeded; else what there is stays in the partial file, and false.
+/// Closes the file. ok: the run succeeded; otherwise the rows stay in the partial file, and
+/// false is returned.
 bool ct_sim_close_results(struct ct_sim *sim, bool ok);
-/// Without a word: what there is stays in the partial file.
+/// Closes the file without a diagnostic. The rows stay in the partial file.
 void ct_sim_abandon_results(struct ct_sim *sim);
 
-/// The same of a run that was interrupted: rows stay in the partial file, of the formats without rows nothing.
+/// The same for an interrupted run: rows of CSV stay in the partial file, other formats leave
+/// no file.
 void ct_sim_interrupt_results(struct ct_sim *sim);
-/// The file of the results, NULL where there is none; of partial ones NULL where they stay nowhere.
+/// Path of the file of results, NULL if there is none. is_partial: path of the partial file,
+/// NULL if the format leaves none.
 const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial);
 
-/// After a run that kept its rows: another one, and what it says, in sim->estimate. Raises the guard.
+/// After a run that kept its samples: makes a second run and sets sim->estimate. Raises the
+/// guard.
 void ct_sim_verify(struct ct_sim *sim);
-/// True for a column whose largest value, scale, is round-off beside the largest column; deviation: how far
-/// two runs differ there.
+/// Is a column round-off? scale is its largest value, largest that of the largest column,
+/// deviation the difference between two runs.
 bool ct_is_rounding(double scale, double deviation, double largest);
 
-/// Warn of joints that start more than a right angle or half the natural length from their guesses.
+/// Warns of joints that start more than a right angle or half the natural length from their
+/// guesses.
 void ct_sim_warn_of_start(struct ct_sim *sim);
-/// Warn of beams that bent too far for one frame.
+/// Warns of beams whose sections rotate too far relative to the frame of the beam.
 void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
                    const struct ct_slope_report *report);
-/// Beams whose motion left what their models hold for.
+/// Warns of beams whose motion is outside the range of validity of their models.
 void ct_sim_warn_of_beams(struct ct_sim *sim);
 
 #endif

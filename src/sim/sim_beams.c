@@ -1,4 +1,4 @@
-// What a run has to say about its beams.
+// Warnings of a run about its beams.
 #include "sim/sim.h"
 #include "beam_error/beam_error_modal.h"
 #include "formulate/beam/flexible_body.h"
@@ -25,8 +25,9 @@ void ct_slope_warn(struct ct_ctx *ctx, const struct ct_equations *e,
 
 static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
 {
-    // Derived: as CT_VALIDITY_LIMIT, of a start that shapes cannot have
-    const double worth_it = 0.01; // as the limit of the validity indicator
+    // Derived: as CT_VALIDITY_LIMIT, for a deformation at the start that the shape functions
+    // cannot represent.
+    const double worth_it = 0.01; // relative limit, as that of the validity indicator
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
         if (f->start_missed > worth_it)
@@ -37,7 +38,7 @@ static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
     }
 }
 
-// What the indicator found, and what it estimates, of a linear beam.
+// Warns of a linear beam by its validity indicator and the error estimated from it.
 static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
                            const struct ct_validity_report *v)
 {

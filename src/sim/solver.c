@@ -1,4 +1,4 @@
-// What finds the accelerations of closed loops, as asked for.
+// The linear solver that finds the accelerations of closed loops.
 #include "sim/summary.h"
 
 #include "solve/constraint/solver.h"

@@ -1,4 +1,4 @@
-// What a run did and what a system is, for programs: one JSON object.
+// The summary of a run or of a system as one JSON object.
 #include "sim/summary.h"
 
 #include "formulate/beam/flexible_body.h"
@@ -15,13 +15,13 @@
 #include <math.h>
 #include <string.h>
 
-// The report has none before the run.
+// The method of the run; the options' method before the run, when there is no report.
 static const struct ct_method *last_method(const struct ct_sim *sim)
 {
     return sim->report.method ? sim->report.method : sim->run_options.method;
 }
 
-// Most memory the process has had [bytes]; 0 where the system does not say.
+// Peak memory of the process [bytes]; 0 if the system does not tell.
 static long peak_memory(void)
 {
 #if defined(__unix__) || defined(__APPLE__)
@@ -38,7 +38,7 @@ static long peak_memory(void)
 #endif
 }
 
-// Edges that are branches (chords) of one of the two trees at least.
+// Lists the edges that are branches (or chords) of at least one of the two trees.
 static void write_edges(struct ct_json *j, const struct ct_equations *e, const char *key,
                         bool branches)
 {
@@ -49,7 +49,7 @@ static void write_edges(struct ct_json *j, const struct ct_equations *e, const c
     ct_json_end(j);
 }
 
-// As a tree file: branches that are not arms.
+// Writes the branches except arms, in the format of a tree file.
 static void write_tree(struct ct_json *j, const struct ct_equations *e, const char *key,
                        const struct ct_tree *t)
 {
@@ -129,7 +129,7 @@ static void write_open(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
-// Null without --verify, and where the second run failed.
+// Writes null without --verify, and if the second run failed.
 static void write_estimate(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_estimate *e = &sim->estimate;
@@ -159,7 +159,7 @@ static void write_formulation(struct ct_json *j, const struct ct_equations *e)
     ct_json_end(j);
 }
 
-// Validity indicators of linear beams.
+// Writes the validity indicators of linear beams.
 static void write_validity(struct ct_json *j, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;

@@ -1,4 +1,4 @@
-// What was asked of the joints' coordinates and where they start; see summary.h.
+// Initial values of the joints' coordinates, requested and found; see summary.h.
 #include "sim/summary.h"
 #include "base/pi.h"
 
@@ -71,8 +71,8 @@ void ct_sim_write_start(struct ct_json *j, const struct ct_sim *sim)
     ct_json_end(j);
 }
 
-// How far coordinate i is from its guess, 1 being a right angle or half the natural length; 0
-// without a guess. An orientation counts at its first number.
+// Distance of coordinate i from its guess; 1 is a right angle or half the natural length. 0
+// without a guess. An orientation has its distance at its first number.
 static double moved(const struct ct_initial_state *s, size_t i)
 {
     const struct ct_target *t = &s->q_target[i];

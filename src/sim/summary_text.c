@@ -1,4 +1,4 @@
-// What a run did, and what a system is, for people.
+// The summary of a run and of a system as text.
 #include "sim/summary.h"
 
 #include "formulate/beam/flexible_body.h"
@@ -10,13 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-// ---- lists --------------------------------------------------------------------------------------------
+// ---- lists ---------------------------------------------------------------------------------
 
-// A titled list, broken into lines that fit.
+// A list with a title, broken into lines of limited width.
 struct list {
     FILE *out;
     const char *title;
-    int column; // 0: nothing is written yet
+    int column; // 0: nothing written yet
 };
 
 // Layout: of the summary
@@ -40,7 +40,7 @@ static void end_list(struct list *l)
         fputc('\n', l->out);
 }
 
-// ---- what a run did -----------------------------------------------------------------------------------
+// ---- what a run did ------------------------------------------------------------------------
 
 static bool same_trees(const struct ct_equations *e)
 {
@@ -82,7 +82,8 @@ static void print_freedoms(FILE *out, const struct ct_sim *sim)
     fputc('\n', out);
 }
 
-// Of each joint's coordinates what was guessed and where they start; those that are demanded or driven as they are.
+// Prints for each coordinate of a joint its guess and its initial value; prescribed and driven
+// ones only by their value.
 static void print_start(FILE *out, const struct ct_sim *sim)
 {
     enum { MOST_SHOWN = 100 }; // Layout: the rest is in the summary file
@@ -138,8 +139,8 @@ static void print_open_outputs(FILE *out, const char *title, const struct ct_sim
     end_list(&l);
 }
 
-// Which forces are open: redundant constraints share what they carry in many ways, and a planar model has no equations
-// across its plane.
+// Prints which forces are not unique. Redundant constraints share a load in many ways, and a
+// planar model has no equations perpendicular to its plane.
 static void print_open(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
@@ -150,7 +151,7 @@ static void print_open(FILE *out, const struct ct_sim *sim)
         out, "note: planar loops do not determine the outputs out of their plane ", sim, true);
 }
 
-// The outputs with their errors, so many to a line as fit.
+// Prints the outputs with their errors, as many to a line as fit.
 static void print_output_errors(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_equations *e = &sim->system->equations;
@@ -202,7 +203,7 @@ static void print_estimate(FILE *out, const struct ct_sim *sim)
                 e->holds_until);
 }
 
-// How implicit methods get their derivatives, where one runs.
+// Prints how an implicit method gets its derivatives, if the run used one.
 static void print_derivatives(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_evaluator *m = ct_run_evaluator(sim->run);
@@ -264,7 +265,7 @@ static void print_singular(FILE *out, const struct ct_sim *sim)
         print_position(out, sim, &w->passed[i]);
 }
 
-// Formulations that were left to the program, and why these.
+// Prints the formulations that the program chose, with the reasons.
 static void print_choices(FILE *out, const struct ct_equations *e)
 {
     for (size_t i = 0; i < e->build->nflexible; i++) {
@@ -340,7 +341,7 @@ char *ct_sim_summary(const struct ct_sim *sim)
     return ct_print_text(print_summary, sim);
 }
 
-// ---- what a system is ----------------------------------------------------------------------------------
+// ---- what a system is ----------------------------------------------------------------------
 
 struct part {
     long n;
@@ -383,7 +384,7 @@ static void print_formulation(FILE *out, const struct ct_equations *e)
     fputc('\n', out);
 }
 
-// The rows that take no part in the dynamics, by joint.
+// Prints the redundant rows by joint.
 static void print_redundant(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_partition *s = ct_run_partition(sim->run);
@@ -403,7 +404,7 @@ static void print_redundant(FILE *out, const struct ct_sim *sim)
     end_list(&l);
 }
 
-// The solver, asked for or chosen by what each is predicted to cost.
+// Prints the solver, with the reason if the program chose it.
 static void print_solver(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_partition *s = ct_run_partition(sim->run);
@@ -432,7 +433,7 @@ static void print_beams(FILE *out, const struct ct_equations *e)
     for (size_t i = 0; i < e->build->nflexible; i++) {
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
-        // Layout: a tenth of a stiffness is worth a line
+        // Layout: a contribution of a tenth of the stiffness is printed.
         const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
         if (locking > worth_it)
             fprintf(out,

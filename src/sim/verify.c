@@ -1,16 +1,17 @@
-// The global error of a run, estimated by a second one that is better or at least different, and a
-// third where the second was not.
+// Estimates the global error of a run by a second run that is more accurate or at least
+// different, and by a third run if the second was not different.
 //
-//     tighter tolerance     its error is a small part of the first one's: the difference is the error
-//     half the fixed step   the same with 2^-order of it (Richardson)
-//     looser tolerance      where double precision leaves no room for a tighter one: its error is larger, and so is the difference
+//     tighter tolerance     its error is small, so that the difference is the error of the first
+//     half the fixed step   its error is 2^-order times that of the first (Richardson)
+//     looser tolerance      if double precision does not allow a tighter one: its error is larger,
+//                           and so is the difference
 //
-// A second run of nearly the same steps has nearly the same errors, those of round-off included,
-// and the difference says nothing of them: see is_other, (8.31).
+// A second run with nearly the same steps has nearly the same errors, round-off included, and
+// the difference says nothing about them: see is_other, (8.31).
 //
-// What always holds: the estimate of an output is the largest difference over samples times a
-// factor that makes up for the error of the second run; both runs use the same equations, so it
-// says nothing about the model.
+// What always holds: the estimate for an output is the largest difference over the samples,
+// times a factor that accounts for the error of the second run. Both runs use the same
+// equations, so the estimate does not include errors of the model.
 #include "sim/sim.h"
 
 #include "base/guard.h"
@@ -20,53 +21,56 @@
 #include <math.h>
 #include <string.h>
 
-// The second run is held to this part of the tolerance: a tenth would often not shrink the error
-// visibly, a hundredth costs more and is not better.
-// Derived: from those measurements.
+// Tolerance of the second run relative to the first. With a tenth, the error often does not
+// decrease enough; a hundredth costs more and is not better.
+// Chosen: between those.
 static const double tightening = 1. / 30;
-// With less to gain than this, the second run is looser by as much: then it has the larger error.
+// If the tolerance can be tightened by less than this factor, the second run is looser by this
+// factor. Then it has the larger error.
 // Chosen: errors that differ by less are hard to tell apart by a difference.
 static const double least_gain = 5;
-// A run that is compared with may be held to this part of what double precision leaves to the steps
-// of one that is wanted: of motions with many turns errors of truncation go on falling to there. An
-// explicit step errs by round-off errors of h f alone, as those of y are carried over, and by as
-// much less as it is shorter. Not past singular configurations.
-// Derived: for steps ten times as short
+// A second run may have a tolerance this much below the smallest one of an ordinary run. In
+// motions with many turns truncation errors decrease until there. An explicit step has
+// round-off of h f only, since that of y is carried over, and a shorter step has proportionally
+// less. Not past singular configurations.
+// Derived: the steps are ten times as short.
 static const double beyond = 0.1;
 // Limit: one more try, and a message then.
-static const double second_try = 3; // looser, where the second run failed
-// Errors follow tolerances only roughly, and where they are round-off not at all: two runs that err
-// by as much differ by root 2 of it.
-// Derived: root 2, and a little for rough estimates.
+// factor by which the tolerance is looser if the second run failed
+static const double second_try = 3;
+// Errors follow tolerances only roughly, and not at all if they are round-off: two runs with
+// independent errors of equal size differ by sqrt(2) times the error.
+// Derived: sqrt(2), and a little for rough estimates.
 static const double tolerance_margin = 1.5;
-// An output holds as long as its error stays within so many tolerances.
-// Definition: what the documentation promises, docs/accuracy.md
+// An output is accurate as long as its error is within this many tolerances.
+// Definition: the promise of docs/accuracy.md.
 static const double held_tolerances = 10;
 
 struct companion {
     const char *method;
     double rtol, step, margin;
-    double least_rtol; // of steps of motions with many turns
-    long nstep;        // out
+    double least_rtol; // for motions with many turns
+    long nstep;        // number of steps of the run
 };
 
-// A column this small against the largest one is round-off: sums of terms of order 1 leave some
-// hundred eps; without a single digit that agrees, some more.
+// A column is round-off if it is this small relative to the largest one. Sums of terms of order
+// 1 leave some hundred eps; if the two runs agree in no digit, the limit is larger.
 bool ct_is_rounding(double scale, double deviation, double largest)
 {
-    // Derived: some hundred, and some million, units of round-off
+    // Chosen: 450 eps, and 4.5e6 eps.
     const double with_digits = 1e-13, without_digits = 1e-9;
     return scale <= (deviation < 0.5 * scale ? with_digits : without_digits) * largest;
 }
 
-// Better than with a tighter tolerance, the error of such a method is found with another one.
+// Is the method of low order? Then its error is estimated by another method, not by a tighter
+// tolerance.
 static bool is_low(const struct ct_method *m)
 {
     return m->is_implicit && m->order < 3;
 }
 
-// Where the method was chosen while the run went on, the second one chooses anew: only so do its
-// steps follow what the tolerance asks for besides their own errors.
+// If the method was chosen during the first run, the second run chooses again. Only then do its
+// steps follow the tolerance in everything that depends on it.
 static const char *name_method(const struct ct_sim *sim)
 {
     if (is_low(sim->report.method))
@@ -111,7 +115,7 @@ static struct companion choose(const struct ct_sim *sim)
     return held < least_gain * least ? choose_looser(sim) : choose_tighter(sim, least);
 }
 
-// ---- comparing ----------------------------------------------------------------------------------
+// ---- comparing -----------------------------------------------------------------------------
 
 struct comparison {
     const struct ct_sim *sim;
@@ -143,14 +147,15 @@ static bool has_digits(const struct ct_output_error_estimate *o)
     return o->absolute < 0.5 * o->scale;
 }
 
-// Outputs without a digit that agrees, and not larger than the errors of others make them, are zero
-// as far as can be seen: the sum of energies that cancel, the momentum of a motion that has none.
+// Sets the relative error of outputs that are zero up to round-off: those that agree in no
+// digit and are not larger than the errors of others make them. Examples are a sum of energies
+// that cancel, and a momentum that stays zero.
 static void find_relative(struct ct_output_error_estimate *o, size_t n)
 {
-    // Chosen: sums of up to a hundred outputs
-    const double spread = 100; // sums of outputs add up their errors
-    // Chosen: three digits
-    const double small = 1e-3; // against others that have lost all digits
+    // Chosen: outputs may be sums of up to a hundred others.
+    const double spread = 100; // the errors of such a sum
+    // Chosen: three digits.
+    const double small = 1e-3; // relative to others that agree in no digit
     double largest = 0, worst = 0, largest_lost = 0;
     for (size_t i = 0; i < n; i++) {
         largest = fmax(largest, o[i].scale);
@@ -168,13 +173,13 @@ static void find_relative(struct ct_output_error_estimate *o, size_t n)
     }
 }
 
-// The largest relative error, and since when errors have been more than is wanted.
+// Finds the largest relative error, and the time from which errors exceed the limit.
 static void judge(const struct ct_sim *sim, const struct comparison *c, double margin,
                   struct ct_estimate *e)
 {
     const size_t n = sim->system->equations.nresult;
     const double wanted = held_tolerances * sim->tolerance;
-    // steps err by round-off errors of either sign, which no run tells that has the same ones
+    // round-off of the steps has random signs; a run with the same round-off does not show it
     const double roundoff = DBL_EPSILON * sqrt(fmax(1, (double)sim->report.stats.steps));
     const struct ct_equations *q = &sim->system->equations;
     for (size_t i = 0; i < n; i++) // the total energy is a sum that may cancel
@@ -199,7 +204,7 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
                 e->holds_until = k ? c->time[k - 1] : 0;
 }
 
-// ---- the second run -----------------------------------------------------------------------------
+// ---- the second run ------------------------------------------------------------------------
 
 static const char *describe(struct ct_arena *a, const struct companion *c)
 {
@@ -208,8 +213,8 @@ static const char *describe(struct ct_arena *a, const struct companion *c)
     return ct_arena_printf(a, "%s with steps held to %.2g", c->method, c->rtol);
 }
 
-// The other method of `auto` as well, also where both its tolerances are what double precision
-// leaves.
+// Sets the tolerance of the other method of `auto`, which may be at the limit of double
+// precision.
 static void hold_stiff(const struct ct_sim *sim, const struct companion *c,
                        struct ct_run_options *second)
 {
@@ -222,7 +227,8 @@ static void hold_stiff(const struct ct_sim *sim, const struct companion *c,
     second->stiff_atol = o->stiff_atol * second->stiff_rtol / o->stiff_rtol;
 }
 
-// False: the run failed, and why is in `said`. c->method (out) is that which it ended with.
+// Makes the second run. False: it failed, and `said` has the reason. c->method (out) is its
+// last method.
 static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
                           struct comparison *comparison)
 {
@@ -230,7 +236,7 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct 
     const double tighter = c->rtol / o->rtol;
     const struct ct_sim_options options
         = {.method = c->method,
-           // what (8.14), 8.1 and the other method of `auto` go by
+           // the tolerance that (8.14), section 8.1 and the other method of `auto` use
            .tolerance = sim->tolerance * tighter,
            .absolute = o->atol / o->rtol * sim->tolerance * tighter,
            .step = c->step,
@@ -244,7 +250,7 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct 
     struct ct_sim *second = ct_sim_create(said, sim->system, &options);
     bool ok = second != NULL;
     if (ok) {
-        second->run_options.step = c->step; // not the one of the model
+        second->run_options.step = c->step; // not the step of the model
         second->run_options.rtol = c->rtol;
         second->run_options.least_rtol = c->least_rtol;
         second->run_options.atol = o->atol * tighter;
@@ -262,8 +268,8 @@ static bool run_companion(const struct ct_sim *sim, struct ct_ctx *said, struct 
     return ok;
 }
 
-// Are its errors others than those of the first run, by (8.31)? If not, steps are held up by
-// something that both runs have in common.
+// Are the errors of the second run independent of those of the first, by (8.31)? If not,
+// something other than the tolerance limits the steps of both runs.
 static bool is_other(const struct ct_sim *sim, const struct companion *c)
 {
     const struct ct_method *m = sim->report.method;
@@ -273,9 +279,9 @@ static bool is_other(const struct ct_sim *sim, const struct companion *c)
         || pow(c->rtol < sim->run_options.rtol ? more : 1 / more, m->order) >= least;
 }
 
-// After a second run of nearly the same steps: a third one. Tighter by as much again while there is
-// room, as what holds steps up may be a longest step, or a singular configuration to be crossed;
-// else looser.
+// Chooses a third run after a second one of nearly the same steps. It is tighter by the same
+// factor if possible, because a longest step or a singular configuration may limit the steps;
+// otherwise it is looser.
 static struct companion choose_third(const struct ct_sim *sim, const struct companion *second)
 {
     struct companion c = *second;
@@ -289,7 +295,7 @@ static struct companion choose_third(const struct ct_sim *sim, const struct comp
     return c.rtol >= c.least_rtol ? c : choose_looser(sim);
 }
 
-// To the bit: what is told is round-off of so many steps.
+// Are the runs equal to the last bit? Then only the round-off of their steps is known.
 static bool is_same(const struct comparison *c)
 {
     for (size_t i = 0; i < c->nrow * c->sim->system->equations.nresult; i++)
@@ -317,7 +323,8 @@ static struct comparison start_comparison(const struct ct_sim *sim)
                                .output = CT_NEWN(a, struct ct_output_error_estimate, n + 1)};
 }
 
-// One that does not fail: what did not pass a singular configuration may pass a little looser.
+// Finds a second run that does not fail. A run that cannot pass a singular configuration may
+// pass with a looser tolerance.
 static bool find_companion(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
                            struct comparison *comparison)
 {
@@ -337,8 +344,9 @@ static bool find_companion(const struct ct_sim *sim, struct ct_ctx *said, struct
     return run_companion(sim, said, c, comparison);
 }
 
-// True: it was made, and is in the comparison. A looser one of the same steps as well may err by
-// much more, as where stability holds them up: it tells only where the second one told nothing.
+// Adds the third run to the comparison. True: it was made. If it is looser with the same steps,
+// its error may be much larger, as where stability limits the steps; it then counts only for
+// outputs about which the second run says nothing.
 static bool add_third(const struct ct_sim *sim, struct ct_ctx *said, struct companion *c,
                       struct comparison *comparison)
 {

@@ -1,6 +1,7 @@
-// Shards become one file: rows of all members in order, byte for byte those of the whole sweep.
+// Joins shards into one file: the rows of all members in order, byte for byte those of the
+// whole sweep.
 //
-//     PART.settings   what its rows depend on, and `shard  I of N, of M members`
+//     PART.settings   what the rows depend on, and a line `shard  I of N, of M members`
 //     row k (from 0)  the next one of shard k mod N + 1
 #include "study/study.h"
 
@@ -16,10 +17,10 @@ static const struct ct_mark none = {0};
 
 struct part {
     const char *path;
-    const char *settings; // but for the line of the shard
+    const char *settings; // without the line of the shard
     long shard, nshard, nall;
     FILE *in;
-    char *line; // the last one read  (size)
+    char *line; // the line read last  (size)
     size_t size, length;
     long nline;
 };
@@ -33,7 +34,7 @@ struct merge {
     struct ct_outfile out;
 };
 
-// ---- parts --------------------------------------------------------------------------------------------
+// ---- parts ---------------------------------------------------------------------------------
 
 static bool is_there(const char *path)
 {
@@ -57,10 +58,10 @@ static bool open_part(struct merge *m, struct part *p)
                     p->in ? "it is no regular file" : strerror(errno));
 }
 
-// The line of the shard is taken out of the settings.
+// Reads the settings and removes the line of the shard from them.
 static bool read_settings(struct merge *m, struct part *p)
 {
-    // Limit: with a message
+    // Limit: with a message.
     enum { MOST_TEXT = 1 << 20 };
     struct ct_arena *a = m->ctx->model;
     const char *path = ct_arena_printf(a, "%s.settings", p->path);
@@ -110,7 +111,7 @@ static bool compare(struct merge *m, const struct part *p)
                     first->path);
 }
 
-// All shards, each once.
+// Checks that all shards are there, each once.
 static bool find_shards(struct merge *m)
 {
     // Layout: of a message
@@ -154,7 +155,7 @@ static bool read_parts(struct merge *m, const char *const *path)
     return ok && find_shards(m);
 }
 
-// ---- rows ---------------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 static bool next_line(struct part *p)
 {
@@ -170,7 +171,7 @@ static bool is_damaged(struct merge *m, const struct part *p, const char *why)
                     CT_E_PART_DAMAGED, "the part is not whole: %s", why);
 }
 
-// Between fields: names of columns may be quoted.
+// Counts the commas between fields. Names of columns may be quoted.
 static size_t count_commas(const char *line)
 {
     size_t n = 0;
@@ -199,7 +200,7 @@ static bool merge_headers(struct merge *m)
     return true;
 }
 
-// Of the line last read: the run that it has to be, and a field for each column.
+// Is the line read last a row with this run number and a field for each column?
 static bool is_row(const struct part *p, long run, size_t ncomma)
 {
     char *end;
@@ -228,7 +229,8 @@ static bool merge_rows(struct merge *m, size_t ncomma)
     return true;
 }
 
-// The settings of rows that have stood there before do not belong to these.
+// Removes the settings of an earlier file of the same name, which do not belong to the new
+// rows.
 static bool remove_old_settings(struct merge *m)
 {
     if (!m->out.partial)
@@ -250,7 +252,7 @@ static bool is_a_part(const struct merge *m, const char *path)
     return false;
 }
 
-// ---- all of it ----------------------------------------------------------------------------------------
+// ---- all of it -----------------------------------------------------------------------------
 
 struct task {
     struct merge *m;

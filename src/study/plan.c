@@ -12,9 +12,10 @@
 
 static const struct ct_mark none = {0};
 
-// ---- reading ------------------------------------------------------------------------------------------
+// ---- reading -------------------------------------------------------------------------------
 
-// A number, a quantity or a constant expression, as the parameters of a model are.
+// Reads a number, a quantity with a unit or a constant expression, as for parameters of a
+// model.
 static bool read_value(struct ct_ctx *ctx, const char *text, double *value)
 {
     static const char model[] = "cotree: 1\nparameters: {value: 0}\n";
@@ -47,7 +48,7 @@ static bool read_count(const char *text, long *n)
     return end != text && !*end && !errno && *n >= 1 && *n <= CT_MOST_MEMBERS;
 }
 
-// The part of *text up to the next colon; *text becomes what is behind it, NULL at the end.
+// Returns the part of *text up to the next colon. *text becomes the remainder, NULL at the end.
 static const char *take_part(struct ct_ctx *ctx, const char **text)
 {
     const char *part = *text;
@@ -83,7 +84,7 @@ static bool read_numbers(struct ct_ctx *ctx, struct ct_axis *axis, const char *r
     return true;
 }
 
-// option: with which the axis is given.
+// option: the command-line option that gives the axis.
 static bool find_parameter(struct ct_ctx *ctx, const struct ct_model *m,
                            const struct ct_axis *axis, struct ct_mark at, const char *option)
 {
@@ -146,7 +147,7 @@ bool ct_plan_read(struct ct_ctx *ctx, const struct ct_model *m, const char *cons
     return ok && count_members(ctx, out, sample);
 }
 
-// ---- members from a file ------------------------------------------------------------------------------
+// ---- members from a file -------------------------------------------------------------------
 
 static bool read_sheet(struct ct_ctx *ctx, const char *path, struct ct_sheet *sheet)
 {
@@ -184,7 +185,7 @@ static bool read_column(struct ct_ctx *ctx, const struct ct_model *m, const stru
         const size_t at = (size_t)(k + 1) * t->ncolumn + i;
         const char *field = t->field[at];
         char *end;
-        value[k] = strtod(field, &end); // the locale is that of C
+        value[k] = strtod(field, &end); // the locale is "C"
         const bool is_number = end != field && !*end;
         if ((!is_number && !read_value(ctx, field, &value[k])) || !isfinite(value[k]))
             return ct_error(ctx, t->mark[at], CT_E_TABLE_DATA,
@@ -242,7 +243,7 @@ const char **ct_plan_settings(struct ct_arena *a, const struct ct_plan *s, const
     return all;
 }
 
-// ---- shards -------------------------------------------------------------------------------------------
+// ---- shards --------------------------------------------------------------------------------
 
 bool ct_plan_take_shard(struct ct_ctx *ctx, struct ct_plan *s, long shard, long nshard)
 {
@@ -263,9 +264,9 @@ long ct_plan_number(const struct ct_plan *s, long member)
     return s->nshard ? s->shard + member * s->nshard : member + 1;
 }
 
-// ---- values -------------------------------------------------------------------------------------------
+// ---- values --------------------------------------------------------------------------------
 
-// Number k (from 0) of the stream that starts with seed, in [0, 1).
+// Random number k (from 0) of the sequence with this seed, in [0, 1).
 static double chance(uint64_t seed, uint64_t k)
 {
     uint64_t z = seed + (k + 1) * 0x9e3779b97f4a7c15u;

@@ -1,17 +1,18 @@
-// Parameter studies: members run in lanes and on all cores, a row for each.
+// Parameter studies: runs the members in SIMD batches on all cores and writes a row for each.
 //
-//     file -> text -> [ worker: system, assembly, run, lanes ] x threads -> rows in order -> FILE
+//     file -> text -> [ worker: system, assembly, run, batch ] x threads -> rows in order -> FILE
 //
-// Parameters are inputs of the generated programs. A member is read again from the parsed text of the file with
-// its values, so that whatever the reader refuses is refused here too, and so that initial values and `simulation`
-// may depend on what varies; then its values go into the worker's own system, whose equations stay. Three ways:
+// Parameters are inputs of the generated programs. For each member the parsed text of the file
+// is read again with the member's values. The reader therefore checks every member, and initial
+// values and `simulation` may depend on what varies. Then the values are copied into the
+// worker's own system, whose equations stay. A member runs in one of three ways:
 //
-//     in lanes    the usual one; see solve/batch/batch.h
-//     alone       where lanes cannot be: other methods, what a lane has given up
-//     derived     a system for each member, where a value decides about the equations: in ct_exs.decided
+//     in a lane   the usual way: one lane of a SIMD batch; see solve/batch/batch.h
+//     alone       if a batch does not support the method, or has given up the member
+//     derived     with equations of its own, if a value determines their form: in ct_exs.decided
 //
-// What always holds: what a row says depends on its member alone, not on threads, lanes or order; workers share
-// only what is constant and, one at a time, the rows.
+// What always holds: a row depends only on its member, not on threads, lanes or order. Workers
+// share only constants and, under a lock, the rows.
 #include "study/study.h"
 
 #include "base/guard.h"
@@ -23,18 +24,18 @@
 #include <unistd.h>
 
 static const struct ct_mark none = {0};
-// Limit: of a model, with a message; of threads
+// Limit: of a model, with a message; of threads.
 enum { MOST_TEXT = 64 << 20, MOST_THREADS = 1024 };
 
-// ---- preparation --------------------------------------------------------------------------------------
+// ---- preparation ---------------------------------------------------------------------------
 
-// Parameters that change with the axes, directly or through definitions.
+// Marks the parameters that change with the axes, directly or through definitions.
 static bool *find_changing(struct ct_study *s, const struct ct_model *m)
 {
     bool *changes = CT_NEWN(s->own.scratch, bool, m->nparameter + 1);
     for (size_t i = 0; i < s->plan.naxis; i++)
         changes[ct_names_get(&m->parameter_index, s->plan.axis[i].name)] = true;
-    for (size_t i = 0; i < m->nparameter; i++) // a definition uses those before it
+    for (size_t i = 0; i < m->nparameter; i++) // a definition uses only parameters before it
         for (size_t k = ct_ex_walk(m->x, &m->parameter[i].definition, 1); k-- > 0;) {
             const struct ct_sym *sym = ct_ex_symbol(m->x, (ct_ex){m->x->stack[k]});
             changes[i] |= sym && sym->kind == CT_SYM_PARAM && changes[sym->index];
@@ -42,7 +43,7 @@ static bool *find_changing(struct ct_study *s, const struct ct_model *m)
     return changes;
 }
 
-// Does one of them decide about the equations?
+// Does a parameter that varies determine the form of the equations?
 static void find_deciding(struct ct_study *s)
 {
     const struct ct_model *m = &s->system->model;
@@ -84,7 +85,7 @@ static void take_options(struct ct_study *s, const char *path,
     s->run = o->run;
     s->run.method = copy_text(a, o->run.method);
     s->run.backend = copy_text(a, o->run.backend);
-    s->run.solver = NULL; // lanes have forms of their own
+    s->run.solver = NULL; // batches have their own solvers
 }
 
 static bool read_text(struct ct_study *s, const struct ct_study_options *options)
@@ -101,13 +102,14 @@ static bool read_text(struct ct_study *s, const struct ct_study_options *options
                     e == CT_TEXT_TOO_BIG ? ": it is too big" : "");
 }
 
-// Method, back end and end time of the file's own values, and whether lanes are possible.
+// Finds the method, back end and end time for the values of the file, and whether members can
+// run in batches.
 static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
 {
     struct ct_sim *probe = CT_NEW(s->own.model, struct ct_sim);
     probe->own = s->own;
     const bool ok = ct_sim_prepare(probe, s->system, &s->run);
-    s->own = probe->own; // with what it says
+    s->own = probe->own; // with its diagnostics
     if (!ok)
         return false;
     const struct ct_simulation *m = &s->system->model.simulation;
@@ -220,7 +222,7 @@ void ct_study_destroy(struct ct_study *s)
     free(s);
 }
 
-// ---- the run ------------------------------------------------------------------------------------------
+// ---- the run -------------------------------------------------------------------------------
 
 static bool run_all(struct ct_study *s)
 {
@@ -237,7 +239,7 @@ static bool run_all(struct ct_study *s)
     if (r->bar)
         ct_progress_init(&s->progress, r->bar, "sweep");
     s->sink.flushed = start;
-    ct_study_write_rows(s); // past those taken over
+    ct_study_write_rows(s); // rows after those taken over
     ct_study_run_members(s);
     ct_progress_finish(&s->progress);
     if (ct_guard_is_interrupted() && s->written < s->plan.nmember)
@@ -262,14 +264,14 @@ static bool run_and_report(void *data)
     return ok;
 }
 
-// Which rows are there, and how to go on.
+// Reports which rows exist and how to resume.
 static bool report_interrupt(void *data)
 {
     struct task *t = data;
     struct ct_study *s = t->s;
     ct_progress_finish(&s->progress);
     ct_csv_abandon(&s->sink.csv);
-    ct_outfile_discard(&s->sink.whole); // to write it takes longer than anybody waits
+    ct_outfile_discard(&s->sink.whole); // writing it would take longer than an interruption may
     const char *partial = s->sink.is_by_row ? s->sink.csv.file.partial : NULL;
     const bool goes_on = partial && s->sink.suffix == CT_SUFFIX_CSV;
     ct_error(&s->own, none, CT_E_INTERRUPTED, "interrupted after %ld of %ld rows%s%s%s%s",
@@ -294,7 +296,7 @@ bool ct_study_run(struct ct_ctx *ctx, struct ct_study *s,
     const bool ok = ct_enter(ctx, run_and_report, &t);
     if (!ok && ctx->was_interrupted && s->results->path)
         ct_enter_uninterrupted(ctx, report_interrupt, &t);
-    if (!ok) { // without memory they are still open
+    if (!ok) { // out of memory: they are still open
         ct_csv_abandon(&s->sink.csv);
         ct_outfile_abandon(&s->sink.whole);
     }

@@ -1,4 +1,5 @@
-// The rows of a study: in order, in a file that appears when all are there, and taken over from one that was cut off.
+// The file of rows of a study. Rows are in order; the file appears when all are there; rows of
+// an interrupted sweep are taken over.
 #include "study/study.h"
 
 #include "base/guard.h"
@@ -15,9 +16,9 @@
 
 static const struct ct_mark none = {0};
 static const double seconds_between_flushes
-    = 0.5; // Limit: what an interruption may cost at most
+    = 0.5; // Limit: results that an interruption may lose [s].
 
-// ---- rows ---------------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 static const char **column_names(struct ct_study *s, size_t *n)
 {
@@ -41,7 +42,7 @@ static bool write_row(struct ct_study *s, long member, const double *value)
     for (size_t i = 0; i < s->plan.naxis; i++)
         ct_csv_number(w, ct_plan_value(&s->plan, member, i));
     for (size_t i = 0; i < n; i++)
-        if (value && !isnan(value[i])) // a time that never comes is none
+        if (value && !isnan(value[i])) // NaN: the time of an event that does not occur
             ct_csv_number(w, value[i]);
         else
             ct_csv_text(w, "");
@@ -66,7 +67,7 @@ static bool give_row(struct ct_study *s, long member, const struct ct_study_row 
                   row->message);
 }
 
-// Rows that are complete from the first on go out; the rest waits for them.
+// Writes the rows that are complete, from the first on; later rows wait.
 void ct_study_write_rows(struct ct_study *s)
 {
     for (; s->written < s->plan.nmember && !s->is_stopped; s->written++) {
@@ -87,7 +88,7 @@ void ct_study_write_rows(struct ct_study *s)
     }
 }
 
-// FILE:LINE:COLUMN: TEXT [CODE] of the first error, on the heap.
+// The first error as FILE:LINE:COLUMN: TEXT [CODE], on the heap.
 static char *message_of(const struct ct_ctx *ctx, int *code)
 {
     for (size_t i = 0; i < ctx->ndiagnostic; i++) {
@@ -116,11 +117,12 @@ static double *copy_values(const double *value, size_t n)
     return copy;
 }
 
-// A member is over; value NULL: it failed with the errors in ctx.
+// Records a finished member. value NULL: it failed with the errors in ctx.
 void ct_study_record(struct ct_study *s, long member, const double *value,
                      const struct ct_ctx *ctx)
 {
-    if (!value && ct_guard_is_interrupted()) // it may not have failed: it is still to be done
+    // the member was interrupted and has not failed: it runs again on resuming
+    if (!value && ct_guard_is_interrupted())
         return;
     struct ct_study_row row = {.state = value ? CT_ROW_DONE : CT_ROW_FAILED};
     if (value)
@@ -142,9 +144,9 @@ void ct_study_record(struct ct_study *s, long member, const double *value,
     pthread_mutex_unlock(&s->rows);
 }
 
-// ---- the file -----------------------------------------------------------------------------------------
+// ---- the file ------------------------------------------------------------------------------
 
-// What the file begins with.
+// The header of the file.
 static const char *header_text(struct ct_study *s)
 {
     size_t n;
@@ -155,7 +157,7 @@ static const char *header_text(struct ct_study *s)
     return ct_arena_printf(s->own.model, "%.*s\n", (int)w.n, w.text);
 }
 
-// A field of a row as it is written: a number, and *line (inout) is behind its comma.
+// Reads a field that is a number; *line (inout) moves behind its comma.
 static bool read_number(const char **line)
 {
     char text[CT_NUMBER_SIZE];
@@ -172,7 +174,7 @@ static bool read_empty(const char **line)
     return *(*line)++ == ',';
 }
 
-// The same, of this value.
+// The same for a field that must have this value.
 static bool read_value(const char **line, double v)
 {
     char text[CT_NUMBER_SIZE];
@@ -182,7 +184,7 @@ static bool read_value(const char **line, double v)
     return is_it;
 }
 
-// Is this the row of the member, every field whole, and how did that end? -1: it is not.
+// Is this line the complete row of the member? Returns its status, or -1 if it is not.
 static int read_status(const struct ct_study *s, long member, const char *line)
 {
     const size_t length = strlen(line);
@@ -208,7 +210,7 @@ static bool not_resumable(struct ct_study *s, const char *path, const char *why)
                     why);
 }
 
-// Take over whole rows of a file; *kept (out): bytes of them.
+// Takes over the complete rows of a file; *kept (out): their size in bytes.
 static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept)
 {
     char *line = NULL;
@@ -223,7 +225,7 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
     }
     for (long i = 0; ok && *kept && (n = getline(&line, &size, in)) > 0; i++) {
         if (line[n - 1] != '\n')
-            break; // cut off in the middle
+            break; // an incomplete line
         const int status = i < s->plan.nmember ? read_status(s, i, line) : -1;
         ok = status >= 0
           || not_resumable(s, path,
@@ -242,26 +244,27 @@ static bool read_rows(struct ct_study *s, FILE *in, const char *path, long *kept
     return ok;
 }
 
-// ---- settings beside the rows ---------------------------------------------------------------------------
+// ---- settings beside the rows --------------------------------------------------------------
 
-//     FILE.partial, FILE.partial.settings  -- complete -->  FILE
-//                          with `resume`, and of shards:   FILE, then FILE.settings
 //
-// Who goes on with sweeps wants complete ones to be known as such, and who merges shards wants to know that they belong
-// together; for all others the rows are all there is. Whatever
-// happens in between, rows never stand beside settings of others.
+//     FILE.partial, FILE.partial.settings  -- complete -->  FILE
+//                          with `resume`, and for shards:   FILE, then FILE.settings
+//
+// Settings stay beside complete rows only if `resume` or a shard needs them later: to recognise
+// a complete sweep, or to check that shards belong together. At no time do rows stand beside
+// the settings of other rows.
 
 static const char *settings_path(struct ct_study *s, const char *rows)
 {
     return ct_arena_printf(s->own.model, "%s.settings", rows);
 }
 
-// Before the first row is.
+// Writes the settings before the first row.
 static bool write_settings(struct ct_study *s)
 {
     const struct ct_outfile *rows = &s->sink.csv.file;
     struct ct_outfile o;
-    if (!rows->partial) // no file of its own
+    if (!rows->partial) // standard output has no settings
         return true;
     if (!ct_outfile_open(&s->own, &o, settings_path(s, rows->partial)))
         return false;
@@ -269,7 +272,7 @@ static bool write_settings(struct ct_study *s)
     return ct_outfile_close(&s->own, &o);
 }
 
-// Those of rows that have stood there before.
+// Removes the settings of an earlier file of the same name.
 static bool remove_old_settings(struct ct_study *s)
 {
     const struct ct_outfile *rows = &s->sink.csv.file;
@@ -294,8 +297,8 @@ static bool move_settings(struct ct_study *s)
         || ct_error(&s->own, none, CT_E_FILE, "cannot write '%s': %s", to, strerror(errno));
 }
 
-// The rows appear under their name, and with that another sweep may begin to write them: not before the settings of these
-// are where they belong.
+// Renames the complete file of rows. From then on another sweep may write to the partial file,
+// so the settings must be in place before.
 static bool finish_rows(struct ct_study *s)
 {
     const struct ct_outfile *rows = &s->sink.csv.file;
@@ -308,10 +311,10 @@ static bool finish_rows(struct ct_study *s)
     return ok;
 }
 
-// How the rows were made differs so from what is asked for now; NULL: it does not.
+// Returns the first setting that differs from those of existing rows; NULL: none does.
 static const char *find_difference(struct ct_study *s, const char *rows)
 {
-    // Limit: a file that is longer is another
+    // Limit: a longer file is not one of settings.
     enum { MOST_TEXT = 1 << 20 };
     char *text;
     size_t n;
@@ -323,9 +326,10 @@ static const char *find_difference(struct ct_study *s, const char *rows)
                                      ct_study_settings(s));
 }
 
-// ---- going on -------------------------------------------------------------------------------------------
+// ---- going on ------------------------------------------------------------------------------
 
-// Go on at the end of the rows that a partial file has; if there is none, *found is false.
+// Resumes after the last complete row of a partial file. *found is false if there is no such
+// file.
 static bool resume(struct ct_study *s, const char *path, bool *found)
 {
     struct ct_csv *w = &s->sink.csv;
@@ -344,7 +348,7 @@ static bool resume(struct ct_study *s, const char *path, bool *found)
         return not_resumable(s, partial, difference);
     if (!read_rows(s, w->file.stream, partial, &kept))
         return false;
-    if (kept == 0) { // not even the header is there
+    if (kept == 0) { // not even the header is complete
         ct_outfile_abandon(&w->file);
         *found = false;
         return true;
@@ -354,7 +358,7 @@ static bool resume(struct ct_study *s, const char *path, bool *found)
         || not_resumable(s, partial, "it cannot be written");
 }
 
-// A file that is complete is what an interrupted sweep would have become.
+// Is the file the complete result of this sweep?
 static bool is_complete(struct ct_study *s, const char *path)
 {
     struct stat rows;
@@ -412,9 +416,9 @@ bool ct_study_open(struct ct_study *s)
     return s->sink.is_open || begin_file(s, path);
 }
 
-// ---- the end --------------------------------------------------------------------------------------------
+// ---- the end -------------------------------------------------------------------------------
 
-// The value of a member in a column; NaN where it failed.
+// Value of a member in a column; NaN if the member failed.
 static double cell(const struct ct_study *s, long member, size_t c, size_t ncolumn)
 {
     const struct ct_study_row *row = &s->row[member];
@@ -425,7 +429,7 @@ static double cell(const struct ct_study *s, long member, size_t c, size_t ncolu
                               : (double)NAN;
 }
 
-// Members up to the first that is not over.
+// Writes the columns for the members up to the first that is not finished.
 static bool put_columns(struct ct_study *s)
 {
     size_t ncolumn;
@@ -454,7 +458,7 @@ bool ct_study_close(struct ct_study *s, bool ok)
     return ok;
 }
 
-// ---- columns ------------------------------------------------------------------------------------------
+// ---- columns -------------------------------------------------------------------------------
 
 size_t ct_study_column_count(const struct ct_study *study)
 {

@@ -1,10 +1,12 @@
-// What the rows of a study depend on besides what varies in them: a text of one line for each setting.
+// The settings that the rows of a study depend on, besides the varied values: a text with one
+// line for each setting.
 //
 //     model      8f3a5c0e91d2b764, 1840 bytes
 //     tolerance  1e-08
 //
-// Files that are read stand as a checksum: FNV-1a of 64 bits (Fowler, Noll and Vo), enough to see that somebody has
-// changed them. Threads, lanes and the back end are left out: they change round-off errors at most.
+// Files that are read are represented by a checksum: 64-bit FNV-1a (Fowler, Noll and Vo),
+// enough to detect a change. Threads, lanes and the back end are not included, because they
+// change round-off errors at most.
 #include "study/study.h"
 
 #include "io/text.h"
@@ -28,14 +30,14 @@ static uint64_t checksum(uint64_t sum, const void *data, size_t n)
     return sum;
 }
 
-// ---- the text ---------------------------------------------------------------------------------------
+// ---- the text ------------------------------------------------------------------------------
 
 struct settings {
     struct ct_arena *a;
     const char *text;
 };
 
-// A line `name  value`; nothing where the format gives nothing.
+// Adds a line `name  value`; nothing if the format gives an empty value.
 static void add(struct settings *w, const char *name, const char *fmt, ...)
     __attribute__((format(printf, 3, 4)));
 
@@ -49,7 +51,7 @@ static void add(struct settings *w, const char *name, const char *fmt, ...)
         w->text = ct_arena_printf(w->a, "%s%-*s %s\n", w->text, WIDTH, name, value);
 }
 
-// With the fewest digits that are this number and no other.
+// Formats a number with the fewest digits that identify it.
 static const char *shortest(struct ct_arena *a, double value)
 {
     const char *text = "";
@@ -63,7 +65,7 @@ static const char *shortest(struct ct_arena *a, double value)
 
 static void add_number(struct settings *w, const char *name, double value)
 {
-    if (value != 0) // given
+    if (value != 0) // nonzero: the option was given
         add(w, name, "%s", shortest(w->a, value));
 }
 
@@ -79,7 +81,7 @@ static void add_tables(struct settings *w, const struct ct_exs *x)
         add(w, "tables", "%016" PRIx64, sum);
 }
 
-// The name of a choice of trees, or what the file of one has.
+// Adds the name of a choice of trees, or the checksum of a tree file.
 static void add_tree(struct settings *w, const char *tree)
 {
     char *text;
@@ -149,9 +151,9 @@ const char *ct_study_settings(struct ct_study *s)
     return w.text;
 }
 
-// ---- comparison -------------------------------------------------------------------------------------
+// ---- comparison ----------------------------------------------------------------------------
 
-// The line at *text without its end; *text becomes the next one.
+// Returns the line at *text without its end; *text moves to the next line.
 static const char *take_line(struct ct_arena *a, const char **text)
 {
     const char *line = *text;
@@ -160,7 +162,7 @@ static const char *take_line(struct ct_arena *a, const char **text)
     return ct_arena_strndup(a, line, n);
 }
 
-// Names are cut at the blanks behind them.
+// Returns the name on a line, up to the blanks after it.
 static const char *name_of(struct ct_arena *a, const char *line)
 {
     size_t n = strlen(line) < WIDTH ? strlen(line) : WIDTH;
@@ -186,7 +188,7 @@ bool ct_study_find_difference(struct ct_arena *a, const char *before, const char
         *out = (struct ct_setting_difference){new_name, value_of(old), value_of(new)};
         if (strcmp(old_name, new_name) == 0)
             return true;
-        // a line that only one of them has
+        // a line that only one of the texts has
         const char *name = ct_arena_printf(a, "\n%-*s ", WIDTH, new_name);
         if (*new && !strstr(rest, name))
             out->before = NULL;

@@ -8,7 +8,7 @@
 // Layout: the rest is in the summary file
 enum { MOST_SHOWN = 10 };
 
-// ---- summaries ----------------------------------------------------------------------------------------
+// ---- summaries -----------------------------------------------------------------------------
 
 static void write_axes(struct ct_json *j, const struct ct_plan *plan)
 {

@@ -1,4 +1,4 @@
-// What is taken over the runs of a study: "peak=max(abs(tip.deflection.y))".
+// Functions of outputs over the runs of a study: "peak=max(abs(tip.deflection.y))".
 #include "study/study.h"
 
 #include <string.h>
@@ -27,7 +27,7 @@ static bool wrong(struct ct_study *s, const char *text, const char *why)
                     text, why);
 }
 
-// Does the bracket at text[0] close at its end?
+// Does the bracket that opens at text[0] close at the end of the text?
 static bool is_one_bracket(const char *text)
 {
     int depth = 0;

@@ -1,5 +1,5 @@
-// An analysis for each member of a plan: `run`, the parameters, then the columns that the analysis has by itself. Each
-// member is a system of its own.
+// Runs an analysis for each member of a plan. A row has `run`, the parameters, then the columns
+// of the analysis. Each member is a system of its own.
 #include "study/study.h"
 
 #include "base/guard.h"
@@ -19,16 +19,16 @@ struct variation {
     const struct ct_vary_options *o;
     struct ct_plan plan;
     struct ct_columns table;
-    size_t ncolumn; // of the analysis; 0: not known
-    long member;    // whose rows come
+    size_t ncolumn; // of the analysis; 0: not known yet
+    long member;    // the member whose rows are written
     long nfailed;
 };
 
-// ---- rows ---------------------------------------------------------------------------------------------
+// ---- rows ----------------------------------------------------------------------------------
 
 static const char *const mode_columns[] = {"mode", "frequency_hz", "omega_rad_s", "damping"};
 
-// Column c of the analysis; NULL beyond the last one.
+// Name of column c of the analysis; NULL beyond the last one.
 static const char *column_name(const struct variation *v, const struct ct_system *sys, size_t c)
 {
     if (v->o->analysis == CT_VARY_MODES)
@@ -55,7 +55,7 @@ static void put_failed(struct variation *v, long member)
         put(v, c, NAN);
 }
 
-// Those of the first member that can be made; all have the same.
+// Finds the columns from the first member that can be analysed; all members have the same.
 static bool find_columns(struct variation *v, const struct ct_system *sys)
 {
     const size_t first = v->plan.naxis + 1;
@@ -70,7 +70,7 @@ static bool find_columns(struct variation *v, const struct ct_system *sys)
             break;
     if (v->ncolumn == 0) {
         v->ncolumn = c;
-        for (long i = 0; i < v->member; i++) // which could not be made
+        for (long i = 0; i < v->member; i++) // the members that failed before it
             put_failed(v, i);
     }
     return (!name && c == v->ncolumn)
@@ -80,7 +80,7 @@ static bool find_columns(struct variation *v, const struct ct_system *sys)
                     v->member + 1);
 }
 
-// ---- analyses -----------------------------------------------------------------------------------------
+// ---- analyses ------------------------------------------------------------------------------
 
 static bool find_modes(struct variation *v, struct ct_ctx *ctx, struct ct_system *sys)
 {
@@ -110,7 +110,7 @@ static bool find_equilibrium(struct variation *v, struct ct_ctx *ctx, struct ct_
     return true;
 }
 
-// Samples wait until all are there: of a member that fails none are.
+// The samples of a member are kept until all are there, so that a member that fails has none.
 struct samples {
     size_t ncolumn;
     double *value; // (n x ncolumn)
@@ -142,7 +142,7 @@ static bool follow(struct variation *v, struct ct_ctx *ctx, struct ct_system *sy
     return ok;
 }
 
-// ---- members ------------------------------------------------------------------------------------------
+// ---- members -------------------------------------------------------------------------------
 
 // "l = 0.5, m = 2"
 static const char *values_text(const struct variation *v)
@@ -157,7 +157,7 @@ static const char *values_text(const struct variation *v)
     return text;
 }
 
-// Why a member has no results, as a warning: the others go on.
+// Reports as a warning why a member has no results. The others continue.
 static void report_failure(struct variation *v, struct ct_ctx *own)
 {
     // Layout: of messages
@@ -239,7 +239,7 @@ static bool vary(void *task)
         || !ct_plan_choose(&v->own, &m, o->members, o->vary, o->nvary, o->sample, o->seed,
                            &v->plan))
         return false;
-    v->own.ndiagnostic = 0; // each member has the warnings of the file again
+    v->own.ndiagnostic = 0; // discards the warnings of the file, which each member repeats
     ct_columns_init(&v->table, v->own.model, "run", CT_COLUMN_INTEGER);
     for (size_t i = 0; i < v->plan.naxis; i++)
         ct_columns_add(&v->table, v->plan.axis[i].name, CT_COLUMN_NUMBER);

@@ -7,22 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-// One thread's own.
+// The data of one thread.
 struct worker {
     struct ct_study *s;
     struct ct_system *system;
-    struct ct_ctx member_ctx; // what the reader says about a member
-    struct ct_sim sim;        // its run is the companion of the lanes
+    struct ct_ctx member_ctx; // diagnostics of the reader about a member
+    struct ct_sim sim;        // its run also serves the lanes
     struct ct_assembly *assembly;
-    struct ct_batch *group[CT_BATCH_GROUPS]; // of lanes: they step in turn
+    struct ct_batch *group[CT_BATCH_GROUPS]; // batches, stepped in turn
     int ngroup;
     long member[CT_BATCH_GROUPS][CT_LANES];
     double *value; // results of a member  (nresult)
 };
 
-// ---- what workers share -------------------------------------------------------------------------------
+// ---- what workers share --------------------------------------------------------------------
 
-// The next member, or -1 when there is none.
+// Takes the next member; -1 if there is none.
 static long take_member(struct ct_study *s)
 {
     long member = -1;
@@ -52,9 +52,10 @@ static void lose_memory(struct ct_study *s)
     pthread_mutex_unlock(&s->rows);
 }
 
-// ---- a member -----------------------------------------------------------------------------------------
+// ---- a member ------------------------------------------------------------------------------
 
-// The texts NAME=VALUE of a member behind those of the command line; member -1: what the file says.
+// The texts NAME=VALUE of a member after those of the command line. member -1: the values of
+// the file.
 static const char **member_set(const struct ct_study *s, struct ct_arena *a, long member,
                                size_t *n)
 {
@@ -66,13 +67,15 @@ static const char **member_set(const struct ct_study *s, struct ct_arena *a, lon
     return ct_plan_settings(a, &s->plan, value, o->set, n);
 }
 
-// The worker's system takes the values of the member as read by the reader, `simulation` included.
+// Copies the values of a member, as read by the reader, into the worker's system, `simulation`
+// included.
 static void take_values(struct ct_model *to, const struct ct_model *from)
 {
     const struct ct_simulation *m = &from->simulation;
     for (size_t i = 0; i < to->nparameter; i++)
         to->parameter[i].value = from->parameter[i].value;
-    memcpy(to->value, from->value, (to->nparameter + 1) * sizeof *to->value); // t is the first
+    // the first value is t
+    memcpy(to->value, from->value, (to->nparameter + 1) * sizeof *to->value);
     to->simulation.duration = m->duration;
     to->simulation.samples = m->samples;
     to->simulation.interval = m->interval;
@@ -100,7 +103,8 @@ static bool set_member(struct worker *w, long member)
     return true;
 }
 
-// As `simulate` does it, without samples on the way where steps do not end on them.
+// Runs a member as `simulate` does, but without intermediate samples if steps do not end at
+// them.
 static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
                       struct ct_system *system)
 {
@@ -120,7 +124,7 @@ static void run_alone(struct ct_study *s, long member, struct ct_ctx *ctx,
     ct_sim_destroy(sim);
 }
 
-// The worker's system has the values of the member.
+// Runs a member in the worker's system, which has its values.
 static void run_own(struct worker *w, long member)
 {
     struct ct_ctx *ctx = ct_ctx_create();
@@ -148,7 +152,7 @@ static void run_derived(struct worker *w, long member)
     ct_ctx_destroy(ctx);
 }
 
-// ---- members in lanes ---------------------------------------------------------------------------------
+// ---- members in lanes ----------------------------------------------------------------------
 
 static void forget_errors(struct ct_ctx *ctx)
 {
@@ -162,7 +166,7 @@ static bool start_member(struct worker *w)
         && ct_sim_resolve(&w->sim, &w->s->run);
 }
 
-// Put the next member that lanes can take into one; false when there are no more.
+// Puts the next member that a batch can run into a lane. False if there are no more members.
 static bool fill_lane(struct worker *w, int group, int lane)
 {
     struct ct_study *s = w->s;
@@ -190,7 +194,7 @@ static void empty_lane(struct worker *w, int group, int lane)
     const bool has_arrived = ct_batch_state(lanes, lane) == CT_LANE_ARRIVED;
     if (has_arrived && ct_batch_results(lanes, lane, w->value)) {
         ct_study_record(w->s, member, w->value, &w->sim.own);
-    } else { // it is known to be readable
+    } else { // the file was read before
         forget_errors(&w->sim.own);
         if (set_member(w, member))
             run_own(w, member);
@@ -205,14 +209,14 @@ static void create_groups(struct worker *w)
     for (int g = 0; g < w->ngroup; g++)
         w->group[g]
             = ct_batch_create(sim->own.model, &w->system->equations, sim->run, w->s->ntake);
-    // at the file's own values, which the system still has: the same in each worker
+    // compiled with the file's own values, so that all workers have the same programs
     if (start_member(w))
         for (int g = 0; g < w->ngroup; g++)
             ct_batch_begin(w->group[g]);
     forget_errors(&sim->own);
 }
 
-// A try in all lanes of a group. False: they are empty, and there are no more members.
+// Tries a step in all lanes of a batch. False: all lanes are empty, and no members are left.
 static bool step_group(struct worker *w, int group)
 {
     bool is_running = false;
@@ -245,16 +249,17 @@ static void run_lanes(struct worker *w)
     }
 }
 
-// ---- workers ------------------------------------------------------------------------------------------
+// ---- workers -------------------------------------------------------------------------------
 
-// With what varies as numbers, so that all members order their parameters alike.
+// Loads the system with the varied parameters as numbers, so that all members have the same
+// order of parameters.
 struct ct_system *ct_study_load_system(struct ct_ctx *ctx, const struct ct_study *s)
 {
     struct ct_system_options o = s->system_options;
     o.set = member_set(s, ctx->model, -1, &o.nset);
     struct ct_system *system = ct_system_load_text(ctx, s->text, s->ntext, s->path, &o);
     if (system)
-        system->is_private = true; // members share what is derived later
+        system->is_private = true; // later derivations are shared by all members
     return system;
 }
 
@@ -271,7 +276,7 @@ static bool work(void *task)
     ct_own_init(&w->sim.own);
     w->sim.take = s->take;
     w->sim.ntake = s->ntake;
-    if (!w->system) // text and options are those of the first, which could be loaded
+    if (!w->system) // text and options are those with which the first worker was loaded
         w->system = ct_study_load_system(&w->sim.own, s);
     if (!w->system || !ct_sim_prepare(&w->sim, w->system, &s->run))
         return false;
@@ -287,7 +292,8 @@ static bool work(void *task)
     return true;
 }
 
-// A worker that cannot start leaves its members to the others; the first one's system is there already.
+// Runs one worker. A worker that cannot start leaves its members to the others. The first
+// worker has its system already.
 static void run_worker(struct ct_study *s, bool is_first)
 {
     struct worker w = {.s = s, .system = is_first ? s->system : NULL};
@@ -310,11 +316,11 @@ static void *run_other_worker(void *study)
     return NULL;
 }
 
-// Threads are made for each sweep, so that a process may fork between two.
+// Threads are created for each sweep, so that a process may fork between two sweeps.
 void ct_study_run_members(struct ct_study *s)
 {
     pthread_t *thread = calloc((size_t)s->threads, sizeof *thread);
-    int n = 1; // this one is the first
+    int n = 1; // this thread is the first worker
     while (thread && n < s->threads
            && pthread_create(&thread[n], NULL, run_other_worker, s) == 0)
         n++;
