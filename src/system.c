@@ -99,7 +99,7 @@ static bool choose_tree(struct ct_ctx *ctx, const char *tree, struct ct_formulat
                     tree, ct_suggest(ctx->scratch, tree, words, COUNT(words)));
 }
 
-// ---- the pipeline ----------------------------------------------------------------------------------
+// ---- the pipeline -------------------------------------------------------------------------------
 
 // The file `name`; or n bytes of text, whose file that would be.
 struct source {
@@ -292,7 +292,7 @@ bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
         && ct_start_meets_demands(own, start);
 }
 
-// ---- what it is ---------------------------------------------------------------------------------------
+// ---- what it is ---------------------------------------------------------------------------------
 
 const char *ct_system_name(const struct ct_system *sys)
 {
@@ -313,7 +313,7 @@ const char *ct_system_column(const struct ct_system *sys, size_t i)
     return sys && i < sys->equations.nresult ? sys->equations.result[i].name : NULL;
 }
 
-// ---- the graph -----------------------------------------------------------------------------------------
+// ---- the graph ----------------------------------------------------------------------------------
 
 static const char *node_name(void *data, int v)
 {
@@ -408,7 +408,7 @@ bool ct_system_print_trees(struct ct_ctx *ctx, struct ct_system *sys, const char
     return ok;
 }
 
-// ---- the equations -------------------------------------------------------------------------------------
+// ---- the equations ------------------------------------------------------------------------------
 
 struct printing {
     struct ct_ctx *ctx, *own;
@@ -496,7 +496,7 @@ bool ct_system_summarize_equations(struct ct_ctx *ctx, struct ct_system *sys,
     return print_in_own((struct printing){ctx, NULL, sys, stages, format, false, out});
 }
 
-// ---- the same as texts -------------------------------------------------------------------------------------
+// ---- the same as texts --------------------------------------------------------------------------
 
 static bool graph_into(void *task, FILE *out)
 {

@@ -1,5 +1,6 @@
-// Generated C calls sin and cos of the C library; the tape has its own (expr/sincos.h), right to the last place as
-// well, but not to the same bits. To compare everything else bit for bit, compiled C is given those of the tape.
+// Generated C calls sin and cos of the C library; the tape has its own (expr/sincos.h), right to
+// the last place as well, but not to the same bits. To compare everything else bit for bit,
+// compiled C is given those of the tape.
 #ifndef CT_TEST_OWN_SINCOS_H
 #define CT_TEST_OWN_SINCOS_H
 

@@ -186,13 +186,15 @@ unsigned ct_ex_kinds(const struct ct_exs *x, ct_ex a);
 /// Write the nodes below the n roots to x->stack, each once, operands before the nodes that use
 /// them. Returns their number. The list is valid until the next walk. Cost: the nodes below.
 size_t ct_ex_walk(struct ct_exs *x, const ct_ex *root, size_t n);
-/// The same, of those nodes alone that have symbols of some of these kinds (ct_ex_kinds) below them.
+/// The same, of those nodes alone that have symbols of some of these kinds (ct_ex_kinds) below
+/// them.
 size_t ct_ex_walk_kinds(struct ct_exs *x, const ct_ex *root, size_t n, unsigned kinds);
 
 /// da/ds for a symbol s; comparisons and sign have derivative 0, `if` differentiates its branches.
 /// Cost: nodes below a that have symbols of the kind of s below them, each once.
 ct_ex ct_ex_diff(struct ct_exs *x, ct_ex a, ct_ex s);
-/// The same where the last walk was ct_ex_walk_kinds(x, &a, 1, kind of s) = n: one walk for all symbols of a kind.
+/// The same where the last walk was ct_ex_walk_kinds(x, &a, 1, kind of s) = n: one walk for all
+/// symbols of a kind.
 ct_ex ct_ex_diff_walked(struct ct_exs *x, size_t n, ct_ex a, ct_ex s);
 /// Sum over i of da/ds[i] * ds[i]: the directional (or total time) derivative. Same cost.
 ct_ex ct_ex_diff_along(struct ct_exs *x, ct_ex a, const ct_ex *s, const ct_ex *ds, size_t n);
@@ -243,8 +245,9 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t n);
-/// The same, but nodes without symbols of the kinds of from stay as they are, while the functions above
-/// make all nodes anew, which may simplify them. Cost: nodes below a that have such symbols below them.
+/// The same, but nodes without symbols of the kinds of from stay as they are, while the functions
+/// above make all nodes anew, which may simplify them. Cost: nodes below a that have such symbols
+/// below them.
 ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
                          size_t n);
 /// A node that has operands, made in x from image[id] of each operand.

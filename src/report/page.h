@@ -46,7 +46,8 @@ struct ct_page_block {
     bool is_folded;    // HEADING: HTML folds the block that follows
     const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
     const char **
-        cell; // TABLE: the first row is the head, plain; row by row. MATRIX: mathematics; the first row
+        // TABLE: the first row is the head, plain; row by row. MATRIX: mathematics; the first row
+        cell;
     // has the names of the columns, the first column those of the rows
     size_t ncell, cell_cap;
     size_t ncolumn; // MATRIX: with that of the names

@@ -223,7 +223,8 @@ static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r,
     for (size_t k = 0; k < COUNT(part); k++)
         for (size_t i = 0; i < part[k].n; i++, n++)
             if (where)
-                // cppcheck-suppress autoVariables ; the address is inside the array that at points to
+                // cppcheck-suppress autoVariables ; the address is inside the array that at points
+                // to
                 where[n] = &part[k].at[i];
     return n;
 }

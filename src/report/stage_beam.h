@@ -37,7 +37,8 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
 
 /// Terminal equations: inertia, elastic coordinates, the element and its coordinates.
 void ct_beams_put_terminal(struct ct_derivation *d);
-/// What liang2017 calls the matrices of the beam and the shape integrals of its element.  (stage_beam_matrices.c)
+/// What liang2017 calls the matrices of the beam and the shape integrals of its element.
+/// (stage_beam_matrices.c)
 void ct_beam_matrices_put(struct ct_derivation *d, size_t beam);
 /// Angular velocity of its frame, where it has a name in them.
 void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t beam);

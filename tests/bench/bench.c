@@ -3,12 +3,13 @@
 //     bench [--quick | --beams | --sweep [MEMBERS]]
 //
 // Models are read from YAML and go through the normal stages. A time is the median of 11 samples of
-// the thread's processor time, each of many calls, and of three such medians the least; what a ratio compares is measured
-// alternately in one run, so that a busy machine slows both sides. A loop whose work is always the same is timed along
-// with every row: where it takes longer than it did before, the row is measured again (whatever slows everything at once,
-// for a second or so, is not the program). At the end all quantities with a goal stand together. Goals are those of the project's feasibility study, measured there on
-// one core of a server processor at 3.6 GHz; they include solving for the accelerations where the name
-// says so.
+// the thread's processor time, each of many calls, and of three such medians the least; what a
+// ratio compares is measured alternately in one run, so that a busy machine slows both sides. A
+// loop whose work is always the same is timed along with every row: where it takes longer than it
+// did before, the row is measured again (whatever slows everything at once, for a second or so, is
+// not the program). At the end all quantities with a goal stand together. Goals are those of the
+// project's feasibility study, measured there on one core of a server processor at 3.6 GHz; they
+// include solving for the accelerations where the name says so.
 #include "codegen/native.h"
 #include "expr/tape.h"
 #include "tests/bench/bench.h"
@@ -118,8 +119,8 @@ static struct times compare_back_ends(struct subject *s, const struct ct_program
     return all_times;
 }
 
-// Twelve chains of fused products and sums, which do not wait for each other: what the processor can do at most, in
-// multiplications and additions a second.
+// Twelve chains of fused products and sums, which do not wait for each other: what the processor
+// can do at most, in multiplications and additions a second.
 static double peak(int lanes)
 {
     enum { NCHAIN = 12, LENGTH = 200 };
@@ -201,7 +202,8 @@ static void show_accelerations(struct subject *s, const char *what, double per, 
     bench_line(text, t[1] / per, 0);
 }
 
-// One projection of the state at hand, which meets the constraints already: the least that a step pays.
+// One projection of the state at hand, which meets the constraints already: the least that a step
+// pays.
 static void project(void *data)
 {
     struct subject *s = data;
@@ -370,8 +372,9 @@ static void run_solved(void *data)
     ct_program_run(&s->machine->solved, s->machine->input);
 }
 
-// Speeds by chance. Of a straight chain at rest accelerations fall from ball to ball until they are smaller than normal numbers,
-// which take much longer (500 balls: 45.8 instead of 34.7 us); no motion stays there.
+// Speeds by chance. Of a straight chain at rest accelerations fall from ball to ball until they are
+// smaller than normal numbers, which take much longer (500 balls: 45.8 instead of 34.7 us); no
+// motion stays there.
 static void set_in_motion(struct subject *s)
 {
     struct ct_evaluator *m = s->machine;
@@ -382,9 +385,9 @@ static void set_in_motion(struct subject *s)
     }
 }
 
-// An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of the way from the model
-// to native code. is_throughput: show which part of the processor's peak it reaches. Returns the time from the model to
-// native code.
+// An open chain: u' and q' by the formulation that was chosen. goal: as compare_back_ends, then of
+// the way from the model to native code. is_throughput: show which part of the processor's peak it
+// reaches. Returns the time from the model to native code.
 static double open_chain(const char *what, const char *path, const double goal[NBACKEND],
                          double generation_goal, bool is_throughput)
 {
@@ -482,8 +485,8 @@ static void residual_and_slopes(struct subject *s, const char *what, double goal
     ct_evaluator_remove_program(s->machine, &p.program);
 }
 
-// Accelerations with the order of pivots made at the start against pivots sought anew, at positions and speeds around it:
-// the relative difference that one state in a hundred exceeds.
+// Accelerations with the order of pivots made at the start against pivots sought anew, at positions
+// and speeds around it: the relative difference that one state in a hundred exceeds.
 static void fixed_against_pivoted(struct subject *s)
 {
     enum { NSTATE = 1000 };
@@ -634,7 +637,8 @@ static void many_four_bars(int n)
 
 // ---- parameter studies --------------------------------------------------------------------------
 
-// What a member costs where one run follows another, at values of the sweep's own, between its rows.
+// What a member costs where one run follows another, at values of the sweep's own, between its
+// rows.
 struct singles {
     const char *path;
     long every;   // members between two of them
@@ -783,8 +787,8 @@ static void beam_growth(const char *what, const struct beam *kind)
         bench_close_subject(&s[i]);
 }
 
-// Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls inertia forces, here
-// with the stiffness and all of the base's motion.
+// Forces of inertia, stiffness and weight for given accelerations: what the feasibility study calls
+// inertia forces, here with the stiffness and all of the base's motion.
 static void beam_forces(const char *what, const struct beam *kind)
 {
     struct subject s;
@@ -828,7 +832,7 @@ static void all_beams(bool quick)
     unlink(bench_temporary());
 }
 
-// ---- modes of large systems --------------------------------------------------------------------------
+// ---- modes of large systems ---------------------------------------------------------------------
 
 // A cantilever of 10 m, cut into nbeam beams of nelement elements each that are welded end to end.
 static void write_cantilever(FILE *f, int nbeam, int nelement)
@@ -846,7 +850,8 @@ static void write_cantilever(FILE *f, int nbeam, int nelement)
         fprintf(f, "  j%d: {type: weld, from: b%d.tip, to: b%d}\n", i, i - 1, i);
 }
 
-// The first ten modes, from the file to the table. exact: the first frequency of the continuous beam [rad/s].
+// The first ten modes, from the file to the table. exact: the first frequency of the continuous
+// beam [rad/s].
 static void modes_of(const char *what, int nbeam, int nelement, double goal)
 {
     const double exact = 32.096681251501935;

@@ -56,7 +56,8 @@ struct subject {
         prepare; // seconds, from the file to equations; from there to the start of a run
 };
 
-// A beam of n elements on a body that turns freely: a pendulum in the plane, in space on a ball joint.
+// A beam of n elements on a body that turns freely: a pendulum in the plane, in space on a ball
+// joint.
 struct beam {
     const char *formulation;
     bool is_spatial, is_chain; // chain: n beams of two elements, welded end to end
@@ -75,7 +76,8 @@ const char *bench_temporary(void);
 const char *bench_generated(const char *name, int n);
 const char *bench_spatial_chain(int n);
 const char *bench_planar_chain(int n);
-/// Arm of 6 or 7 turning axes with everything a parameter: masses, centres of mass, full inertias, lengths.
+/// Arm of 6 or 7 turning axes with everything a parameter: masses, centres of mass, full inertias,
+/// lengths.
 const char *bench_arm(int n);
 const char *bench_chain_of_beams(const struct beam *k, int n);
 const char *bench_beam(const struct beam *k, int n);

@@ -149,7 +149,8 @@ const char *bench_planar_chain(int n)
     return close_model(f);
 }
 
-// Arm of 6 or 7 turning axes with everything a parameter: masses, centres of mass, full inertias, lengths.
+// Arm of 6 or 7 turning axes with everything a parameter: masses, centres of mass, full inertias,
+// lengths.
 const char *bench_arm(int n)
 {
     static const char *const end[2][7]

@@ -1,4 +1,5 @@
-// Times behind the constants of src/numeric and src/expr that choose between two ways to the same result.
+// Times behind the constants of src/numeric and src/expr that choose between two ways to the same
+// result.
 //
 //     kernels
 //

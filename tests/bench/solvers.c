@@ -2,9 +2,10 @@
 //
 //     solvers MODEL.yaml ...
 //
-// One line for each model and solver: unknowns (speeds and kept rows), predicted operations, machine code of one
-// evaluation, seconds from the equations to programs that run, and the time of an evaluation: of eleven samples of processor
-// time, taken alternately over the solvers, the least. The solver that `cotree check` chooses is marked.
+// One line for each model and solver: unknowns (speeds and kept rows), predicted operations,
+// machine code of one evaluation, seconds from the equations to programs that run, and the time of
+// an evaluation: of eleven samples of processor time, taken alternately over the solvers, the
+// least. The solver that `cotree check` chooses is marked.
 #include "sim/sim.h"
 #include "codegen/native.h"
 #include "solve/constraint/solver.h"

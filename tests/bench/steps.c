@@ -1,12 +1,14 @@
-// What a step of each method costs beside its evaluations of a model of one degree of freedom: Markdown tables.
+// What a step of each method costs beside its evaluations of a model of one degree of freedom:
+// Markdown tables.
 //
 //     steps [--quick]
 //
-// The models are systems/pendulum, and systems/four_bar with a loop, two samples, tolerance 1e-6. Evaluations are those of the accelerations and, for
-// implicit methods, of the residual and of its derivatives: what `evaluations` and Jacobians of the summary count. Each of
-// them is taken to cost what one of the accelerations does on which the next one waits; the time of one of the residual is
-// printed beside it. Times are processor time, the least of several runs, which take turns so that a busy machine slows all of
-// them.
+// The models are systems/pendulum, and systems/four_bar with a loop, two samples, tolerance 1e-6.
+// Evaluations are those of the accelerations and, for implicit methods, of the residual and of its
+// derivatives: what `evaluations` and Jacobians of the summary count. Each of them is taken to cost
+// what one of the accelerations does on which the next one waits; the time of one of the residual
+// is printed beside it. Times are processor time, the least of several runs, which take turns so
+// that a busy machine slows all of them.
 #include "sim/sim.h"
 #include "solve/constraint/dae.h"
 
@@ -106,7 +108,8 @@ static double residual(struct ct_ctx *ctx, struct ct_system *system, const struc
     return spent / CALLS;
 }
 
-// Each method with step control, over a time in which it makes some thousands of steps, then with fixed ones.
+// Each method with step control, over a time in which it makes some thousands of steps, then with
+// fixed ones.
 static int list_subjects(struct subject *all)
 {
     int n = 0;

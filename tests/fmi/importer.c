@@ -1,4 +1,5 @@
-// A small importer of FMUs, of FMI 2.0 and 3.0, for tests: unpacks the archive, reads the description, loads the binary.
+// A small importer of FMUs, of FMI 2.0 and 3.0, for tests: unpacks the archive, reads the
+// description, loads the binary.
 //
 //     importer FILE.fmu me STEP UNTIL        model exchange by a Runge-Kutta method of order 4 with steps of STEP, events located
 //     importer FILE.fmu cs STEP UNTIL        co-simulation with communication steps of STEP
@@ -6,7 +7,8 @@
 //     ... NAME=VALUE ...                     values set before the start
 //     importer FILE.fmu unpack FOLDER        its files
 //
-// Prints the time and all outputs as CSV, a row a tenth of UNTIL or, with ROWS=N in the environment, N rows and the start.
+// Prints the time and all outputs as CSV, a row a tenth of UNTIL or, with ROWS=N in the
+// environment, N rows and the start.
 #define _POSIX_C_SOURCE 200809L
 #include <dlfcn.h>
 #include <errno.h>
@@ -29,7 +31,7 @@ static void fail(const char *what)
     exit(1);
 }
 
-// ---- the archive ----------------------------------------------------------------------------------
+// ---- the archive --------------------------------------------------------------------------------
 
 static unsigned char *archive;
 static size_t archive_size;
@@ -110,7 +112,7 @@ static void unpack(const char *folder)
     }
 }
 
-// ---- the description ------------------------------------------------------------------------------
+// ---- the description ----------------------------------------------------------------------------
 
 static int version;
 static char identifier[LONGEST], token[LONGEST];
@@ -235,7 +237,7 @@ static void read_description(void)
     free(text);
 }
 
-// ---- the binary -------------------------------------------------------------------------------------
+// ---- the binary ---------------------------------------------------------------------------------
 
 static void *library;
 
@@ -270,7 +272,8 @@ static void *function(const char *two, const char *three)
     return f;
 }
 
-// NAME(arguments), of any version: a pointer to a function out of one to an object, as POSIX allows.
+// NAME(arguments), of any version: a pointer to a function out of one to an object, as POSIX
+// allows.
 #define CALL(type, two, three, arguments)                                                      \
     ((union {                                                                                  \
          void *object;                                                                         \
@@ -406,7 +409,7 @@ static void print_row(void *c, double t)
     printf("\n");
 }
 
-// ---- model exchange ---------------------------------------------------------------------------------
+// ---- model exchange -----------------------------------------------------------------------------
 
 static void set_state(void *c, double t, const double *x)
 {
@@ -561,7 +564,7 @@ static double exchange(void *c, double t, double end, double step, double *next)
     return t;
 }
 
-// ---- co-simulation ------------------------------------------------------------------------------------
+// ---- co-simulation ------------------------------------------------------------------------------
 
 static void do_step(void *c, double t, double h)
 {
@@ -600,7 +603,7 @@ static void run(bool is_cs, double step, double until, int nset, char **setting)
     CALL(void (*f)(void *), "FreeInstance", "FreeInstance", (c));
 }
 
-// ---- checks --------------------------------------------------------------------------------------------
+// ---- checks -------------------------------------------------------------------------------------
 
 static void expect(bool is_so, const char *what)
 {
@@ -686,7 +689,8 @@ static int directional(void *c, const unsigned *unknown_of, size_t nu, const uns
                 (c, unknown_of, nu, known, nk, seed, nk, out, nu));
 }
 
-// Derivatives along each state and input against differences; what is said not to depend on it does not.
+// Derivatives along each state and input against differences; what is said not to depend on it does
+// not.
 static void check_derivatives(int nset, char **setting)
 {
     static double x[MOST], up[MOST], down[MOST], got[MOST];

@@ -1,5 +1,5 @@
-// Whatever bytes a model file has, it is read or refused with at least one error, every error has a code
-// and a place inside the file, and a model that was read has values for all its parameters.
+// Whatever bytes a model file has, it is read or refused with at least one error, every error has a
+// code and a place inside the file, and a model that was read has values for all its parameters.
 #include "base/guard.h"
 #include "component/model.h"
 #include "tests/fuzz/target.h"

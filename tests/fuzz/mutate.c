@@ -1,9 +1,9 @@
 // Gives pseudo-random variations of the *.yaml files in the folders named to the fuzz target.
 //   mutate COUNT FOLDER...
 //
-// The generator has a fixed seed and files are taken in the order of their names: each run sees the same
-// inputs. A failing one is left in mutate-failed.yaml, as the last written before the crash, when the
-// environment has MUTATE_KEEP.
+// The generator has a fixed seed and files are taken in the order of their names: each run sees the
+// same inputs. A failing one is left in mutate-failed.yaml, as the last written before the crash,
+// when the environment has MUTATE_KEEP.
 #include "tests/fuzz/target.h"
 
 #include <dirent.h>

@@ -1,5 +1,5 @@
-// Gives every file of the folders named as arguments to the fuzz target, and each file's beginnings:
-// a text cut short is the commonest broken one.
+// Gives every file of the folders named as arguments to the fuzz target, and each file's
+// beginnings: a text cut short is the commonest broken one.
 #include "tests/fuzz/target.h"
 
 #include <dirent.h>

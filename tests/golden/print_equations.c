@@ -1,4 +1,5 @@
-// print_equations MODEL STAGES FORMAT [absolute]: the derivation of a model on standard output, for golden files.
+// print_equations MODEL STAGES FORMAT [absolute]: the derivation of a model on standard output, for
+// golden files.
 #include "formulate/formulate.h"
 #include "report/equations.h"
 

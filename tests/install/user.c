@@ -1,4 +1,5 @@
-// A program of somebody else's: how long the pendulum of a file takes for a swing, beside the exact period.
+// A program of somebody else's: how long the pendulum of a file takes for a swing, beside the exact
+// period.
 #include <cotree/cotree.h>
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- text -----------------------------------------------------------------------------------------------
+// ---- text ---------------------------------------------------------------------------------------
 
 int chance_of(int n); // system.h
 
@@ -92,9 +92,10 @@ const char *mechanism_text(struct ct_arena *a, const struct mechanism *m,
         g[0], g[1], g[2], points, bodies, joints, forces);
 }
 
-// ---- mechanisms -----------------------------------------------------------------------------------------
+// ---- mechanisms ---------------------------------------------------------------------------------
 //
-// LOOP: ground.a -x- A -ball- B -cross- C -plane- ground.b, with x of any type. B's mass is off its frame.
+// LOOP: ground.a -x- A -ball- B -cross- C -plane- ground.b, with x of any type. B's mass is off its
+// frame.
 
 #define A_BODY                                                                                 \
     "A: {mass: 1.3, inertia: [0.02, 0.03, 0.025, 0.002, -0.001, 0.003], com: [0.1, 0.02, "     \

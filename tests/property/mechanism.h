@@ -1,7 +1,8 @@
 // Small mechanisms for property tests, with every type of joint and force, written as model text.
 //
-// Ground is reached through ground's points only and forces act in axes that move along, so that a whole
-// mechanism can be moved and turned; its lines can be written in any order, its joints in either sense.
+// Ground is reached through ground's points only and forces act in axes that move along, so that a
+// whole mechanism can be moved and turned; its lines can be written in any order, its joints in
+// either sense.
 #ifndef CT_TEST_PROPERTY_MECHANISM_H
 #define CT_TEST_PROPERTY_MECHANISM_H
 
@@ -41,8 +42,8 @@ struct rigid_motion {
 extern const struct mechanism mechanisms[];
 extern const size_t nmechanism;
 
-/// Model text. move: may be NULL; reversed: bit set of joints with from and to exchanged; shuffle: lines in
-/// random order.
+/// Model text. move: may be NULL; reversed: bit set of joints with from and to exchanged; shuffle:
+/// lines in random order.
 const char *mechanism_text(struct ct_arena *a, const struct mechanism *m,
                            const struct rigid_motion *move, unsigned reversed, bool shuffle);
 /// Rot(axis, angle) v for a unit vector axis.

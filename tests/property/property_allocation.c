@@ -1,6 +1,8 @@
-// Nothing is allocated between the first and the last step of a run, neither from the system nor from an arena.
+// Nothing is allocated between the first and the last step of a run, neither from the system nor
+// from an arena.
 //
-// The linker sends malloc, calloc, realloc and ct_pages_create of the library to the functions below (-Wl,--wrap).
+// The linker sends malloc, calloc, realloc and ct_pages_create of the library to the functions
+// below (-Wl,--wrap).
 #include "tests/property/system.h"
 
 #include <cotree/cotree.h>

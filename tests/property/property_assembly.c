@@ -1,4 +1,5 @@
-// The start: given values are met, contradictions are named, half-turns are not taken for solutions.
+// The start: given values are met, contradictions are named, half-turns are not taken for
+// solutions.
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
@@ -39,7 +40,7 @@ static void expect_failure(struct system *s, const char *text, enum ct_code code
     system_close(s);
 }
 
-// ---- values taken from states that exist --------------------------------------------------------------------
+// ---- values taken from states that exist --------------------------------------------------------
 
 static bool takes_values(const struct ct_instance *j)
 {
@@ -47,7 +48,8 @@ static bool takes_values(const struct ct_instance *j)
         && !j->initial.q.given;
 }
 
-// The mechanism with values of joint k's coordinates out of a state, which lies on its motion where it is driven.
+// The mechanism with values of joint k's coordinates out of a state, which lies on its motion where
+// it is driven.
 static const char *text_with_values(struct ct_arena *a, const struct mechanism *m, size_t k,
                                     const struct system *s,
                                     const struct ct_initial_state *state, size_t n)
@@ -100,7 +102,7 @@ static void values_given_on_any_joint_are_met(void **state)
     assert_true(tried > 60);
 }
 
-// ---- a four-bar -----------------------------------------------------------------------------------------------
+// ---- a four-bar ---------------------------------------------------------------------------------
 
 #define FOUR_BAR(crank, coupler, rocker, top)                                                  \
     "cotree: 1\nbodies:\n  ground: {points: {far: [0.5, 0, 0]}}\n"                             \
@@ -135,8 +137,9 @@ static void several_turns_are_kept(void **state)
     system_close(&s);
 }
 
-// A Bennett linkage, whose last angle is found the long way round: what nobody gave is within half a turn of its guess, and
-// theta4 = -theta2, theta3 = -theta1 with tan(theta1/2) tan(theta2/2) = sin((be + al)/2)/sin((be - al)/2).
+// A Bennett linkage, whose last angle is found the long way round: what nobody gave is within half
+// a turn of its guess, and theta4 = -theta2, theta3 = -theta1 with tan(theta1/2) tan(theta2/2) =
+// sin((be + al)/2)/sin((be - al)/2).
 #define BENNETT(last)                                                                          \
     "cotree: 1\nparameters: {a: 0.4, b: 0.6, al: 0.5, be: asin(b/a*sin(al))}\nbodies:\n"       \
     "  ground: {points: {d: {at: [-b, 0, 0], rotate: [x, -be]}}}\n"                            \
@@ -190,7 +193,7 @@ static void contradictions_are_named(void **state)
                    CT_E_ASSEMBLY, "stays open");
 }
 
-// ---- half-turns -----------------------------------------------------------------------------------------------
+// ---- half-turns ---------------------------------------------------------------------------------
 
 // A body held by a ball and by `joint`, whose rotational rows also hold half a turn away.
 #define TURNED(joint, start)                                                                   \

@@ -1,5 +1,5 @@
-// Motion and constraint programs of every shipped system have the same bits on every back end: tape and
-// native code, one lane and several, compiled C.
+// Motion and constraint programs of every shipped system have the same bits on every back end: tape
+// and native code, one lane and several, compiled C.
 #include "codegen/c.h"
 #include "codegen/native.h"
 #include "tests/own_sincos.h"
@@ -83,7 +83,7 @@ static void evaluate_by_one(struct check *c)
     }
 }
 
-// ---- compiled C -----------------------------------------------------------------------------------------
+// ---- compiled C ---------------------------------------------------------------------------------
 
 typedef void (*evaluate_fn)(const double *in, double *out);
 
@@ -133,7 +133,7 @@ static bool check_c(struct check *c, unsigned lanes)
     return ok;
 }
 
-// ---- all systems --------------------------------------------------------------------------------------
+// ---- all systems --------------------------------------------------------------------------------
 
 static bool check_program(const char *system, struct variant *v, const struct ct_program *p,
                           bool with_c, unsigned lanes_of_c)
@@ -211,7 +211,8 @@ static void choice_of_back_end_changes_no_bit(void **unused)
     system_close(&s);
 }
 
-// Long programs of open systems: native code fuses products with sums and so rounds less often than the tape.
+// Long programs of open systems: native code fuses products with sums and so rounds less often than
+// the tape.
 static bool check_fused(const char *system, struct variant *v, bool *has_fused)
 {
     const struct ct_program *p = &v->m->solved;

@@ -1,5 +1,5 @@
-// Members side by side: every shipped system that lanes can take ends in a lane where it ends alone, and a
-// lane's bits do not depend on what the other lanes do.
+// Members side by side: every shipped system that lanes can take ends in a lane where it ends
+// alone, and a lane's bits do not depend on what the other lanes do.
 #include "solve/batch/batch.h"
 #include "tests/property/system.h"
 
@@ -31,7 +31,8 @@ static long run_alone(struct variant *v, struct system *s, const char *method, i
     return report.stats.steps;
 }
 
-// Members first, first + 1, ... of n from lane `lane` on; out: n x nresult. Returns how many lanes gave up.
+// Members first, first + 1, ... of n from lane `lane` on; out: n x nresult. Returns how many lanes
+// gave up.
 static int run_lanes(struct variant *v, struct system *s, const char *method, int first, int n,
                      int lane, enum ct_backend backend, double *out)
 {

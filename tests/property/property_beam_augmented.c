@@ -1,5 +1,6 @@
-// Beams that do not stretch in closed loops, with the foreshortening at the starts of elements for further unknowns
-// (beam_augmented.h): the same equations, the same solution, and cost in proportion to the elements.
+// Beams that do not stretch in closed loops, with the foreshortening at the starts of elements for
+// further unknowns (beam_augmented.h): the same equations, the same solution, and cost in
+// proportion to the elements.
 #include "formulate/closed_form/beam_augmented.h"
 #include "tests/property/system.h"
 
@@ -9,7 +10,7 @@ static const struct ct_formulate_options by_joints_solved
     = {.tree = CT_TREE_JOINTS, .with_solution = true},
     all_kept = {.tree = CT_TREE_JOINTS, .with_solution = true, .keep_all = true};
 
-// ---- loops of beams ---------------------------------------------------------------------------------------------------
+// ---- loops of beams -----------------------------------------------------------------------------
 
 struct loop {
     const char *name;
@@ -67,7 +68,8 @@ static char *two_text(struct ct_arena *a, const struct loop *l, int n)
         n, l->beam, l->body, l->joint);
 }
 
-// The rod between a ball and a universal joint, its slider along an axis beside the plane of the crank.
+// The rod between a ball and a universal joint, its slider along an axis beside the plane of the
+// crank.
 static char *space_text(struct ct_arena *a, const struct loop *l, int n)
 {
     return text_of(
@@ -154,7 +156,8 @@ static void loop_open(struct system *s, const struct loop *l, int n, struct vari
     ct_arena_destroy(a);
 }
 
-// Beams bend by a tenth of a radian or so, at rates of the same size; the loops need not be closed for that.
+// Beams bend by a tenth of a radian or so, at rates of the same size; the loops need not be closed
+// for that.
 static void bend(struct variant *v)
 {
     struct ct_evaluator *m = v->m;
@@ -169,7 +172,7 @@ static void bend(struct variant *v)
     }
 }
 
-// ---- properties ---------------------------------------------------------------------------------------------------------
+// ---- properties ---------------------------------------------------------------------------------
 
 // Column j of P' M_c P and of J_c P as expressions, behind each other (nu + nrow).
 static void column_of(const struct variant *v, struct ct_exs *x, size_t j, ct_ex *y, ct_ex *f,
@@ -342,7 +345,8 @@ static void cost_grows_with_the_number_of_elements(void **state)
     }
 }
 
-// Where sections follow with shear, least degree by itself joins nodes from all over a long beam: what is left couples all of them.
+// Where sections follow with shear, least degree by itself joins nodes from all over a long beam:
+// what is left couples all of them.
 static void sections_are_eliminated_along_the_beam(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// Beams with lumped masses in closed loops in space: what runs must keep, and what must not change them.
+// Beams with lumped masses in closed loops in space: what runs must keep, and what must not change
+// them.
 #include "tests/property/system.h"
 
 enum { NSAMPLE = 11 };
@@ -106,7 +107,8 @@ static void trees_do_not_change_lumped_couplers(void **state)
     assert_true(ok);
 }
 
-// Half of each element's mass at its ends moves the beam as if its mass were spread, but for the square of the elements' length.
+// Half of each element's mass at its ends moves the beam as if its mass were spread, but for the
+// square of the elements' length.
 static void lumped_couplers_tend_to_consistent_ones(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 // Beams in motion: what runs must keep, and what must not change them.
 #include "tests/property/system.h"
 
-// ---- runs ---------------------------------------------------------------------------------------------------------
+// ---- runs ---------------------------------------------------------------------------------------
 
 struct ends {
     double *first, *last, *least, *most;
@@ -74,7 +74,7 @@ static bool does_bend(struct system *s, const struct variant *v, const struct en
     return false;
 }
 
-// ---- what is kept -------------------------------------------------------------------------------------------------
+// ---- what is kept -------------------------------------------------------------------------------
 
 // Keys that change the equations of a beam that has the section of `falling` or `floating`.
 static const char *const kinds[] = {
@@ -197,7 +197,7 @@ static void momenta_of_a_free_beam_are_kept(void **state)
     assert_true(ok);
 }
 
-// ---- what must not change a motion ----------------------------------------------------------------------------------
+// ---- what must not change a motion --------------------------------------------------------------
 
 // Crank and rod bend; %s: keys of both.
 static const char slider_crank[]
@@ -234,7 +234,8 @@ static bool ends_agree(struct system *s, const struct variant *v, const struct e
     return ok;
 }
 
-// Other trees: other coordinates, other rows, the same mechanism. In space: out-of-plane bending and twist, too.
+// Other trees: other coordinates, other rows, the same mechanism. In space: out-of-plane bending
+// and twist, too.
 static void trees_and_space_do_not_change_a_slider_crank(void **state)
 {
     (void)state;
@@ -272,10 +273,10 @@ static void trees_and_space_do_not_change_a_slider_crank(void **state)
     assert_true(ok);
 }
 
-// ---- a beam and links with springs --------------------------------------------------------------------------------------
+// ---- a beam and links with springs --------------------------------------------------------------
 
-// n links with springs EI/h beside a beam, both swung by the same torque, which is smooth: high modes, in which a chain
-// and a beam differ, stay at rest.
+// n links with springs EI/h beside a beam, both swung by the same torque, which is smooth: high
+// modes, in which a chain and a beam differ, stay at rest.
 static const char *chain_text(struct ct_arena *a, int n)
 {
     static const char top[]
@@ -337,7 +338,7 @@ static void links_with_springs_tend_to_the_beam(void **state)
     assert_true(d[2] < 1e-3 * bend);
 }
 
-// ---- ways to take the integrals ---------------------------------------------------------------------------------
+// ---- ways to take the integrals -----------------------------------------------------------------
 
 // A beam with something to carry. %s: more keys; the mass per length, Iz.
 static const char carrying[]
@@ -433,8 +434,8 @@ static bool forms_agree(size_t i, double tol)
     return ok;
 }
 
-// Constant sections are integrated by amplitudes, sections that vary over points; those of the second beam vary by less
-// than numbers can tell.
+// Constant sections are integrated by amplitudes, sections that vary over points; those of the
+// second beam vary by less than numbers can tell.
 static void integrals_agree_with_sums_over_points(void **state)
 {
     (void)state;

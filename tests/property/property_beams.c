@@ -1,11 +1,12 @@
-// Beams: reactions and stress resultants do not depend on the trees and obey Newton and Euler, for the whole and for
-// the part between two sections; textbook cantilevers; what the kinematic signals mean.
+// Beams: reactions and stress resultants do not depend on the trees and obey Newton and Euler, for
+// the whole and for the part between two sections; textbook cantilevers; what the kinematic signals
+// mean.
 #include "tests/property/system.h"
 #include "tests/property/vector.h"
 
 static const double tolerance = 1e-9; // solutions of small, well conditioned systems
 
-// ---- vectors --------------------------------------------------------------------------------------------------
+// ---- vectors ------------------------------------------------------------------------------------
 
 static struct vector signal_of(const struct variant *v, const char *owner, const char *property)
 {
@@ -36,9 +37,10 @@ static void put_out(struct system *s, const char *frame)
         system_output(s, text_of(s->ctx.model, "%s.%s", frame, property[i]));
 }
 
-// ---- states -----------------------------------------------------------------------------------------------------
+// ---- states -------------------------------------------------------------------------------------
 
-// A random state of joints and bodies with random elastic coordinates, brought onto the constraints.
+// A random state of joints and bodies with random elastic coordinates, brought onto the
+// constraints.
 static void move_anywhere(struct system *s, struct variant *v, double t, double amplitude)
 {
     struct ct_initial_state state;
@@ -55,7 +57,8 @@ static void move_anywhere(struct system *s, struct variant *v, double t, double 
     variant_renew(v, t);
 }
 
-// The state of v in other coordinates: those that v has, too, are the same; those of joints are results of v.
+// The state of v in other coordinates: those that v has, too, are the same; those of joints are
+// results of v.
 static void take_over(const struct variant *v, struct variant *w, double t)
 {
     for (size_t k = 0; k < w->e.nu; k++) {
@@ -75,7 +78,7 @@ static void take_over(const struct variant *v, struct variant *w, double t)
     variant_renew(w, t);
 }
 
-// ---- trees ------------------------------------------------------------------------------------------------------
+// ---- trees --------------------------------------------------------------------------------------
 
 // %s: keys of the beam; frames the beam hangs from and the knob sits at.
 static const char hanging[]
@@ -152,7 +155,8 @@ static void put_out_hanging(struct system *s)
         put_out(s, frame[i]);
 }
 
-// Joints as chords give multipliers, as branches cutset sums; forces and torques from different trees.
+// Joints as chords give multipliers, as branches cutset sums; forces and torques from different
+// trees.
 static bool trees_agree(struct system *s)
 {
     static const char *const trans[] = {"rod", "arm", "grip"}, *const rot[]
@@ -202,10 +206,10 @@ static void reactions_and_resultants_do_not_depend_on_the_trees(void **state)
     assert_true(ok);
 }
 
-// ---- Newton and Euler -------------------------------------------------------------------------------------------
+// ---- Newton and Euler ---------------------------------------------------------------------------
 
-// The whole system: momentum about the ground origin changes as weight, the push and the base's reaction ask for. Its rate
-// is a central difference along the motion.
+// The whole system: momentum about the ground origin changes as weight, the push and the base's
+// reaction ask for. Its rate is a central difference along the motion.
 static bool system_is_balanced(struct system *s, double total_mass)
 {
     const double h = 1e-5, truncation = 1e-6; // h^2 times third derivatives of stiff beams
@@ -305,8 +309,8 @@ static const char cut_rod[]
       "  push: {type: force, at: rod.side, value: [1, -2, 0.7]}\n"
       "  end: {type: torque, on: rod.tip, value: [0.1, -0.2, 0.3]}\n";
 
-// What the part between two sections needs is what the sections' resultants give it: accelerations are those of frames
-// on the axis, which the flexible arms know, not the beam's inertia.
+// What the part between two sections needs is what the sections' resultants give it: accelerations
+// are those of frames on the axis, which the flexible arms know, not the beam's inertia.
 static bool part_is_balanced(struct system *s)
 {
     static const double end[] = {0.4, 0.6, 0.9};
@@ -340,7 +344,8 @@ static bool part_is_balanced(struct system *s)
     F = plus(plus(F, 1, fork), -1, push);
     T = plus(plus(T, 1, twist), 1, cross(mid, fork));
     T = plus(T, -1, cross(side, push));
-    // the part beyond pulls it by the resultants at `far`, it pulls the part before by those at `near`
+    // the part beyond pulls it by the resultants at `far`, it pulls the part before by those at
+    // `near`
     const struct vector f0 = turned(&v, "rod.near", signal_of(&v, "rod.near", "force"));
     const struct vector f1 = turned(&v, "rod.far", signal_of(&v, "rod.far", "force"));
     const struct vector m0 = turned(&v, "rod.near", signal_of(&v, "rod.near", "moment"));
@@ -397,10 +402,10 @@ static void the_part_between_two_sections_is_balanced(void **state)
     assert_true(ok);
 }
 
-// ---- statics ------------------------------------------------------------------------------------------------------
+// ---- statics ------------------------------------------------------------------------------------
 
-// A clamped beam with end forces, an end torque and its weight. Loads are small, so that second-order terms are below
-// round-off.
+// A clamped beam with end forces, an end torque and its weight. Loads are small, so that
+// second-order terms are below round-off.
 static const char cantilever[]
     = "cotree: 1\n"
       "gravity: [0, -2e-7, 0]\n"
@@ -520,7 +525,7 @@ static void cantilevers_are_those_of_the_textbook(void **state)
     assert_true(ok);
 }
 
-// ---- what the signals of shape mean -------------------------------------------------------------------------------
+// ---- what the signals of shape mean -------------------------------------------------------------
 
 // v by the smallest rotation that turns n into x.
 static struct vector seen_along(struct vector n, struct vector v)
@@ -636,7 +641,7 @@ static void a_force_cannot_depend_on_a_section_force(void **state)
     }
 }
 
-// ---- equations of a source -------------------------------------------------------------------------------------------
+// ---- equations of a source ----------------------------------------------------------------------
 
 // A hinge about y, one linear element, a particle at its tip.
 static const char pendulum_beam[]
@@ -660,7 +665,8 @@ static const char pendulum_beam[]
       "  hinge: {type: revolute, axis: y, from: ground, to: beam}\n"
       "  tip: {type: weld, from: beam.tip, to: mass}\n";
 
-// Mass matrix and forces of the system of docs/theory.md, section 3.4, written out by hand; z: theta, q7 ... q12, and their rates.
+// Mass matrix and forces of the system of docs/theory.md, section 3.4, written out by hand; z:
+// theta, q7 ... q12, and their rates.
 static void source_equations(const double *z, const double *rate, double M[7][7], double Q[7])
 {
     const double l = 1.7, m = 5 * 0.3 * l, ms = 0.8, EA = 700 * 0.3, EI = 700 * 0.02;

@@ -156,7 +156,7 @@ static void energies_of_every_mechanism_agree_with_the_equations(void **state)
     assert_true(holds_for_mechanisms(energies_agree, 0x55));
 }
 
-// ---- what a run keeps -------------------------------------------------------------------------------------
+// ---- what a run keeps ---------------------------------------------------------------------------
 
 static void keep_first_and_last(double *store, size_t n, const double *value, bool first)
 {

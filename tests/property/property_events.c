@@ -70,7 +70,7 @@ static void expect_end(const char *name, const char *text, double duration, cons
     }
 }
 
-// ---- comparisons ----------------------------------------------------------------------------------------------
+// ---- comparisons --------------------------------------------------------------------------------
 
 #define SLIDE(effort, initial)                                                                 \
     "cotree: 1\nbodies: {a: {mass: 2, inertia: 1}}\n"                                          \
@@ -94,7 +94,8 @@ static void forces_switch_where_they_should(void **state)
         {"abs", SLIDE("abs(t - 1)", "q: 0, u: 0"), 2, 0.5, 0.5},
         {"max", SLIDE("max(0, t - 1)", "q: 0, u: 0"), 2, 1.0 / 12, 0.25},
         {"min", SLIDE("min(t, 1)", "q: 0, u: 0"), 2, 7.0 / 12, 0.75},
-        // a comparison within a comparison: 2 N in the first second, then until 1.5 s 4 N, then none
+        // a comparison within a comparison: 2 N in the first second, then until 1.5 s 4 N, then
+        // none
         {"nested", SLIDE("if(t < 1, 2, if(t < 1.5, 4, 0))", "q: 0, u: 0"), 2,
          0.5 + 0.5 + 0.25 + 1, 2},
     };
@@ -103,7 +104,7 @@ static void forces_switch_where_they_should(void **state)
                    tolerance);
 }
 
-// ---- jumps of driven rates ------------------------------------------------------------------------------------
+// ---- jumps of driven rates ----------------------------------------------------------------------
 
 // Two bars on a plane, the first one driven: m = 1, c = 0.4 beyond l = 0.5, J = 0.1.
 #define BARS(motion, more)                                                                     \

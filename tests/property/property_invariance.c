@@ -1,4 +1,5 @@
-// What must not matter: where a mechanism stands, the order of its lines, whether it is taken as planar.
+// What must not matter: where a mechanism stands, the order of its lines, whether it is taken as
+// planar.
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
@@ -51,7 +52,7 @@ static void put_out_joints(struct system *s)
     }
 }
 
-// ---- place and direction --------------------------------------------------------------------------------------
+// ---- place and direction ------------------------------------------------------------------------
 
 static struct rigid_motion random_motion(void)
 {
@@ -138,7 +139,7 @@ static void moving_and_turning_the_whole_leaves_relative_motion_unchanged(void *
     assert_true(ok);
 }
 
-// ---- order of lines -----------------------------------------------------------------------------------------
+// ---- order of lines -----------------------------------------------------------------------------
 
 static bool order_does_not_matter(const struct mechanism *mechanism)
 {
@@ -172,7 +173,7 @@ static void order_of_lines_leaves_the_motion_unchanged(void **state)
     assert_true(ok);
 }
 
-// ---- plane and space ------------------------------------------------------------------------------------------
+// ---- plane and space ----------------------------------------------------------------------------
 
 static bool plane_is_as_space(struct system *s)
 {

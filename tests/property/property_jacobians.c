@@ -1,10 +1,11 @@
-// Jacobians against central differences in quadruple precision, at random states of shipped systems:
+// Jacobians against central differences in quadruple precision, at random states of shipped
+// systems:
 //
 //     K = dr/dq, C = dr/du, M = dr/du', D = dv/dq, J = dv/du      entry by entry and along directions
 //     du'/dq, du'/du of independent speeds                         the lower rows of A, x' = A x, that linearisations give
 //
-// The accelerations that are differenced come from M u' - J' lam = Q, J u' = -gam, solved in quadruple precision, so that
-// neither the residual nor its derivatives take part.
+// The accelerations that are differenced come from M u' - J' lam = Q, J u' = -gam, solved in
+// quadruple precision, so that neither the residual nor its derivatives take part.
 #include "tests/property/system.h"
 
 #include "analysis/state_space.h"
@@ -13,10 +14,11 @@
 
 #ifdef CT_HAVE_QUADMATH
 
-// Differences over 2 h and h, extrapolated, err by (h / L)^4, 1e-16 for lengths of L = 1e-3, and 1e-34 / h.
+// Differences over 2 h and h, extrapolated, err by (h / L)^4, 1e-16 for lengths of L = 1e-3, and
+// 1e-34 / h.
 static const double step = 1e-7;
-// Round-off in double precision is left: 1e-14 in the residual; masses that differ much (arm and wrist of puma560) lose four
-// digits of the accelerations.
+// Round-off in double precision is left: 1e-14 in the residual; masses that differ much (arm and
+// wrist of puma560) lose four digits of the accelerations.
 static const double residual_tolerance = 1e-12, acceleration_tolerance = 1e-10;
 
 typedef void (*function)(void *user, const ct_quad *input, ct_quad *out);
@@ -38,7 +40,8 @@ static void differentiate(struct ct_arena *a, function f, void *user, size_t n,
                             / (12 * (ct_quad)step));
 }
 
-// d (ninput, out): the motion of the input that moves places by dq, speeds by du, u' by da (nu each; NULL: not).
+// d (ninput, out): the motion of the input that moves places by dq, speeds by du, u' by da (nu
+// each; NULL: not).
 static void move_input(struct ct_evaluator *m, double *d, const double *dq, const double *du,
                        const double *da)
 {
@@ -66,7 +69,8 @@ static double *unit_vector(struct ct_arena *a, size_t n, size_t k)
     return e;
 }
 
-// The largest difference of two tables (n x m), each row relative to its largest entry; what vanishes, to that of the table.
+// The largest difference of two tables (n x m), each row relative to its largest entry; what
+// vanishes, to that of the table.
 static double compare(const double *got, const double *want, size_t n, size_t m)
 {
     const double vanishing = 1e-14;
@@ -87,7 +91,7 @@ static double compare(const double *got, const double *want, size_t n, size_t m)
     return worst;
 }
 
-// ---- the residual ---------------------------------------------------------------------------------------
+// ---- the residual -------------------------------------------------------------------------------
 
 static void evaluate_residual(void *user, const ct_quad *input, ct_quad *out)
 {
@@ -152,7 +156,7 @@ static double compare_residual(struct variant *v, const struct system *s,
     return worst;
 }
 
-// ---- accelerations ----------------------------------------------------------------------------------------
+// ---- accelerations ------------------------------------------------------------------------------
 
 struct accelerations {
     const struct ct_evaluator *m;
@@ -212,8 +216,8 @@ static void evaluate_accelerations(void *user, const ct_quad *input, ct_quad *ou
     solve(s->A, n, out);
 }
 
-// Worst of the accelerations of independent speeds by their positions and speeds. Closed loops at rest, where what the
-// linearisation leaves out, the change of the rows with time, is zero.
+// Worst of the accelerations of independent speeds by their positions and speeds. Closed loops at
+// rest, where what the linearisation leaves out, the change of the rows with time, is zero.
 static double compare_accelerations(struct variant *v, double t)
 {
     struct ct_arena *a = v->arena;
@@ -249,7 +253,7 @@ static double compare_accelerations(struct variant *v, double t)
     return compare(got, want, nfree, nx);
 }
 
-// ---- systems ------------------------------------------------------------------------------------------------
+// ---- systems ------------------------------------------------------------------------------------
 
 static void compare_all(struct system *s, enum ct_tree_choice tree, double t)
 {

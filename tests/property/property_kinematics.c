@@ -2,8 +2,8 @@
 #include "numeric/dense.h"
 #include "tests/property/system.h"
 
-// Central differences with step h err by h^2/6 of the third derivative and eps/h: 1e-9 at 1e-5 and order one;
-// rows grow with lengths and speeds of a few.
+// Central differences with step h err by h^2/6 of the third derivative and eps/h: 1e-9 at 1e-5 and
+// order one; rows grow with lengths and speeds of a few.
 static const double step = 1e-5, tolerance = 2e-7;
 
 static void constraints_at(struct variant *v, double t, const double *y, double *phi,

@@ -1,5 +1,5 @@
-// Whatever the trees: the same equilibrium, the same natural motions about it. With the derivative of the
-// multipliers' forces; without it they differ.
+// Whatever the trees: the same equilibrium, the same natural motions about it. With the derivative
+// of the multipliers' forces; without it they differ.
 #include "tests/property/system.h"
 
 #include "analysis/eigenvalues.h"
@@ -34,7 +34,8 @@ static const char crank_on_springs[]
       "0.35,\n"
       "    damping: 0.5, initial: {q: 0.4, guess: true}}\n";
 
-// A four-bar out of its plane's ken: four hinges in space, three of their five loop equations redundant.
+// A four-bar out of its plane's ken: four hinges in space, three of their five loop equations
+// redundant.
 static const char bars_in_space[]
     = "cotree: 1\n"
       "gravity: [0, -9.81, 1]\n"
@@ -76,7 +77,7 @@ static const char tripod[]
       "40],\n"
       "    damping: [1, 2, 3, 0.1, 0.2, 0.3]}\n";
 
-// ---- motions on trees -----------------------------------------------------------------------------------
+// ---- motions on trees ---------------------------------------------------------------------------
 
 static bool find_motions(struct system *s, struct variant *v, bool with_multipliers,
                          struct motions *out)
@@ -125,7 +126,8 @@ static double distance(const struct motions *a, const struct motions *b)
     return worst;
 }
 
-// Every step-th pair of trees. Returns the largest distance to the motions of the first; counts the pairs.
+// Every step-th pair of trees. Returns the largest distance to the motions of the first; counts the
+// pairs.
 static double compare_pairs(struct system *s, bool keep_all, bool with_multipliers, size_t step,
                             size_t *tried)
 {

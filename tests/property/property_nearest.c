@@ -1,6 +1,7 @@
-// The start is the position nearest to the guesses. Mechanisms are built from a known position, which is then hidden behind guesses
-// that are off by up to 0.3: the start must meet what is demanded and be no farther from the guesses than the known position.
-// The distance is computed here, with the weights that docs/format.md states.
+// The start is the position nearest to the guesses. Mechanisms are built from a known position,
+// which is then hidden behind guesses that are off by up to 0.3: the start must meet what is
+// demanded and be no farther from the guesses than the known position. The distance is computed
+// here, with the weights that docs/format.md states.
 //
 // CT_TEST_COUNT: mechanisms of each kind; CT_TEST_SEED: seed.
 #include "tests/property/system.h"
@@ -36,7 +37,7 @@ struct hidden {
     char *text;
 };
 
-// ---- poses --------------------------------------------------------------------------------------------------
+// ---- poses --------------------------------------------------------------------------------------
 
 static struct pose about(int axis, double angle)
 {
@@ -124,7 +125,7 @@ static int numbers(enum type type)
     return type == SPHERICAL ? 0 : freedoms[type];
 }
 
-// ---- mechanisms ---------------------------------------------------------------------------------------------
+// ---- mechanisms ---------------------------------------------------------------------------------
 
 static int add_body(struct hidden *h)
 {
@@ -191,7 +192,7 @@ static void platform(struct hidden *h)
     }
 }
 
-// ---- text ---------------------------------------------------------------------------------------------------
+// ---- text ---------------------------------------------------------------------------------------
 
 static char *turn_text(struct ct_arena *a, const double t[3])
 {
@@ -271,7 +272,7 @@ static void write_text(struct ct_arena *a, struct hidden *h)
     h->text = text_of(a, "%s%s", text, joints);
 }
 
-// ---- distance -----------------------------------------------------------------------------------------------
+// ---- distance -----------------------------------------------------------------------------------
 
 static double between(double x, double y)
 {
@@ -350,7 +351,7 @@ static bool demands_are_kept(const struct hidden *h, const double *const *q)
     return ok;
 }
 
-// ---- properties ---------------------------------------------------------------------------------------------
+// ---- properties ---------------------------------------------------------------------------------
 
 static int count_asked(int standard)
 {
@@ -358,7 +359,8 @@ static int count_asked(int standard)
     return given ? atoi(given) : standard;
 }
 
-// How many starts are farther from the guesses than the known position, or farther than with spatial rows by more than round-off.
+// How many starts are farther from the guesses than the known position, or farther than with
+// spatial rows by more than round-off.
 static int count_farther(const char *name, void (*make)(struct hidden *h), int n)
 {
     int farther = 0, unlike = 0, failed = 0;
@@ -482,7 +484,8 @@ static void speeds_are_nearest_too(void **state)
     "  hinge: {type: revolute, from: ground, to: a, initial: {q: " angle ", u: 1}}\n"          \
     "  next: {type: revolute, from: a.e, to: b}\n"
 
-// A demand that is lost on the way to the equations of motion is told on every tree, also where the joint is measured.
+// A demand that is lost on the way to the equations of motion is told on every tree, also where the
+// joint is measured.
 static void lost_demands_are_errors(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-// Newton and Euler for every body: the wrenches of its joints, as they are put out, and of the forces, worked
-// out here from their laws, make up for its d'Alembert wrench.
+// Newton and Euler for every body: the wrenches of its joints, as they are put out, and of the
+// forces, worked out here from their laws, make up for its d'Alembert wrench.
 #include "tests/property/system.h"
 #include "tests/property/vector.h"
 
@@ -13,7 +13,7 @@ struct scene {
     struct vector *F, *T; // by body: sum of wrenches, torque about the ground origin
 };
 
-// ---- what the program says ----------------------------------------------------------------------------------
+// ---- what the program says ----------------------------------------------------------------------
 
 static double scalar_of(struct scene *c, const char *signal)
 {
@@ -94,7 +94,7 @@ static void put_out_all(struct system *s)
     }
 }
 
-// ---- wrenches -----------------------------------------------------------------------------------------------
+// ---- wrenches -----------------------------------------------------------------------------------
 
 // Force at a place r and torque on a frame's body.
 static void act(struct scene *c, int frame, struct vector F, struct vector T, struct vector r,
@@ -143,7 +143,8 @@ static void act_spring(struct scene *c, const struct ct_instance *f)
     act_pair(c, f->from, f->to, plus(zero, -pull / l, d), zero);
 }
 
-// Rotation vector between the axes of two frames, from the quaternion-free formula phi = t/sin(t) axial part.
+// Rotation vector between the axes of two frames, from the quaternion-free formula phi = t/sin(t)
+// axial part.
 static struct vector rotation_vector(struct scene *c, int from, int to)
 {
     double R[3][3], trace = 0;
@@ -229,7 +230,7 @@ static void find_values(struct scene *c)
     }
 }
 
-// ---- balance ------------------------------------------------------------------------------------------------
+// ---- balance ------------------------------------------------------------------------------------
 
 static struct vector body_vector(const struct ct_model *m, const ct_ex e[3])
 {

@@ -1,5 +1,5 @@
-// Every formulation of an open system gives the same accelerations: by cutset sums, by composite bodies, by articulated
-// bodies, each in closed form, and the numerical solution of M u' = Q.
+// Every formulation of an open system gives the same accelerations: by cutset sums, by composite
+// bodies, by articulated bodies, each in closed form, and the numerical solution of M u' = Q.
 #include "formulate/recursive/member.h"
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
@@ -9,13 +9,14 @@
 #include <float.h>
 
 static const char *const form_name[] = {"auto", "cutsets", "composite", "articulated"};
-// Accelerations agree to this, relative to the largest, or to what a few round-off errors of M do to them.
+// Accelerations agree to this, relative to the largest, or to what a few round-off errors of M do
+// to them.
 static const double tolerance = 1e-11;
 // Those of beams, whose elastic forces are small differences, to this.
 static const double tolerance_of_beams = 1e-10;
 
-// Ten round-off errors of M that change the largest acceleration by more than this, by a condition number of 5e10: M counts as
-// singular, nothing can be compared.
+// Ten round-off errors of M that change the largest acceleration by more than this, by a condition
+// number of 5e10: M counts as singular, nothing can be compared.
 static const double most_sensitive = 1e-4;
 
 struct tally {
@@ -24,7 +25,8 @@ struct tally {
         singular; // singular: to round-off, as where a beam without torsion turns about its axis
 };
 
-// u' by Cholesky of M, each entry changed by `roundoff` of it, refined with residuals in extended precision.
+// u' by Cholesky of M, each entry changed by `roundoff` of it, refined with residuals in extended
+// precision.
 static bool reference_accelerations(struct ct_evaluator *m, double roundoff, double *a)
 {
     const size_t n = m->nu;
@@ -72,8 +74,8 @@ static void bend(struct system *s, const struct variant *v, struct ct_initial_st
         state->elastic[k] = 0.02 * chance();
 }
 
-// The reference at a state (first nu of want) and how far it moves, relative to the largest, with a few round-off errors of M;
-// infinite where these make M singular.
+// The reference at a state (first nu of want) and how far it moves, relative to the largest, with a
+// few round-off errors of M; infinite where these make M singular.
 static double find_reference(struct variant *v, const struct ct_initial_state *state,
                              double *want)
 {
@@ -199,10 +201,10 @@ static void forms_agree_on_small_mechanisms(void **state)
     assert_true(ok);
 }
 
-// ---- back ends ------------------------------------------------------------------------------------------------
+// ---- back ends ----------------------------------------------------------------------------------
 
-// Native code, which fuses products and sums of longer programs, against the tape: to round-off, or to what a few
-// round-off errors of M do.
+// Native code, which fuses products and sums of longer programs, against the tape: to round-off, or
+// to what a few round-off errors of M do.
 static bool back_ends_agree_on(struct system *s)
 {
     struct variant v;
@@ -248,7 +250,7 @@ static void back_ends_agree_to_rounding(void **state)
     assert_true(ok);
 }
 
-// ---- chains of mixed joints -----------------------------------------------------------------------------------
+// ---- chains of mixed joints ---------------------------------------------------------------------
 
 static const char *const joint_text[] = {
     "type: revolute",
@@ -322,7 +324,7 @@ static void forms_agree_on_trees_of_mixed_joints(void **state)
     assert_true(tally.tried[CT_FORMULATION_ARTICULATED] == tally.systems);
 }
 
-// ---- beams ----------------------------------------------------------------------------------------------------
+// ---- beams --------------------------------------------------------------------------------------
 
 static const char *const beam_text[] = {
     "formulation: linear, rotary_inertia: [1e-3, 2e-3, 2e-3]",
@@ -346,7 +348,8 @@ static const char *const spatial_joint[] = {"weld",
 static const char *const planar_joint[]
     = {"weld", "revolute", "weld", "prismatic, axis: y", "planar", "revolute, motion: 0.3*t^2"};
 
-// A tree of beams and, at every third place, rigid bodies; some hang from their tips, points are on the axis and off it.
+// A tree of beams and, at every third place, rigid bodies; some hang from their tips, points are on
+// the axis and off it.
 static char *beams_text(struct ct_arena *a, int n, int first, bool is_planar)
 {
     const char *bodies = "", *joints = "";
@@ -384,7 +387,8 @@ static char *beams_text(struct ct_arena *a, int n, int first, bool is_planar)
                    is_planar ? "0" : "-9.81", bodies, joints, n);
 }
 
-// Beams whose sections have no inertia about the axes of bending and follow the other nodes, but where moments act on them.
+// Beams whose sections have no inertia about the axes of bending and follow the other nodes, but
+// where moments act on them.
 static const struct {
     bool stretches;
     const char *text;
@@ -399,7 +403,8 @@ static const struct {
 static const char *const spatial_hinge[]
     = {"revolute, axis: y", "spherical", "revolute, axis: z"};
 
-// As beams_text. Beams are clamped to rigid bodies, or hang on hinges or balls on their chords: else their ends move no mass.
+// As beams_text. Beams are clamped to rigid bodies, or hang on hinges or balls on their chords:
+// else their ends move no mass.
 static char *followers_text(struct ct_arena *a, int n, int first, bool is_planar)
 {
     const char *bodies = "", *joints = "";

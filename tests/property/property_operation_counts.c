@@ -1,5 +1,6 @@
-// Sizes and operation counts of the equations against the table of formulation 10: n_u, m, multiplications and
-// additions of M (lower), Q, J and gam, functions, entries of M. Lengths, masses and inertias are parameters.
+// Sizes and operation counts of the equations against the table of formulation 10: n_u, m,
+// multiplications and additions of M (lower), Q, J and gam, functions, entries of M. Lengths,
+// masses and inertias are parameters.
 #include "expr/tape.h"
 #include "formulate/recursive/composite_body.h"
 #include "formulate/topology/tree_selection.h"
@@ -195,9 +196,10 @@ static void stewart_platform_needs_no_more_than_the_table_says(void **state)
     ct_arena_destroy(a);
 }
 
-// ---- open chains --------------------------------------------------------------------------------------------
+// ---- open chains --------------------------------------------------------------------------------
 
-// PUMA geometry, six turning axes: masses, centres of mass, full inertias and lengths are parameters.
+// PUMA geometry, six turning axes: masses, centres of mass, full inertias and lengths are
+// parameters.
 static const char *arm_text(struct ct_arena *a)
 {
     static const char *const end[]
@@ -224,8 +226,8 @@ static const char *arm_text(struct ct_arena *a)
                    parameters, bodies, joints);
 }
 
-// Goals of the feasibility study for such an arm: 514 and 441 for M and Q, 600 and 506 with the solution, 744 and 578
-// by articulated bodies, 6 divisions and 10 functions.
+// Goals of the feasibility study for such an arm: 514 and 441 for M and Q, 600 and 506 with the
+// solution, 744 and 578 by articulated bodies, 6 divisions and 10 functions.
 static void six_axis_arm_needs_no_more_than_its_goals(void **state)
 {
     (void)state;
@@ -281,8 +283,8 @@ static const char *chain_text(struct ct_arena *a, int n)
                    joints);
 }
 
-// Of the accelerations of a model that has the form of articulated bodies; has_no_matrix: M, which would have n^2 entries, must
-// not even be tried.
+// Of the accelerations of a model that has the form of articulated bodies; has_no_matrix: M, which
+// would have n^2 entries, must not even be tried.
 static long operations_of(const char *name, const char *text, enum ct_tree_choice tree,
                           bool has_no_matrix)
 {
@@ -313,7 +315,7 @@ static void cost_of_a_long_chain_is_linear(void **state)
     ct_arena_destroy(a);
 }
 
-// ---- sections that follow ----------------------------------------------------------------------------------
+// ---- sections that follow -----------------------------------------------------------------------
 
 // A hub, a lumped beam of n elements and a link behind it; near and far: types of the joints.
 struct rod {
@@ -377,8 +379,8 @@ static double predicted_cost(struct system *s, enum ct_tree_choice tree)
     return cost;
 }
 
-// To first order in the stretch, a body on a hinge at the tip: on the hub's rim, or hinged there on its chord, where columns of M between
-// the base and the beam are sums over all nodes.
+// To first order in the stretch, a body on a hinge at the tip: on the hub's rim, or hinged there on
+// its chord, where columns of M between the base and the beam are sums over all nodes.
 static void cost_of_a_lumped_arm_of_first_order_is_linear(void **state)
 {
     (void)state;
@@ -416,7 +418,8 @@ static void cost_of_a_lumped_arm_of_first_order_is_linear(void **state)
     ct_arena_destroy(a);
 }
 
-// Nodes of expressions that are made for a slider-crank with a lumped rod of n elements, to first order in its stretch.
+// Nodes of expressions that are made for a slider-crank with a lumped rod of n elements, to first
+// order in its stretch.
 static size_t nodes_of_a_rod(struct ct_arena *a, int n)
 {
     struct system s;
@@ -443,7 +446,8 @@ static size_t nodes_of_a_rod(struct ct_arena *a, int n)
     return nodes;
 }
 
-// Making them takes no more than the square of the elements: M and J have an entry for each two nodes.
+// Making them takes no more than the square of the elements: M and J have an entry for each two
+// nodes.
 static void making_a_lumped_rod_of_first_order_is_no_sum_of_sums(void **state)
 {
     (void)state;
@@ -454,7 +458,8 @@ static void making_a_lumped_rod_of_first_order_is_no_sum_of_sums(void **state)
     ct_arena_destroy(a);
 }
 
-// In a loop nothing is gained by angles through such sections: the mass matrix is needed, and counted from ground less of it moves.
+// In a loop nothing is gained by angles through such sections: the mass matrix is needed, and
+// counted from ground less of it moves.
 static void rods_in_loops_keep_their_angles(void **state)
 {
     (void)state;
@@ -477,7 +482,7 @@ static void rods_in_loops_keep_their_angles(void **state)
     system_close(&s);
 }
 
-// ---- choices ------------------------------------------------------------------------------------------------
+// ---- choices ------------------------------------------------------------------------------------
 
 static void chosen_trees_give_few_coordinates(void **state)
 {

@@ -1,4 +1,5 @@
-// The solver of the property tests itself: against accelerations by hand, against its own motion, and moved as a whole.
+// The solver of the property tests itself: against accelerations by hand, against its own motion,
+// and moved as a whole.
 #include "tests/property/oracle/generate.h"
 #include "tests/property/oracle/oracle.h"
 #include "tests/check.h"
@@ -8,9 +9,10 @@
 
 static const double g = 9.81;
 
-// ---- by hand -------------------------------------------------------------------------------------------------------------
+// ---- by hand ------------------------------------------------------------------------------------
 
-// Ground with gravity along -y and bodies of mass 2, inertia (0.1, 0.2, 0.3), centre of mass at com, in ground's axes at the origin.
+// Ground with gravity along -y and bodies of mass 2, inertia (0.1, 0.2, 0.3), centre of mass at
+// com, in ground's axes at the origin.
 static struct scene start(int bodies, struct vector com)
 {
     struct scene s = {.nbody = 1 + bodies, .digits = 17, .gravity = {{0, -g, 0}}};
@@ -77,8 +79,8 @@ static void screw_falls(void **state)
     }
 }
 
-// On a bar that turns with w about z a slider at r flies out with r w^2; the bar, free to turn, slows with
-// alpha = -2 m r' w r / (I_bar + I + m r^2).
+// On a bar that turns with w about z a slider at r flies out with r w^2; the bar, free to turn,
+// slows with alpha = -2 m r' w r / (I_bar + I + m r^2).
 static void slider_on_a_turning_bar(void **state)
 {
     (void)state;
@@ -128,7 +130,7 @@ static void body_on_a_rod(void **state)
     CHECK_CLOSE(a.v[1].e[1], -g, 1e-13, 0);
 }
 
-// ---- against its own motion --------------------------------------------------------------------------------------------------
+// ---- against its own motion ---------------------------------------------------------------------
 
 enum { RANDOM = 60 };
 
@@ -186,7 +188,8 @@ static struct motion step(const struct scene *s, const struct motion *m, const s
     return next;
 }
 
-// With the right accelerations the joints' speeds fit after a step but for its square: a wrong term would leave its first power.
+// With the right accelerations the joints' speeds fit after a step but for its square: a wrong term
+// would leave its first power.
 static void accelerations_keep_to_the_joints(void **state)
 {
     (void)state;
@@ -269,7 +272,7 @@ static void energy_goes_into_dampers_only(void **state)
     }
 }
 
-// ---- moved as a whole -----------------------------------------------------------------------------------------------------------
+// ---- moved as a whole ---------------------------------------------------------------------------
 
 // Ground's points move along with everything else; joint accelerations are scalars.
 static void place_does_not_matter(void **state)

@@ -3,7 +3,7 @@
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
-// ---- the numbers of a model ------------------------------------------------------------------------
+// ---- the numbers of a model ---------------------------------------------------------------------
 
 // What a number of component `name` becomes.
 typedef ct_ex (*change_fn)(void *data, struct ct_exs *x, const char *name, ct_ex v);
@@ -76,7 +76,7 @@ static struct ct_model changed(const struct changes *c, const struct ct_model *f
     return m;
 }
 
-// ---- terms ---------------------------------------------------------------------------------------
+// ---- terms --------------------------------------------------------------------------------------
 
 struct listed {
     struct ct_ctx ctx;
@@ -120,7 +120,7 @@ static const char *text(struct listed *l, const struct ct_equation_term *t)
                            ct_derivation_text(&l->d, t->e));
 }
 
-// ---- parameters as witnesses -----------------------------------------------------------------------
+// ---- parameters as witnesses --------------------------------------------------------------------
 
 // Each number becomes a parameter of its own, "@NAME" after the component.
 struct witnesses {
@@ -145,7 +145,8 @@ static ct_ex as_parameter(void *data, struct ct_exs *x, const char *name, ct_ex 
     return p.symbol;
 }
 
-// Does the symbol belong to a component: its parameter here, a coordinate "NAME.q" or multiplier "lambda(NAME.x)"?
+// Does the symbol belong to a component: its parameter here, a coordinate "NAME.q" or multiplier
+// "lambda(NAME.x)"?
 static bool belongs(const struct ct_sym *s, const char *name)
 {
     const char *of = strncmp(s->name, "lambda(", 7) ? s->name : s->name + 7;
@@ -237,7 +238,8 @@ static bool names_all_bodies(struct system *s)
     return ok;
 }
 
-// Lists are longer than needed where sums are written by definitions that the marked equations do not have; most are not.
+// Lists are longer than needed where sums are written by definitions that the marked equations do
+// not have; most are not.
 static void terms_name_the_components_that_their_parameters_belong_to(void **state)
 {
     (void)state;
@@ -272,8 +274,8 @@ static double side_of(const struct ct_provenance *p, const double *value,
 
 static size_t noutput; // terms of outputs that were compared
 
-// Accelerations and multipliers that the equations have there make both sides equal, loops are closed there, and outputs
-// are those of the run.
+// Accelerations and multipliers that the equations have there make both sides equal, loops are
+// closed there, and outputs are those of the run.
 static bool sides_are_equal(struct system *s)
 {
     struct variant v;

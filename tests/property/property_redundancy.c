@@ -1,5 +1,5 @@
-// Constraints that depend on each other: which, what they leave open, long runs, singular configurations; and the
-// linear graphs of real systems.
+// Constraints that depend on each other: which, what they leave open, long runs, singular
+// configurations; and the linear graphs of real systems.
 #include "graph/graph.h"
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
@@ -13,7 +13,7 @@ static struct ct_run *open_run(struct system *s, struct variant *v)
     return run;
 }
 
-// ---- what is open ---------------------------------------------------------------------------------------------
+// ---- what is open -------------------------------------------------------------------------------
 
 static void parallel_hinges_in_space_leave_three_reactions_open(void **state)
 {
@@ -97,7 +97,7 @@ static void multipliers_have_the_least_norm(void **state)
     }
 }
 
-// ---- runs -----------------------------------------------------------------------------------------------------
+// ---- runs ---------------------------------------------------------------------------------------
 
 static bool go_on(void *user, double t, const double *value, size_t n)
 {
@@ -178,8 +178,9 @@ static bool compare_with_pivot(void *user, double t, const double *value, size_t
     return true;
 }
 
-// Fixed steps look at J only where the pivots of the form have changed, and seek pivots at every evaluation all the same where the
-// mechanism is near a singular configuration, with redundant rows or without.
+// Fixed steps look at J only where the pivots of the form have changed, and seek pivots at every
+// evaluation all the same where the mechanism is near a singular configuration, with redundant rows
+// or without.
 static void fixed_steps_know_of_singular_positions(void **state)
 {
     (void)state;
@@ -215,9 +216,10 @@ static void fixed_steps_know_of_singular_positions(void **state)
     }
 }
 
-// ---- linear graphs ----------------------------------------------------------------------------------------------
+// ---- linear graphs ------------------------------------------------------------------------------
 
-// A_f B_f' = 0 exactly, and through times across sums to zero for any nodal potentials and chord throughs.
+// A_f B_f' = 0 exactly, and through times across sums to zero for any nodal potentials and chord
+// throughs.
 static void tree_is_orthogonal(struct variant *v, const struct ct_tree *t)
 {
     const struct ct_graph *g = v->e.graph;

@@ -1,10 +1,12 @@
-// Random mechanisms, most of them with redundant joints, against an independent solver (oracle/): freedoms, start values, closure and
-// accelerations, on all trees, with and without what a planar mechanism leaves out, with data of 17, 10 and 6 digits.
+// Random mechanisms, most of them with redundant joints, against an independent solver (oracle/):
+// freedoms, start values, closure and accelerations, on all trees, with and without what a planar
+// mechanism leaves out, with data of 17, 10 and 6 digits.
 //
 //     property_redundant_joints                                 what the suite runs
 //     property_redundant_joints KIND FIRST COUNT DIGITS [FOLDER]
 //
-// KIND is pairs, loops or plain; FIRST the first seed. Models that fail are written to FOLDER. DIGITS may be 17, 10, 6 or 0 for all of them.
+// KIND is pairs, loops or plain; FIRST the first seed. Models that fail are written to FOLDER.
+// DIGITS may be 17, 10, 6 or 0 for all of them.
 #include "tests/property/oracle/engine.h"
 #include "tests/property/oracle/generate.h"
 #include "tests/check.h"
@@ -21,7 +23,7 @@ static const struct way ways[] = {{"auto", "auto", false},
                                   {"joints --keep-all", "joints", true}};
 enum { WAYS = sizeof ways / sizeof ways[0] };
 
-// ---- one answer against the solver --------------------------------------------------------------------------------------
+// ---- one answer against the solver --------------------------------------------------------------
 
 struct verdict {
     const char *what; // NULL: all agrees
@@ -46,8 +48,8 @@ static double difference(struct vector a, struct vector b)
     return norm(plus(a, -1, b));
 }
 
-// What was demanded is kept: these coordinates are independent. Lengths and angles alike, lengths over size. Where loops close in the
-// least-squares sense, to `data`, so are demands.
+// What was demanded is kept: these coordinates are independent. Lengths and angles alike, lengths
+// over size. Where loops close in the least-squares sense, to `data`, so are demands.
 static void check_start(const struct scene *s, const struct answer *a, double size, double data,
                         struct verdict *v)
 {
@@ -69,7 +71,8 @@ static void check_start(const struct scene *s, const struct answer *a, double si
     }
 }
 
-// The largest difference of accelerations over the largest of them, of gravity, and of the squares of speeds; lengths over size.
+// The largest difference of accelerations over the largest of them, of gravity, and of the squares
+// of speeds; lengths over size.
 static double compare(const struct oracle *o, const struct motion *got,
                       const struct motion *want, const struct motion *at)
 {
@@ -91,7 +94,8 @@ static double compare(const struct oracle *o, const struct motion *got,
     return worst / scale;
 }
 
-// Where everything is demanded or guessed, the guesses say the position that the mechanism was made in: nothing is nearer.
+// Where everything is demanded or guessed, the guesses say the position that the mechanism was made
+// in: nothing is nearer.
 static void check_nearest(const struct scene *s, const struct answer *a, double size,
                           double allowed, struct verdict *v)
 {
@@ -122,7 +126,8 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
     if (a->freedoms != freedoms)
         v = (struct verdict){"freedoms", (double)a->freedoms, freedoms};
     oracle_open(&o, s, &a->at);
-    // Digits of the data leave gaps of this size between joints that repeat each other: angles, and lengths over size.
+    // Digits of the data leave gaps of this size between joints that repeat each other: angles, and
+    // lengths over size.
     const double data = s->digits > 15 ? 0 : pow(10, 1 - s->digits), spread = 1 / o.smallest;
     const double gap = o.rank < o.nrow ? data : 0;
     check_start(s, a, o.size, gap, &v);
@@ -132,7 +137,8 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
     check_nearest(s, a, o.size, (1e-9 + 10 * data) * spread, &v);
     if (!v.what) {
         expect(&v, "solver", !oracle_accelerations(&o, &a->at, &want, &condition), 0);
-        // round-off and the closure to 1e-12, each amplified by the inverse of G and of the mass matrix
+        // round-off and the closure to 1e-12, each amplified by the inverse of G and of the mass
+        // matrix
         expect(&v, "accelerations", compare(&o, &a->a, &want, &a->at),
                (1e-11 + 100 * gap) * spread * spread * sqrt(condition));
     }
@@ -142,7 +148,7 @@ static struct verdict judge(const struct scene *s, const struct answer *a, int f
     return v;
 }
 
-// ---- many of them ------------------------------------------------------------------------------------------------------
+// ---- many of them -------------------------------------------------------------------------------
 
 static struct {
     const char *folder; // models that fail go there; NULL: to the output
@@ -195,7 +201,8 @@ static bool agrees(enum kind kind, uint64_t seed, int digits)
         refused += is_refused;
         wrong += v.what && !is_refused;
     }
-    // redundant joints of long chains may add up more than six digits are off: on every tree, and with its message
+    // redundant joints of long chains may add up more than six digits are off: on every tree, and
+    // with its message
     const bool ok = !wrong && (refused == 0 || refused == WAYS);
     run.refused += ok && refused;
     run.failures += !ok;

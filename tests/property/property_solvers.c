@@ -1,5 +1,6 @@
-// Forms solve the equations that dense matrices with full pivoting solve: for every closed shipped system, on
-// several trees, at places that have nothing to do with the one where pivots were chosen.
+// Forms solve the equations that dense matrices with full pivoting solve: for every closed shipped
+// system, on several trees, at places that have nothing to do with the one where pivots were
+// chosen.
 #include "tests/property/system.h"
 
 #include <float.h>
@@ -154,7 +155,8 @@ static void sparse_forms_solve_the_equations(void **state)
     check_kind(&ct_solver_sparse);
 }
 
-// Whatever has become of the pivots, what ct_partition_solve gives is right: it tells where the form is of no use.
+// Whatever has become of the pivots, what ct_partition_solve gives is right: it tells where the
+// form is of no use.
 static void forms_are_not_used_where_they_are_weak(void **state)
 {
     (void)state;
@@ -205,7 +207,8 @@ static double left_after_projection(struct variant *v, double *y)
     return fmax(largest_of(m->phi, m->nrow), largest_of(m->v, m->nrow) / u) / 1e-12;
 }
 
-// From any distance: near ones are corrected with one evaluation, from far ones the terms of second order would be seen.
+// From any distance: near ones are corrected with one evaluation, from far ones the terms of second
+// order would be seen.
 static bool projections_end_on_rows_of(struct system *s, const struct ct_formulate_options *o,
                                        size_t *n)
 {
@@ -276,8 +279,9 @@ static struct ct_solve_counts run_for(const char *file, const struct ct_formulat
     return report.solves;
 }
 
-// Past a position that is nearly singular the rows and columns change, and with them the form; beside it residuals grow
-// and are taken off. A singular one is crossed with the choice that there was before.
+// Past a position that is nearly singular the rows and columns change, and with them the form;
+// beside it residuals grow and are taken off. A singular one is crossed with the choice that there
+// was before.
 static void runs_refine_and_make_other_forms(void **state)
 {
     (void)state;
@@ -293,8 +297,8 @@ static void runs_refine_and_make_other_forms(void **state)
     assert_true(s.reordered > 0);
 }
 
-// A chain of links with a coordinate each for place and angle: everything is coupled with everything in the reduced
-// mass matrix, and next to nothing in the sparse one.
+// A chain of links with a coordinate each for place and angle: everything is coupled with
+// everything in the reduced mass matrix, and next to nothing in the sparse one.
 static const char *chain_text(struct ct_arena *a, int n)
 {
     const char *text = "cotree: 1\nname: chain\ngravity: [0, -9.81, 0]\nbodies:\n";
@@ -413,7 +417,8 @@ static void cost_grows_with_the_number_of_loops(void **state)
     assert_true(fabs((most - many) / (many - few) - 2) < 0.05);
 }
 
-// Twice the elements, twice the operations, though the columns next to the cut are joined to all of them.
+// Twice the elements, twice the operations, though the columns next to the cut are joined to all of
+// them.
 static void cost_grows_with_the_number_of_elements(void **state)
 {
     (void)state;
@@ -424,7 +429,8 @@ static void cost_grows_with_the_number_of_elements(void **state)
     assert_true(fabs((most - many) / (many - few) - 2) < 0.1);
 }
 
-// u' by the form of a system near its start: from the tape, and from native code where there is any. Their number.
+// u' by the form of a system near its start: from the tape, and from native code where there is
+// any. Their number.
 static size_t solve_by_both(const char *path, double a[2][16])
 {
     struct system s;
@@ -448,8 +454,9 @@ static size_t solve_by_both(const char *path, double a[2][16])
     return nu;
 }
 
-// The program of a form has the same bits in every back end where it is short; native code fuses products with sums in
-// longer ones, which changes round-off errors: there are a thousand of them at most.
+// The program of a form has the same bits in every back end where it is short; native code fuses
+// products with sums in longer ones, which changes round-off errors: there are a thousand of them
+// at most.
 static void back_ends_agree(void **state)
 {
     static const char *const longer[]

@@ -1,5 +1,5 @@
-// What each stage of formulate/ hands over always holds (build.h): of all shipped systems and mechanisms, on
-// three choices of trees, in the plane and in space.
+// What each stage of formulate/ hands over always holds (build.h): of all shipped systems and
+// mechanisms, on three choices of trees, in the plane and in space.
 #include "formulate/beam/flexible_body.h"
 #include "formulate/kinematics/constraint_row.h"
 #include "tests/property/mechanism.h"
@@ -23,7 +23,7 @@ static bool is_below(int i, size_t n)
     return i >= 0 && (size_t)i < n;
 }
 
-// ---- topology -------------------------------------------------------------------------------------------
+// ---- topology -----------------------------------------------------------------------------------
 
 static void check_topology(struct check *c, const struct ct_build *b)
 {
@@ -46,9 +46,10 @@ static void check_topology(struct check *c, const struct ct_build *b)
     demand(c, !R, R ? R : "", 0);
 }
 
-// ---- kinematics -----------------------------------------------------------------------------------------
+// ---- kinematics ---------------------------------------------------------------------------------
 
-// The interval of numbers outboard of `self` lies in that of its parent, which has a smaller number.
+// The interval of numbers outboard of `self` lies in that of its parent, which has a smaller
+// number.
 static bool is_within(int self_enter, int self_leave, int enter, int leave)
 {
     return enter < self_enter && self_enter <= self_leave && self_leave <= leave;
@@ -86,7 +87,8 @@ static void check_kinematics(struct check *c, const struct ct_build *b)
     }
 }
 
-// Each coordinate of the trees is an unknown or driven; each unknown is one coordinate's or a beam's.
+// Each coordinate of the trees is an unknown or driven; each unknown is one coordinate's or a
+// beam's.
 static void check_unknowns(struct check *c, const struct ct_build *b)
 {
     size_t nq = 0, ndriver = 0;
@@ -104,7 +106,7 @@ static void check_unknowns(struct check *c, const struct ct_build *b)
     demand(c, ndriver == b->eqs->ndriver, "every driver is a coordinate's", ndriver);
 }
 
-// ---- rows and loads -------------------------------------------------------------------------------------
+// ---- rows and loads -----------------------------------------------------------------------------
 
 static void check_rows(struct check *c, const struct ct_build *b)
 {
@@ -132,7 +134,7 @@ static void check_rows(struct check *c, const struct ct_build *b)
     demand(c, !b->open_rows && !b->open_loads, "stages are closed", 0);
 }
 
-// ---- all of them ----------------------------------------------------------------------------------------
+// ---- all of them --------------------------------------------------------------------------------
 
 static bool stages_hold(struct system *s)
 {

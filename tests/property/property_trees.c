@@ -1,9 +1,10 @@
-// Whatever the trees: accelerations and reactions are the same, and the reactions balance every body.
+// Whatever the trees: accelerations and reactions are the same, and the reactions balance every
+// body.
 #include "tests/property/mechanism.h"
 #include "tests/property/system.h"
 
-// Solutions of well conditioned linear systems of a few dozen unknowns, from states that meet the rows to
-// 1e-12.
+// Solutions of well conditioned linear systems of a few dozen unknowns, from states that meet the
+// rows to 1e-12.
 static const double tolerance = 1e-9;
 
 static double largest(const double *v, size_t n)
@@ -14,7 +15,8 @@ static double largest(const double *v, size_t n)
     return max;
 }
 
-// A reaction of a joint counts where its three components do not hang on multipliers that are not unique.
+// A reaction of a joint counts where its three components do not hang on multipliers that are not
+// unique.
 static bool is_determined(const struct variant *v, size_t i)
 {
     struct ct_exs *x = v->e.x;
@@ -55,7 +57,7 @@ static void solve_at(struct system *s, struct variant *v, const struct ct_initia
     ct_partition_uniqueness(v->s, ct_null_space_create(v->arena, v->s));
 }
 
-// ---- three choices on everything ------------------------------------------------------------------------
+// ---- three choices on everything ----------------------------------------------------------------
 
 static bool choices_agree(struct system *s, bool keep_all)
 {
@@ -145,7 +147,7 @@ static void mechanisms_move_alike_on_three_choices_of_trees(void **state)
     assert_true(ok);
 }
 
-// ---- pairs of trees by name -----------------------------------------------------------------------------------
+// ---- pairs of trees by name ---------------------------------------------------------------------
 
 // Every step-th pair against the trees through joints. Screws and custom joints must agree in both.
 static bool pairs_agree(struct system *s, size_t pairs, size_t *tried)

@@ -38,7 +38,7 @@ const struct ct_formulate_options by_joints
     by_bodies_spatial
     = {.tree = CT_TREE_ABSOLUTE, .with_energy = true, .with_outputs = true, .keep_all = true};
 
-// ---- chance and comparison ------------------------------------------------------------------------------------
+// ---- chance and comparison ----------------------------------------------------------------------
 
 static uint64_t seed = 20240611;
 
@@ -122,7 +122,7 @@ char *coupler_text(struct ct_arena *a, int n, const char *keys, const char *bodi
         n, keys, bodies, joints);
 }
 
-// ---- systems ------------------------------------------------------------------------------------------------
+// ---- systems ------------------------------------------------------------------------------------
 
 static void start(struct system *s, const char *name)
 {
@@ -354,7 +354,7 @@ bool system_random_state(struct system *s, double t, double amplitude,
     return ok;
 }
 
-// ---- variants -----------------------------------------------------------------------------------------------
+// ---- variants -----------------------------------------------------------------------------------
 
 bool variant_try(struct system *s, const struct ct_formulate_options *o, struct variant *v)
 {
@@ -427,7 +427,7 @@ size_t variant_result(const struct variant *v, const char *name)
     return 0;
 }
 
-// ---- trees --------------------------------------------------------------------------------------------------
+// ---- trees --------------------------------------------------------------------------------------
 
 struct collecting {
     struct system *s;

@@ -1,4 +1,5 @@
-// What property tests of whole systems share: read, assemble, move to random states, solve, compare.
+// What property tests of whole systems share: read, assemble, move to random states, solve,
+// compare.
 //
 //     text or file -> system (model, assembly equations, start)
 //     system + trees -> variant (equations, machine, embedding) -> state -> accelerations and results
@@ -37,7 +38,7 @@ struct variant {
     double *y, *result; // nresult
 };
 
-// ---- systems ------------------------------------------------------------------------------------------------
+// ---- systems ------------------------------------------------------------------------------------
 
 /// Read and assemble; print diagnostics and fail the test if that does not work.
 void system_open_file(struct system *s, const char *file); // relative to the source root
@@ -53,23 +54,25 @@ extern const char *const shipped[];
 extern const size_t nshipped;
 /// Does something hold for each of them with fewer than `most` bodies?
 bool holds_for_shipped(bool (*holds)(struct system *s), size_t most);
-/// For each mechanism of mechanism.h, and for all but irreversible ones with the joints in `reversed` exchanged?
+/// For each mechanism of mechanism.h, and for all but irreversible ones with the joints in
+/// `reversed` exchanged?
 bool holds_for_mechanisms(bool (*holds)(struct system *s), unsigned reversed);
 
 /// Replace the outputs by one signal more.
 void system_output(struct system *s, const char *signal);
 void system_no_outputs(struct system *s);
-/// Outputs of every body (place, axes, their rates and accelerations) and every joint (coordinates of all kinds).
+/// Outputs of every body (place, axes, their rates and accelerations) and every joint (coordinates
+/// of all kinds).
 void system_output_motion(struct system *s);
 /// Outputs of every joint: force, torque, efforts.
 void system_output_reactions(struct system *s);
 
-/// A random state near the assembled one at time t that meets all constraints; false if the mechanism cannot
-/// be moved there.
+/// A random state near the assembled one at time t that meets all constraints; false if the
+/// mechanism cannot be moved there.
 bool system_random_state(struct system *s, double t, double amplitude,
                          struct ct_initial_state *out);
 
-// ---- variants -----------------------------------------------------------------------------------------------
+// ---- variants -----------------------------------------------------------------------------------
 
 bool variant_try(struct system *s, const struct ct_formulate_options *o, struct variant *v);
 void variant_open(struct system *s, const struct ct_formulate_options *o, struct variant *v);
@@ -86,7 +89,7 @@ size_t variant_result(const struct variant *v, const char *name);
 extern const struct ct_formulate_options by_joints, by_bodies, by_choice, by_joints_spatial,
     by_bodies_spatial;
 
-// ---- trees --------------------------------------------------------------------------------------------------
+// ---- trees --------------------------------------------------------------------------------------
 
 /// All admissible trees by names of branches.
 struct tree_list {
@@ -102,7 +105,7 @@ struct tree_list system_trees(struct system *s, bool keep_all, bool rotation);
 struct ct_formulate_options trees_given(const struct tree_names *trans,
                                         const struct tree_names *rot);
 
-// ---- chance and comparison ------------------------------------------------------------------------------------
+// ---- chance and comparison ----------------------------------------------------------------------
 
 void chance_start(void); // prints the seed, CT_TEST_SEED
 double chance(void);     // uniform in [-1, 1)
@@ -117,8 +120,9 @@ bool same(const char *system, const char *what, const double *got, const double 
           double tol);
 
 char *text_of(struct ct_arena *a, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
-/// A four-bar in space, two cranks about axes at right angles: its coupler, the beam `rod` of n elements that bends in both planes, hangs
-/// on two balls. keys: more of the beam; bodies, joints: more lines.
+/// A four-bar in space, two cranks about axes at right angles: its coupler, the beam `rod` of n
+/// elements that bends in both planes, hangs on two balls. keys: more of the beam; bodies, joints:
+/// more lines.
 char *coupler_text(struct ct_arena *a, int n, const char *keys, const char *bodies,
                    const char *joints);
 

@@ -24,14 +24,14 @@ KINDS = ["Derived", "Default", "Limit", "Layout", "Definition", "Chosen"]
 
 # Files, folders, and with a / at the end whole trees, whose constants all have a kind, and stay so.
 DONE = """
-src/accuracy src/analysis src/base src/beam_error src/cli src/codegen src/component src/draw src/export src/expr
-src/formulate/ src/graph src/html src/import src/io src/live src/numeric src/report src/sim src/solve/batch
-src/solve/constraint src/solve/evaluator src/solve/initial src/solve/output_error src/solve/run src/solve/singular
-src/study components
+components src/accuracy src/analysis src/base src/beam_error src/cli src/codegen src/component src/draw src/export
+src/expr src/formulate/ src/graph src/html src/import src/integrate src/integrate/implicit src/io src/live src/numeric
+src/report src/sim src/solve/batch src/solve/constraint src/solve/evaluator src/solve/initial src/solve/output_error
+src/solve/run src/solve/singular src/study
 """.split()
 
 # Constants of kind Chosen there: fewer each time, never more.
-MOST_CHOSEN = 158
+MOST_CHOSEN = 216
 
 KIND = re.compile(r"\b(" + "|".join(KINDS) + r"):")
 TEST = re.compile(r"\bTests?: *([\w.+-]+(?:, *[\w.+-]+)*)")

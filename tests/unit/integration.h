@@ -1,4 +1,5 @@
-// What tests of integration share: a record of what a run does, and problems with solutions in closed form.
+// What tests of integration share: a record of what a run does, and problems with solutions in
+// closed form.
 #ifndef CT_TESTS_UNIT_INTEGRATION_H
 #define CT_TESTS_UNIT_INTEGRATION_H
 

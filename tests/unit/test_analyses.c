@@ -54,13 +54,14 @@ static struct ct_system *load_with(struct ct_ctx *ctx, const char *text,
     return checked(ctx, ct_system_load(ctx, path, options));
 }
 
-// ---- natural motions -------------------------------------------------------------------------------------
+// ---- natural motions ----------------------------------------------------------------------------
 
 struct want {
     double omega, damping;
 };
 
-// All modes of a model about a configuration: as many as wanted, to round-off of well conditioned problems.
+// All modes of a model about a configuration: as many as wanted, to round-off of well conditioned
+// problems.
 static void check_modes(const char *text, const char *about, const struct want *want, size_t n)
 {
     struct ct_ctx *ctx = ct_ctx_create();
@@ -86,7 +87,8 @@ static void check_modes(const char *text, const char *about, const struct want *
 static void two_masses_between_walls(void **state)
 {
     (void)state;
-    // equal masses, three equal springs: k/m and 3 k/m; dampers c = b k give the damping b omega / 2
+    // equal masses, three equal springs: k/m and 3 k/m; dampers c = b k give the damping b omega /
+    // 2
     CHECK_MODES(
         "cotree: 1\n"
         "bodies: {ground: {points: {wall: [2, 0, 0]}}, a: {mass: 1}, b: {mass: 1}}\n"
@@ -142,8 +144,8 @@ static void a_massless_coordinate_with_a_damper_creeps(void **state)
                 {(m * k + root) / (2 * m * c), 1});
 }
 
-// One cubic element, free in space: w^2 = 720 and 8400 EI/(m L^4). Its turn about its own axis moves no mass and nothing
-// holds it: it is no motion, and takes no part in the others.
+// One cubic element, free in space: w^2 = 720 and 8400 EI/(m L^4). Its turn about its own axis
+// moves no mass and nothing holds it: it is no motion, and takes no part in the others.
 static void what_neither_mass_nor_force_sees_is_no_motion(void **state)
 {
     (void)state;
@@ -269,7 +271,8 @@ static void a_turning_beam_stiffens_by_southwell(void **state)
                 0, 1e-4);
 }
 
-// A row of masses on rails of their own, springs between neighbours, and one to ground if it is held there.
+// A row of masses on rails of their own, springs between neighbours, and one to ground if it is
+// held there.
 static char *row_of_masses(int n, bool is_held)
 {
     const size_t room = 256 * (size_t)n + 512;
@@ -310,7 +313,8 @@ static void rows_of_many_masses(void **state)
         assert_int_equal(ct_modes_count(modes), COUNT);
         for (int i = 0; i < COUNT; i++) {
             const double angle = held ? (2 * i + 1) * pi / (2 * (2 * N + 1)) : i * pi / (2 * N);
-            // the round-off errors of a stiffness whose slowest mode is a hundred thousandth of the fastest
+            // the round-off errors of a stiffness whose slowest mode is a hundred thousandth of the
+            // fastest
             CHECK_CLOSE(ct_modes_info(modes, (size_t)i).omega, 2 * 20 * sin(angle), 1e-9, 1e-9);
         }
         ct_modes_destroy(modes);
@@ -320,7 +324,7 @@ static void rows_of_many_masses(void **state)
     }
 }
 
-// ---- equilibria ------------------------------------------------------------------------------------------
+// ---- equilibria ---------------------------------------------------------------------------------
 
 static struct ct_equilibrium *find_equilibrium(struct ct_ctx *ctx, struct ct_system *sys)
 {
@@ -388,7 +392,8 @@ static void what_nothing_holds_is_named(void **state)
     ct_ctx_destroy(ctx);
 }
 
-// The static deflection q L^4/(8 EI) + P L^3/(3 EI), which cubic elements have at their nodes exactly.
+// The static deflection q L^4/(8 EI) + P L^3/(3 EI), which cubic elements have at their nodes
+// exactly.
 static void a_beam_starts_in_its_static_shape(void **state)
 {
     (void)state;
@@ -416,7 +421,7 @@ static void a_beam_starts_in_its_static_shape(void **state)
     ct_ctx_destroy(ctx);
 }
 
-// ---- buckling ---------------------------------------------------------------------------------------------
+// ---- buckling -----------------------------------------------------------------------------------
 
 static void check_buckling(const char *text, const char *load, const double *want, size_t n)
 {
@@ -505,9 +510,10 @@ static void a_following_load_does_not_buckle_two_links(void **state)
     ct_ctx_destroy(ctx);
 }
 
-// ---- linear models ------------------------------------------------------------------------------------------
+// ---- linear models ------------------------------------------------------------------------------
 
-// A four-bar with a weight and springs, at its equilibrium; a torque on one of its bars swings it a little.
+// A four-bar with a weight and springs, at its equilibrium; a torque on one of its bars swings it a
+// little.
 static const char swinging[]
     = "cotree: 1\n"
       "gravity: [0, -9.81, 0]\n"
@@ -739,7 +745,7 @@ static void mat_holds_the_matrices(void **state)
     ct_ctx_destroy(ctx);
 }
 
-// ---- driven motions --------------------------------------------------------------------------------------------
+// ---- driven motions -----------------------------------------------------------------------------
 
 // How the crank is moved comes last.
 #define CRANK_AND_SLIDER(main)                                                                 \

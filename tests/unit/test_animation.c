@@ -1,5 +1,5 @@
-// The motion that the page of a report shows: places and rotations against those of a state, loads and reactions
-// against Newton's law, and what is written of them.
+// The motion that the page of a report shows: places and rotations against those of a state, loads
+// and reactions against Newton's law, and what is written of them.
 #include "tests/check.h"
 #include "draw/animation.h"
 #include "report/packed.h"
@@ -164,7 +164,8 @@ static void beams_end_at_their_last_frames(void **state)
     leave();
 }
 
-// Of a body that tumbles many times q and -q are the same rotation; between samples only one way is short.
+// Of a body that tumbles many times q and -q are the same rotation; between samples only one way is
+// short.
 static void quaternions_keep_their_sign(void **state)
 {
     (void)state;
@@ -196,7 +197,8 @@ static const char pendulum[]
       "  push: {type: force, at: bob, value: [7, 0, 0]}\n"
       "simulation: {duration: 1, samples: 11}\n";
 
-// At q = 0, u = 3: the centre is accelerated by -u^2 c along x, by alpha c along y; alpha = -m g c / (I + m c^2).
+// At q = 0, u = 3: the centre is accelerated by -u^2 c along x, by alpha c along y; alpha = -m g c
+// / (I + m c^2).
 static void joints_carry_what_bodies_need(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// The public interface: a run from file to values, what callers may do wrong, and memory that runs out.
+// The public interface: a run from file to values, what callers may do wrong, and memory that runs
+// out.
 #include "base/guard.h"
 
 #include <cotree/cotree.h>
@@ -234,7 +235,8 @@ static struct sums run_two_threads(struct ct_ctx *ctx, struct ct_study *study)
     return s;
 }
 
-// As Python's multiprocessing does: of one that has run, one that was made before, one that the child makes.
+// As Python's multiprocessing does: of one that has run, one that was made before, one that the
+// child makes.
 static void studies_run_in_a_child_process(void **state)
 {
     (void)state;

@@ -110,7 +110,8 @@ static void count(void *n)
     ++*(int *)n;
 }
 
-// What a merged arena holds stays, and what is to be done at its end is done once, at the end of the other.
+// What a merged arena holds stays, and what is to be done at its end is done once, at the end of
+// the other.
 static void merged_arenas_end_together(void **state)
 {
     static const size_t size[] = {0, 100, 10000}; // of what is in the one, and in the other
@@ -144,7 +145,8 @@ static void merged_arenas_end_together(void **state)
 
 enum { NREQUEST = 40 };
 
-// Many small ones and some that take chunks of pages. Each is zero when it comes and is not when the next is asked for.
+// Many small ones and some that take chunks of pages. Each is zero when it comes and is not when
+// the next is asked for.
 static void request(struct ct_arena *a, size_t more, unsigned char **p)
 {
     for (size_t i = 0; i < NREQUEST; i++) {

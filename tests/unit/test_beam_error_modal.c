@@ -25,7 +25,8 @@ static void follow_until(struct ct_beam_error_modal *s, double t, int n,
         ct_beam_error_modal_advance(s, start + (t - start) * i / n, base);
 }
 
-// At the rate w: W = 4 - w^2 without, 4 - w^2 + 1.2 w^2 with the axial force, whatever the steps are.
+// At the rate w: W = 4 - w^2 without, 4 - w^2 + 1.2 w^2 with the axial force, whatever the steps
+// are.
 static void let_go_it_swings_at_two_frequencies(void **unused)
 {
     (void)unused;
@@ -67,8 +68,8 @@ static void damping_is_in_both(void **unused)
     CHECK_CLOSE(ct_beam_error_modal_error(&s, CT_BEAM_MODEL_LINEAR), 0, 0, 1e-300);
 }
 
-// About the axis at the rate w: in axes that stand still y + i z swings as it would at rest, here it turns back by w t. The
-// second pass makes it of second order.
+// About the axis at the rate w: in axes that stand still y + i z swings as it would at rest, here
+// it turns back by w t. The second pass makes it of second order.
 static void about_its_axis_planes_meet(void **unused)
 {
     (void)unused;
@@ -91,7 +92,8 @@ static void about_its_axis_planes_meet(void **unused)
     CHECK_CLOSE(error[0] / error[1], 4, 0.02, 0);
 }
 
-// Turned about its axis in no time, a deflection along z has a speed along y, and the other way round.
+// Turned about its axis in no time, a deflection along z has a speed along y, and the other way
+// round.
 static void a_jump_about_its_axis_turns_speeds(void **unused)
 {
     (void)unused;

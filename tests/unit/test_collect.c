@@ -91,7 +91,7 @@ static void check_values(struct fixture *f, struct random *r, ct_ex e, ct_ex got
     }
 }
 
-// ---- models built from ground components, nothing simplified -------------------------------------
+// ---- models built from ground components, nothing simplified ------------------------------------
 
 static ct_ex mul3(struct ct_exs *x, ct_ex a, ct_ex b, ct_ex c)
 {
@@ -288,7 +288,7 @@ static void what_is_not_linear_is_left_over(void **unused)
     finish(&f);
 }
 
-// ---- identities and numbers -----------------------------------------------------------------------
+// ---- identities and numbers ---------------------------------------------------------------------
 
 static void identities_only_where_shorter(void **unused)
 {

@@ -15,7 +15,8 @@ enum { NY = 2, MOST = 512 };
 static const double singular = 1.3; // the time
 static const double width = 0.1;
 
-// y0' = cos t, y1' = -y0 with noise as of a division by the distance squared; closer than this: refused.
+// y0' = cos t, y1' = -y0 with noise as of a division by the distance squared; closer than this:
+// refused.
 static const double closest = 1e-3;
 
 struct record {
@@ -28,9 +29,11 @@ struct record {
     int nbridge, nevent;
     double event, last;
     double left,
-        grows; // what the constraints are missed by in the middle, falling with this power of the reach
+        // what the constraints are missed by in the middle, falling with this power of the reach
+        grows;
     double
-        trusted; // the position is `singular` after that time; before, another one that is passed by
+        // the position is `singular` after that time; before, another one that is passed by
+        trusted;
     double jump;   // of y0' at the event, where that switches
     double bend;   // and a part of it that is odd about the position, of this width
     double beside; // time from the position to where it does
@@ -320,7 +323,8 @@ static const struct ct_problem switching = {.ny = NY,
                                             .root = root_beside,
                                             .event = event};
 
-// f can be computed neither at the event nor next to it: what comes behind is found from both sides.
+// f can be computed neither at the event nor next to it: what comes behind is found from both
+// sides.
 static void f_may_switch_in_the_position(void **unused)
 {
     (void)unused;
@@ -340,7 +344,8 @@ static void f_may_switch_in_the_position(void **unused)
             }
 }
 
-// Before the event f need not be known far back; where it is not known at all steps go on from the event, if it can be computed there.
+// Before the event f need not be known far back; where it is not known at all steps go on from the
+// event, if it can be computed there.
 static void f_that_has_switched_is_asked_for_near_by(void **unused)
 {
     (void)unused;
@@ -353,7 +358,8 @@ static void f_that_has_switched_is_asked_for_near_by(void **unused)
     assert_false(run(&none, "dop853", switching, 3, 1e-9));
 }
 
-// Over the whole crossing what is odd about the position cancels, and what it errs by in the gap; over the rest it does not.
+// Over the whole crossing what is odd about the position cancels, and what it errs by in the gap;
+// over the rest it does not.
 static void the_rest_has_an_error_of_its_own(void **unused)
 {
     (void)unused;
@@ -374,7 +380,8 @@ static enum ct_eval sharp(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// Where the constraints do not hold in the middle there is no position to be singular: short steps follow the motion.
+// Where the constraints do not hold in the middle there is no position to be singular: short steps
+// follow the motion.
 static void a_position_that_is_passed_by_is_not_crossed(void **unused)
 {
     (void)unused;
@@ -386,7 +393,8 @@ static void a_position_that_is_passed_by_is_not_crossed(void **unused)
     assert_true(r.stats.steps > 50);
 }
 
-// What misses the constraints by less than 100 T may meet them from nearer by; what misses them by more is passed by at once.
+// What misses the constraints by less than 100 T may meet them from nearer by; what misses them by
+// more is passed by at once.
 static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
 {
     (void)unused;
@@ -404,8 +412,8 @@ static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
     assert_int_equal(far.ncrossing, 1);
 }
 
-// A position that is told of at more than twice the time is another one, and is crossed though the one before was not; up to twice
-// it is the same.
+// A position that is told of at more than twice the time is another one, and is crossed though the
+// one before was not; up to twice it is the same.
 static void another_position_is_crossed_after_one_that_is_passed_by(void **unused)
 {
     (void)unused;

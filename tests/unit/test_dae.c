@@ -1,4 +1,5 @@
-// The residual form and its derivatives for all shipped systems, and implicit runs of real models against references.
+// The residual form and its derivatives for all shipped systems, and implicit runs of real models
+// against references.
 #include "tests/check.h"
 
 #include "formulate/formulate.h"
@@ -86,7 +87,7 @@ static void close_job(struct job *j)
     ct_arena_destroy(j->ctx.scratch);
 }
 
-// ---- residual and derivatives -------------------------------------------------------------------------
+// ---- residual and derivatives -------------------------------------------------------------------
 
 static uint64_t seed = 1;
 
@@ -252,7 +253,8 @@ static void residual_and_derivatives_of_all_systems(void **unused)
                 check_derivatives(systems[i], (enum ct_tree_choice)tree);
 }
 
-// All derivatives of a form (4 tables of nu or nrow x nu, out) at the input of a machine, by a back end.
+// All derivatives of a form (4 tables of nu or nrow x nu, out) at the input of a machine, by a back
+// end.
 static double *tables_of(struct job *j, enum ct_slope_form form, enum ct_backend backend,
                          const double *input)
 {
@@ -321,7 +323,7 @@ static void derivatives_along_directions_are_the_entries(void **unused)
                 compare_forms(systems[i], (enum ct_tree_choice)tree);
 }
 
-// ---- runs against references --------------------------------------------------------------------------
+// ---- runs against references --------------------------------------------------------------------
 
 enum { MOST_TIMES = 20, MOST_COLUMNS = 60 };
 
@@ -421,10 +423,11 @@ static const char *const implicit[]
 static void models_follow_their_references(void **unused)
 {
     (void)unused;
-    // Radau's steps are held to tol, so outputs that are as good as states err by what all steps add up to; others by ten
-    // times the T = tol^(2/3) that such steps are made for. Where below that an error falls is chance: with a tolerance 3 %
-    // larger or smaller that of R06_slender, of 50 steps, is another number of the same decade.
-    // Errors of order 2 as measured, times three; energy is kept at least as well.
+    // Radau's steps are held to tol, so outputs that are as good as states err by what all steps
+    // add up to; others by ten times the T = tol^(2/3) that such steps are made for. Where below
+    // that an error falls is chance: with a tolerance 3 % larger or smaller that of R06_slender, of
+    // 50 steps, is another number of the same decade. Errors of order 2 as measured, times three;
+    // energy is kept at least as well.
     static const struct {
         const char *name;
         double duration, radau, alpha, alpha_error;
@@ -505,7 +508,8 @@ static void orders_of_explicit_methods_hold_for_models(void **unused)
                                        cases[k].duration, 2, &report);
             const double order = log2(error[0] / error[1]);
             printf("%s %s: order %.2f\n", cases[k].name, method[i], order);
-            // nearer to its order than to the one below; higher where the leading term is small and the next one shows
+            // nearer to its order than to the one below; higher where the leading term is small and
+            // the next one shows
             assert_true(order > ct_method_find(method[i])->order - 0.5);
         }
 }
@@ -516,8 +520,8 @@ static bool go_on(void *user)
     return true;
 }
 
-// References of other origin, as near as double precision shows. The double pendulum amplifies the round-off of g and of
-// its start by 1e3 in 10 s.
+// References of other origin, as near as double precision shows. The double pendulum amplifies the
+// round-off of g and of its start by 1e3 in 10 s.
 static void runs_in_quadruple_precision_meet_references(void **unused)
 {
     (void)unused;
@@ -561,8 +565,9 @@ static bool count_sample(void *user, double t, const double *value, size_t n)
     return true;
 }
 
-// The member without damping, rho = 1, on a slider-crank that turns freely: its energy stays within the error of order 2
-// however long it runs, CT_LONG_STEPS steps, and the constraints are met to round-off.
+// The member without damping, rho = 1, on a slider-crank that turns freely: its energy stays within
+// the error of order 2 however long it runs, CT_LONG_STEPS steps, and the constraints are met to
+// round-off.
 static void energy_stays_bounded_without_damping(void **unused)
 {
     (void)unused;
@@ -599,8 +604,8 @@ static void energy_stays_bounded_without_damping(void **unused)
     assert_true(drift[1] < 1.1 * drift[0]); // ten times as long
 }
 
-// Steps longer than the period of a spring (6e-3 s): explicit methods end in infinity, these follow the slow motion, and
-// give no energy to the fast one.
+// Steps longer than the period of a spring (6e-3 s): explicit methods end in infinity, these follow
+// the slow motion, and give no energy to the fast one.
 static void a_stiff_spring_is_stepped_over(void **unused)
 {
     (void)unused;

@@ -1,4 +1,5 @@
-// Shortest decimals: the table of powers of ten, and that numbers read back, from the fewest digits, the closest ones.
+// Shortest decimals: the table of powers of ten, and that numbers read back, from the fewest
+// digits, the closest ones.
 #include "base/decimal.h"
 #include "tests/check.h"
 
@@ -116,7 +117,8 @@ static uint64_t next(uint64_t *s) // SplitMix64
     return z ^ z >> 31;
 }
 
-// Of all exponents: any fraction, powers of two and their neighbours, integers, decimals of few digits.
+// Of all exponents: any fraction, powers of two and their neighbours, integers, decimals of few
+// digits.
 static double draw(uint64_t *s, long i)
 {
     const uint64_t fraction = (UINT64_C(1) << 52) - 1;

@@ -254,7 +254,8 @@ static void complex_inverses_solve(void **unused)
     assert_false(ct_inverse_complex(singular, pivot, 2));
 }
 
-// For any number of columns, and of rows by fours; each sum has its terms in their order, whatever the processor adds at once.
+// For any number of columns, and of rows by fours; each sum has its terms in their order, whatever
+// the processor adds at once.
 static void products_are_sums_in_order(void **unused)
 {
     (void)unused;

@@ -122,7 +122,7 @@ static void check_close(double got, double want, double tolerance)
     fail();
 }
 
-// ---- equal to the engine's ------------------------------------------------------------------------
+// ---- equal to the engine's ----------------------------------------------------------------------
 
 static void check_equal(const struct fixture *f, const char *system, const char *what, size_t i,
                         ct_ex got, ct_ex want, double scale)
@@ -208,7 +208,8 @@ static void what_is_printed_equals_the_engine(void **state)
     }
 }
 
-// The recursive form, which long systems get: cutset - effort = M u' - Q - J' lam for any u' and lam.
+// The recursive form, which long systems get: cutset - effort = M u' - Q - J' lam for any u' and
+// lam.
 static void the_recursive_form_equals_the_matrix_form(void **state)
 {
     (void)state;
@@ -249,7 +250,7 @@ static void the_recursive_form_equals_the_matrix_form(void **state)
     }
 }
 
-// ---- blocks of beams --------------------------------------------------------------------------------
+// ---- blocks of beams ----------------------------------------------------------------------------
 
 // Entries of the matrices of a beam as the engine has them, and the lines below its block.
 struct engine_beam {
@@ -284,7 +285,8 @@ static void set_symbol(struct fixture *f, ct_ex symbol, double v)
         f->symbol[ct_ex_node(f->e.x, symbol)->a] = v;
 }
 
-// engine: values of its nodes in this state. k: the coordinate for which the vectors stand; -1: all zero.
+// engine: values of its nodes in this state. k: the coordinate for which the vectors stand; -1: all
+// zero.
 static void set_block(struct fixture *f, const struct ct_beam_block *s,
                       const struct engine_beam *of, const double *engine, int k)
 {
@@ -466,7 +468,7 @@ static void blocks_of_beams_equal_the_engine(void **state)
     }
 }
 
-// ---- readable again ---------------------------------------------------------------------------------
+// ---- readable again -----------------------------------------------------------------------------
 
 // Outputs of the model leave signals of the same name behind.
 static enum ct_name_result find_symbol(const struct fixture *f, const char *name, ct_ex *e)
@@ -532,7 +534,7 @@ static void text_for_programs_reads_back(void **state)
     }
 }
 
-// ---- equal to the textbook's ------------------------------------------------------------------------
+// ---- equal to the textbook's --------------------------------------------------------------------
 
 static double *symbol_of(const struct fixture *f, const char *name)
 {
@@ -660,8 +662,8 @@ static void double_pendulum_is_that_of_the_textbook(void **state)
     finish(&f);
 }
 
-// J(th) th'' + J'(th) th'^2/2 = torque with the kinetic coefficients of all bodies, eliminated by hand:
-// Eksergian's equation, Paul, Kinematics and Dynamics of Planar Machinery, 1979, chapter 12
+// J(th) th'' + J'(th) th'^2/2 = torque with the kinetic coefficients of all bodies, eliminated by
+// hand: Eksergian's equation, Paul, Kinematics and Dynamics of Planar Machinery, 1979, chapter 12
 static void slider_crank_is_that_of_the_textbook(void **state)
 {
     (void)state;
@@ -691,7 +693,7 @@ static void slider_crank_is_that_of_the_textbook(void **state)
     finish(&f);
 }
 
-// ---- the formats ------------------------------------------------------------------------------------
+// ---- the formats --------------------------------------------------------------------------------
 
 static char *print(const char *system, unsigned stages, enum ct_equations_format format)
 {

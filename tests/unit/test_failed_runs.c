@@ -1,4 +1,5 @@
-// Integration where a step or a run cannot go on: refused stages, errors with their times, limits, endless runs.
+// Integration where a step or a run cannot go on: refused stages, errors with their times, limits,
+// endless runs.
 #include "tests/unit/integration.h"
 
 // --- refusals and limits ---------------------------------------------------------------------
@@ -135,7 +136,8 @@ static enum ct_eval slowing(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// Two thousandths of the steps allowed tell that there are too many; steps that grow may still arrive.
+// Two thousandths of the steps allowed tell that there are too many; steps that grow may still
+// arrive.
 static void endless_runs_end_early(void **unused)
 {
     (void)unused;
@@ -157,7 +159,8 @@ static void endless_runs_end_early(void **unused)
     end(r);
 }
 
-// A pendulum: its period from rest at 1 rad is 2 pi over the arithmetic-geometric mean of 1 and cos(1/2), here from 40 digits.
+// A pendulum: its period from rest at 1 rad is 2 pi over the arithmetic-geometric mean of 1 and
+// cos(1/2), here from 40 digits.
 static enum ct_eval swinging(void *user, double t, const double *y, double *dy)
 {
     (void)user;
@@ -183,7 +186,8 @@ static double error_of_swings(int count, double least_rtol, long *steps)
     return hypot(y[0] - 1, y[1]);
 }
 
-// Errors grow with the square of the number of turns, unless steps know of it; with few turns nothing changes.
+// Errors grow with the square of the number of turns, unless steps know of it; with few turns
+// nothing changes.
 static void many_turns_ask_for_better_steps(void **unused)
 {
     (void)unused;

@@ -122,7 +122,8 @@ static void fractions_are_printed_for_people_only(void **state)
     ct_arena_destroy(a);
 }
 
-// A part of a fraction that is wider than a line of a page is printed as a factor: lines break there, not in \frac.
+// A part of a fraction that is wider than a line of a page is printed as a factor: lines break
+// there, not in \frac.
 static void wide_fractions_are_products(void **state)
 {
     (void)state;

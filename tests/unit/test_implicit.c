@@ -1,4 +1,5 @@
-// Implicit methods on small problems written out: orders, tolerances, constraints, events, stiffness.
+// Implicit methods on small problems written out: orders, tolerances, constraints, events,
+// stiffness.
 #include "tests/check.h"
 #include "integrate/implicit/newton_iteration.h"
 #include "integrate/problem.h"
@@ -21,7 +22,7 @@ struct model {
     long undefined; // the number of the residual that is no number; 0: none
 };
 
-// ---- the problems ---------------------------------------------------------------------------------
+// ---- the problems -------------------------------------------------------------------------------
 
 // A pendulum whose inertia grows with its angle, with a damper: M(q) and Q(q, u) are nonlinear.
 static void swing(double t, const double *q, const double *u, const double *a,
@@ -44,7 +45,8 @@ static void solve_swing(double t, const double *q, const double *u, double *a, d
 
 static const struct model swinging = {1, 0, swing, solve_swing, {1.2}, {0.4}};
 
-// A mass on a rod whose length changes: Phi = (|q|^2 - L(t)^2)/2, gravity 2, masses 1 and 3 along x and y.
+// A mass on a rod whose length changes: Phi = (|q|^2 - L(t)^2)/2, gravity 2, masses 1 and 3 along x
+// and y.
 static double rod_square(double t, int order)
 {
     const double w = 1.7; // L^2 = 1 + 0.2 sin(w t)
@@ -106,7 +108,7 @@ static void solve_creep(double t, const double *q, const double *u, double *a, d
 
 static const struct model creeping = {1, 0, creep, solve_creep, {1.5}, {0}};
 
-// ---- the problem of a model -----------------------------------------------------------------------
+// ---- the problem of a model ---------------------------------------------------------------------
 
 struct user {
     const struct model *model;
@@ -269,7 +271,7 @@ static double distance(const double *a, const double *b, int n)
     return worst;
 }
 
-// ---- orders -----------------------------------------------------------------------------------------
+// ---- orders -------------------------------------------------------------------------------------
 
 // Places, speeds and quadratures by halving the step.
 static void check_order(const struct model *m, const char *method, int nstep, double want)
@@ -418,7 +420,8 @@ static void errors_follow_the_tolerance(void **unused)
                        "Jacobians, %ld factorizations, error %.1e\n",
                        implicit[i], model[k]->m, digits, s.stats.steps, s.stats.rejected_steps,
                        s.stats.evaluations, s.stats.jacobians, s.stats.factorizations, worst);
-                // order 2: a hundredfold tolerance is a step 4.6 times as long, an error 21 times as large
+                // order 2: a hundredfold tolerance is a step 4.6 times as long, an error 21 times
+                // as large
                 assert_true(worst < before / 8);
                 assert_true(worst < 300 * pow(10, -2. / 3 * digits));
                 assert_false(s.has_grown);
@@ -429,7 +432,7 @@ static void errors_follow_the_tolerance(void **unused)
         }
 }
 
-// ---- events, stiffness, misuse ---------------------------------------------------------------------
+// ---- events, stiffness, misuse ------------------------------------------------------------------
 
 static enum ct_eval height(void *user, double t, const double *y, double *g)
 {
@@ -501,9 +504,10 @@ static void implicit_methods_want_a_residual(void **unused)
     ct_arena_destroy(s.ctx.model);
 }
 
-// ---- round-off of forces -----------------------------------------------------------------------------------
+// ---- round-off of forces ------------------------------------------------------------------------
 
-// A spring whose force is off by a grain in all places but one, and how far from there it is looked at.
+// A spring whose force is off by a grain in all places but one, and how far from there it is looked
+// at.
 static const double stiffness = 1e4, grain = 1e-6;
 static double farthest;
 
@@ -544,8 +548,9 @@ static enum ct_convergence judge_stalled(struct ct_newton_iteration *it, double 
     return ct_newton_iteration_test_convergence(it, size, far, far, 1);
 }
 
-// (8.17): stages may add up three times what is seen of a round-off, and looks differ by two. What is 25 times as much is none. Forces
-// are looked at where places cannot be told apart, from 8 round-off errors on.
+// (8.17): stages may add up three times what is seen of a round-off, and looks differ by two. What
+// is 25 times as much is none. Forces are looked at where places cannot be told apart, from 8
+// round-off errors on.
 static void stalled_corrections_are_compared_with_rounding_of_forces(void **unused)
 {
     (void)unused;
@@ -577,7 +582,8 @@ static void stalled_corrections_are_compared_with_rounding_of_forces(void **unus
     ct_arena_destroy(a);
 }
 
-// Two masses that move alike, the second held by a spring: the row is off by a grain in all places but one.
+// Two masses that move alike, the second held by a spring: the row is off by a grain in all places
+// but one.
 static enum ct_eval find_grainy_row(void *user, double t, const double *q, const double *u,
                                     const double *a, const double *lam, double *r, double *phi,
                                     double *v)
@@ -613,7 +619,8 @@ static int one_row(void *user, long *version)
     return 1;
 }
 
-// (8.17): what rows are off by moves the masses apart by as much, d, which the spring feels: both swing by k d/2/(2 m e + k) for it.
+// (8.17): what rows are off by moves the masses apart by as much, d, which the spring feels: both
+// swing by k d/2/(2 m e + k) for it.
 static void stalled_corrections_are_compared_with_rounding_of_constraints(void **unused)
 {
     (void)unused;

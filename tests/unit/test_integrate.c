@@ -1,5 +1,6 @@
-// Integration against solutions in closed form: orders, tolerances, samples, projection. The explicit methods,
-// which stand first in the table; test_implicit.c has the others, test_events.c events, test_failed_runs.c what cannot go on.
+// Integration against solutions in closed form: orders, tolerances, samples, projection. The
+// explicit methods, which stand first in the table; test_implicit.c has the others, test_events.c
+// events, test_failed_runs.c what cannot go on.
 #include "integrate/step_control.h"
 #include "integrate/stiffness.h"
 #include "integrate/stepper.h"
@@ -57,7 +58,8 @@ static enum ct_eval even(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// Summed without care, a hundred thousand steps leave an error of some hundred round-off errors or more.
+// Summed without care, a hundred thousand steps leave an error of some hundred round-off errors or
+// more.
 static void roundings_of_many_steps_do_not_add_up(void **unused)
 {
     (void)unused;
@@ -125,7 +127,8 @@ static void the_table_of_dop853_fulfils_conditions_below_rounding(void **unused)
                     0, 0.05);
 }
 
-// Coefficients of dop853 that are rounded one by one take 7.8e-16 (omega h)^2 of the energy in each step: 1.9e-12 of these.
+// Coefficients of dop853 that are rounded one by one take 7.8e-16 (omega h)^2 of the energy in each
+// step: 1.9e-12 of these.
 static void a_million_steps_keep_the_energy(void **unused)
 {
     (void)unused;
@@ -494,8 +497,8 @@ static enum ct_eval swing(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// (8.12): the term of the error's order of exp(i omega h) is a hundredth of what is asked. The rate is that of the vibration to
-// (omega h)^2/24 at a change of accelerations by 5 %.
+// (8.12): the term of the error's order of exp(i omega h) is a hundredth of what is asked. The rate
+// is that of the vibration to (omega h)^2/24 at a change of accelerations by 5 %.
 static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused)
 {
     (void)unused;
@@ -516,7 +519,7 @@ static void the_first_step_from_rest_is_that_of_the_motion_to_come(void **unused
         }
 }
 
-// ---- where stability holds steps up -----------------------------------------------------------------------
+// ---- where stability holds steps up -------------------------------------------------------------
 
 static double damping, turning;
 
@@ -529,7 +532,8 @@ static enum ct_eval spiral(void *user, double t, const double *y, double *dy)
     return CT_EVAL_OK;
 }
 
-// What a step of length 1 leaves of one, exp(i phase) being where its rate points to; *error (out): its estimate.
+// What a step of length 1 leaves of one, exp(i phase) being where its rate points to; *error (out):
+// its estimate.
 static double left_of_one(const struct ct_method *m, void *work, double rate, double phase,
                           double *error)
 {
@@ -544,8 +548,9 @@ static double left_of_one(const struct ct_method *m, void *work, double rate, do
     return hypot(y1[0], y1[1]);
 }
 
-// Up to `stability_limit` nothing left of the imaginary axis becomes larger, and of what is damped a longer step has the larger estimate: not
-// far beyond, that falls to nothing while what is left of an error grows.
+// Up to `stability_limit` nothing left of the imaginary axis becomes larger, and of what is damped
+// a longer step has the larger estimate: not far beyond, that falls to nothing while what is left
+// of an error grows.
 static void stable_steps_make_nothing_larger(void **unused)
 {
     (void)unused;
@@ -571,7 +576,7 @@ static void stable_steps_make_nothing_larger(void **unused)
     }
 }
 
-// ---- the rate of the fastest motion --------------------------------------------------------------------------
+// ---- the rate of the fastest motion -------------------------------------------------------------
 
 static double growth;
 
@@ -620,7 +625,8 @@ static enum ct_eval two_that_die(void *user, double t, const double *y, double *
     return CT_EVAL_OK;
 }
 
-// The watch of a motion of that speed, after six tests that are a time of one apart; an event at that time.
+// The watch of a motion of that speed, after six tests that are a time of one apart; an event at
+// that time.
 static struct ct_stiffness *watch_two(struct ct_arena *a,
                                       const struct ct_integrate_stats *stats, double speed,
                                       double event)
@@ -657,7 +663,8 @@ static void the_rate_at_which_the_fastest_motion_dies_is_found(void **unused)
     }
 }
 
-// Two of about one rate are not one motion: what dies of them is not told from what they make together.
+// Two of about one rate are not one motion: what dies of them is not told from what they make
+// together.
 static void several_fastest_motions_are_not_taken_to_die(void **unused)
 {
     (void)unused;
@@ -693,7 +700,7 @@ static void what_an_event_excites_has_to_die_again(void **unused)
     ct_arena_destroy(a);
 }
 
-// ---- samples between steps ----------------------------------------------------------------------------------
+// ---- samples between steps ----------------------------------------------------------------------
 
 // What it takes to see that the interpolant holds is next to nothing.
 static void samples_of_what_steps_follow_cost_no_steps_of_their_own(void **unused)
@@ -725,7 +732,8 @@ static void samples_of_what_steps_follow_cost_no_steps_of_their_own(void **unuse
                 1.05 * to_interpolate);
 }
 
-// Drawn fast to a speed of one and something that fades or swells: the interpolant errs by ever less or more of what is asked for.
+// Drawn fast to a speed of one and something that fades or swells: the interpolant errs by ever
+// less or more of what is asked for.
 static const double draws = 1e3;
 static double swells, part; // [1/s], of the speed at the start
 
@@ -779,7 +787,8 @@ static double cost_of_samples(double *error)
     return (double)(evaluations[1] - evaluations[0]) / SAMPLES;
 }
 
-// Whether it does is asked seldom, but soon enough: of what fades few samples have steps of their own, and what swells is seen in time.
+// Whether it does is asked seldom, but soon enough: of what fades few samples have steps of their
+// own, and what swells is seen in time.
 static void samples_cost_steps_of_their_own_while_the_interpolant_errs(void **unused)
 {
     (void)unused;
@@ -795,7 +804,8 @@ static void samples_cost_steps_of_their_own_while_the_interpolant_errs(void **un
     check_below("error of samples of what swells", error, 1);
 }
 
-// Of a motion that is none, too: accelerations have changed by so little where the rate is found that it is the one at the start.
+// Of a motion that is none, too: accelerations have changed by so little where the rate is found
+// that it is the one at the start.
 static void the_rate_from_rest_is_that_of_the_start(void **unused)
 {
     (void)unused;
@@ -812,7 +822,8 @@ static void the_rate_from_rest_is_that_of_the_start(void **unused)
     end(r);
 }
 
-// (8.14): the errors of all steps of that length come to T at the end, each in the same direction of phase.
+// (8.14): the errors of all steps of that length come to T at the end, each in the same direction
+// of phase.
 static void followed_steps_err_by_the_tolerance_at_the_end(void **unused)
 {
     (void)unused;

@@ -29,7 +29,8 @@ static void end(struct fixture *f)
     ct_arena_destroy(f->scratch);
 }
 
-// Every operator, shared nodes: entry by entry the expression that ct_ex_diff gives, zeros left out.
+// Every operator, shared nodes: entry by entry the expression that ct_ex_diff gives, zeros left
+// out.
 static void entries_are_single_derivatives(void **unused)
 {
     (void)unused;
@@ -181,7 +182,8 @@ static void gradients_are_single_derivatives(void **unused)
     assert_true(ncompared > 100);
 }
 
-// Substitution within the nodes of a kind: the values of the other one; what lacks the kind is the same node.
+// Substitution within the nodes of a kind: the values of the other one; what lacks the kind is the
+// same node.
 static void substitution_within_a_kind(void **unused)
 {
     (void)unused;
@@ -212,11 +214,12 @@ static void substitution_within_a_kind(void **unused)
     assert_true(ncompared > 100 && nother > 100);
 }
 
-// ---- inner values -----------------------------------------------------------------------------------------
+// ---- inner values -------------------------------------------------------------------------------
 
 enum { NSMALL_GRAPH = 40, MOST_INNER = NSMALL_GRAPH, MOST_ROWS = NF + MOST_INNER };
 
-// Entries of a Jacobian with n inner values, directions NSYM and up: each is among those that the graph has, and in the pattern.
+// Entries of a Jacobian with n inner values, directions NSYM and up: each is among those that the
+// graph has, and in the pattern.
 static void check_places(struct fixture *f, const struct ct_scarcity *g, const ct_ex *row,
                          size_t n, const struct ct_seed *seed, const struct ct_slope *s,
                          size_t ns)
@@ -246,7 +249,8 @@ static void check_places(struct fixture *f, const struct ct_scarcity *g, const c
     }
 }
 
-// The derivative of each f by symbol k, over those of inner values: `sum` of them, one after the other.
+// The derivative of each f by symbol k, over those of inner values: `sum` of them, one after the
+// other.
 static void sum_up(double sum[MOST_ROWS], const struct ct_exs *x, const struct ct_slope *s,
                    size_t ns, uint32_t k, const double *value)
 {
@@ -317,7 +321,8 @@ static void inner_values_lead_to_the_same_derivatives(void **unused)
     assert_true(ncompared > 10000 && ninner > 1000);
 }
 
-// Sums along a chain that each reach all rows: n entries for n values, and no nodes where rows see their neighbours alone.
+// Sums along a chain that each reach all rows: n entries for n values, and no nodes where rows see
+// their neighbours alone.
 static void chains_keep_their_sums(void **unused)
 {
     (void)unused;

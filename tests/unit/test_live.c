@@ -1,4 +1,5 @@
-// States that are stepped, set and asked; diagnostics one by one; systems shared among threads; what callers may do wrong.
+// States that are stepped, set and asked; diagnostics one by one; systems shared among threads;
+// what callers may do wrong.
 #include <cotree/cotree.h>
 
 #include <locale.h>
@@ -66,7 +67,7 @@ static int code_of_last(void)
 
 #define CLOSE(got, want, tolerance) assert_true(fabs((got) - (want)) <= (tolerance))
 
-// ---- names --------------------------------------------------------------------------------------------------
+// ---- names --------------------------------------------------------------------------------------
 
 static void names_have_values_units_and_places(void **state)
 {
@@ -90,7 +91,7 @@ static void names_have_values_units_and_places(void **state)
     assert_false(ct_system_item(sys, CT_INPUT, 1, &item));
 }
 
-// ---- steps ----------------------------------------------------------------------------------------------------
+// ---- steps --------------------------------------------------------------------------------------
 
 // At every output of a system, to within ten times the tolerance of its largest value or one.
 static void compare_with_run(const char *name, const char *method, int n)
@@ -243,7 +244,7 @@ static void a_clone_goes_the_same_way(void **state)
     ct_data_destroy(c);
 }
 
-// ---- what follows from a state ------------------------------------------------------------------------------
+// ---- what follows from a state ------------------------------------------------------------------
 
 // M u' = Q + J' lam, J u' + gam = 0, with the signs and orders of the header.
 static void equations_hold_with_what_get_gives(void **state)
@@ -402,7 +403,7 @@ static void what_cannot_be_set_is_told(void **state)
     ct_system_destroy(s);
 }
 
-// ---- diagnostics ----------------------------------------------------------------------------------------------
+// ---- diagnostics --------------------------------------------------------------------------------
 
 static void count_told(void *user, const struct ct_diagnostic *d)
 {
@@ -465,7 +466,7 @@ static void runs_are_cancelled_at_a_step(void **state)
     ct_modes_destroy(modes);
 }
 
-// ---- texts ----------------------------------------------------------------------------------------------------
+// ---- texts --------------------------------------------------------------------------------------
 
 static void systems_print_alike_after_runs(void **state)
 {
@@ -533,7 +534,7 @@ static void a_comma_locale_changes_nothing(void **state)
     ct_sim_destroy(sim);
 }
 
-// ---- threads ----------------------------------------------------------------------------------------------------
+// ---- threads ------------------------------------------------------------------------------------
 
 static void *use(void *system)
 {
@@ -576,7 +577,7 @@ static void threads_share_a_system(void **state)
     }
 }
 
-// ---- what callers may do wrong ----------------------------------------------------------------------------------
+// ---- what callers may do wrong ------------------------------------------------------------------
 
 static void options_of_other_versions_are_read(void **state)
 {

@@ -1,5 +1,5 @@
-// The locale of the program changes nothing in what is written: every writer and every printer, with a comma as the
-// decimal point and with a point.
+// The locale of the program changes nothing in what is written: every writer and every printer,
+// with a comma as the decimal point and with a point.
 #include <cotree/cotree.h>
 
 #include <locale.h>

@@ -1,5 +1,5 @@
-// Loops: what takes the redundancy of constraints away does so in the mechanism that has it; singular values are those of
-// the matrix.
+// Loops: what takes the redundancy of constraints away does so in the mechanism that has it;
+// singular values are those of the matrix.
 #include "analysis/loops.h"
 #include "sim/summary.h"
 #include "tests/check.h"
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- mechanisms of hinges ------------------------------------------------------------------------
+// ---- mechanisms of hinges -----------------------------------------------------------------------
 
 struct hinge {
     const char *name, *from, *to, *q; // q: of its start
@@ -154,8 +154,8 @@ static size_t place(const struct ct_release *r)
     return (size_t)(r->axis + (r->kind == CT_RELEASE_SLIDE ? 3 : 0));
 }
 
-// Every freedom that is listed takes one redundant constraint away and leaves the mechanism as free as it was, every other
-// one frees it by one; those that are chosen leave no redundant constraint.
+// Every freedom that is listed takes one redundant constraint away and leaves the mechanism as free
+// as it was, every other one frees it by one; those that are chosen leave no redundant constraint.
 static void releases_take_redundancy_away(void **state)
 {
     (void)state;
@@ -194,9 +194,10 @@ static void releases_take_redundancy_away(void **state)
     }
 }
 
-// ---- singular values -----------------------------------------------------------------------------
+// ---- singular values ----------------------------------------------------------------------------
 
-// Singular values of A (m x n), m >= n, descending, by rotations of its columns until these are at right angles (Hestenes).
+// Singular values of A (m x n), m >= n, descending, by rotations of its columns until these are at
+// right angles (Hestenes).
 static void singular_values(double *A, size_t m, size_t n, double *w)
 {
     for (int sweep = 0; sweep < 40; sweep++)

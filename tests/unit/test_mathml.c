@@ -142,7 +142,8 @@ static void terms_say_where_they_come_from(void **unused)
           "<mtext class=\"note\">words</mtext></mrow></mrow></math>\n");
 }
 
-// A term wider than a phone is made of pieces: the second one begins with the sign in the parentheses.
+// A term wider than a phone is made of pieces: the second one begins with the sign in the
+// parentheses.
 static void wide_terms_break_in_parentheses(void **unused)
 {
     (void)unused;

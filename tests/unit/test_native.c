@@ -264,7 +264,7 @@ static void same_listing_same_code(void **unused)
     finish(&f);
 }
 
-// ---- loops ----------------------------------------------------------------------------------------
+// ---- loops --------------------------------------------------------------------------------------
 
 enum {
     NROW = 5000,
@@ -276,9 +276,10 @@ static ct_ex shift(struct ct_exs *x, int e)
     return ct_ex_const(x, 3 + 0.11 * e);
 }
 
-// A sweep forwards with a running sum and a neighbour, one backwards as a banded solve does it, a third that reads both;
-// constants by row, parameters, what is the same in all rows. Of the constants some are
-// older than what they are added to, without a period, which turns the operands of a sum round. out: 2 nrow + 1.
+// A sweep forwards with a running sum and a neighbour, one backwards as a banded solve does it, a
+// third that reads both; constants by row, parameters, what is the same in all rows. Of the
+// constants some are older than what they are added to, without a period, which turns the operands
+// of a sum round. out: 2 nrow + 1.
 static void sweeps(struct ct_exs *x, int nrow, const ct_ex *q, ct_ex p, ct_ex *out)
 {
     static ct_ex r[NROW], t[NROW], sum[NROW], y[NROW];
@@ -313,8 +314,8 @@ static void sweeps(struct ct_exs *x, int nrow, const ct_ex *q, ct_ex p, ct_ex *o
     out[2 * nrow] = sum[nrow - 1];
 }
 
-// Much work on few inputs, with constants by row, parameters, what is the same in all rows and a running sum over it; a second
-// sweep that reads the first forwards and backwards. out: 2 nrow + 1.
+// Much work on few inputs, with constants by row, parameters, what is the same in all rows and a
+// running sum over it; a second sweep that reads the first forwards and backwards. out: 2 nrow + 1.
 static void heavy_rows(struct ct_exs *x, int nrow, const ct_ex *q, ct_ex p, ct_ex *out)
 {
     static ct_ex v[NROW];
@@ -408,8 +409,8 @@ static void loops_have_the_same_bits(void **unused)
         have_the_same_bits(heavy_rows, nrow, true);
 }
 
-// Bytes of code of rows that do the same on q, but in the first and the last one on something else; and whether their results
-// are those of the tape.
+// Bytes of code of rows that do the same on q, but in the first and the last one on something else;
+// and whether their results are those of the tape.
 static size_t size_of_rows(bool first_differs, bool last_differs)
 {
     enum { NIN = 3 * NROW + 2 };

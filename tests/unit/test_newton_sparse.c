@@ -77,7 +77,7 @@ static void randomise(double *x, int n)
         x[i] = random_number();
 }
 
-// ---- sparse against full ------------------------------------------------------------------------------
+// ---- sparse against full ------------------------------------------------------------------------
 
 // Both ways to solve the same systems: [0] full, [1] sparse.
 struct pair {
@@ -124,7 +124,8 @@ static void create_pair(struct job *j, struct pair *p, bool is_stabilised)
 
 enum { MOST = 2000 };
 
-// |b - A x| / (|b| + |A| |x|) of the worst row, for the matrix for 1/w and right-hand side as full matrices have them.
+// |b - A x| / (|b| + |A| |x|) of the worst row, for the matrix for 1/w and right-hand side as full
+// matrices have them.
 static double backward_error(const struct ct_newton_iteration *it, double _Complex w,
                              const double _Complex *x, const double _Complex *b)
 {
@@ -177,7 +178,8 @@ static void compare_solutions(struct pair *p, double _Complex s, double error[2]
     }
 }
 
-// (8.10), (8.13), (8.21): what is slow of errors, the energy of the rest, and what states that are outputs feel of it.
+// (8.10), (8.13), (8.21): what is slow of errors, the energy of the rest, and what states that are
+// outputs feel of it.
 static double compare_vibrations(struct pair *p)
 {
     const int nu = p->it[0]->nu;
@@ -257,8 +259,8 @@ static void compare_at(const char *name, struct pair *p, double h)
     const double vibrations = is_stabilised ? compare_vibrations(p) : 0;
     printf("%s, h = %g: %d speeds, %d rows; full %.0e, sparse %.0e, vibrations %.0e\n", name, h,
            p->it[0]->nu, p->it[0]->m, error[0], error[1], vibrations);
-    // pivots are a thousandth of their columns at least, and lose as much again before others are sought; inner values can be larger
-    // than what comes of them
+    // pivots are a thousandth of their columns at least, and lose as much again before others are
+    // sought; inner values can be larger than what comes of them
     const double lost = has_inner ? 1e7 : 1e6;
     assert_true(error[1] <= lost * DBL_EPSILON);
     assert_true(vibrations <= 1e-6); // differences of what is slow and of all
@@ -328,7 +330,7 @@ static void sparse_matrices_have_the_solutions_of_full_ones(void **unused)
     compare("../systems/chain40/model.yaml", CT_TREE_ABSOLUTE, 0);
 }
 
-// ---- pivots -------------------------------------------------------------------------------------------
+// ---- pivots -------------------------------------------------------------------------------------
 
 // A pivot that was sound is next to nothing in the next matrix: its factors are no longer used.
 static void unsound_pivots_are_sought_anew(void **unused)
@@ -352,8 +354,8 @@ static void unsound_pivots_are_sought_anew(void **unused)
     ct_arena_destroy(a);
 }
 
-// L L' with small pivots, a band and a border, as of a beam on a hinge that is eliminated from its free end: what lies beside the
-// diagonal is larger, and as a pivot it would fill the rest.
+// L L' with small pivots, a band and a border, as of a beam on a hinge that is eliminated from its
+// free end: what lies beside the diagonal is larger, and as a pivot it would fill the rest.
 static void positive_definite_matrices_do_not_fill(void **unused)
 {
     (void)unused;
@@ -423,7 +425,7 @@ static void entries_of_the_inverse_are_those_of_solutions(void **unused)
     ct_arena_destroy(a);
 }
 
-// ---- what it costs ------------------------------------------------------------------------------------
+// ---- what it costs ------------------------------------------------------------------------------
 
 // Of a step: derivatives, factors and solutions.
 static double work_of_step(const char *name, int elements)
@@ -461,7 +463,8 @@ static void steps_of_beams_cost_in_proportion_to_their_elements(void **unused)
     }
 }
 
-// Eight beams, end to end, in coordinates of their neighbours: a few inner values would be predicted to take a little less.
+// Eight beams, end to end, in coordinates of their neighbours: a few inner values would be
+// predicted to take a little less.
 static void what_takes_little_is_not_searched_for_inner_values(void **unused)
 {
     (void)unused;

@@ -16,7 +16,8 @@ static void begin(struct fixture *f)
     f->s = ct_ex_sym(&f->x, CT_SYM_LOCAL, "s", 0);
 }
 
-// The two-point rule is 1/2 -+ 1/(2 sqrt 3), the three-point rule 1/2 -+ sqrt(3/5)/2 with 5/18, 8/18, 5/18.
+// The two-point rule is 1/2 -+ 1/(2 sqrt 3), the three-point rule 1/2 -+ sqrt(3/5)/2 with 5/18,
+// 8/18, 5/18.
 static void points_of_small_rules_are_known_numbers(void **unused)
 {
     (void)unused;

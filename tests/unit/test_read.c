@@ -248,7 +248,8 @@ static void every_method_can_be_named(void **state)
     }
 }
 
-// Through three points the natural spline follows from one equation; through a line it is that line.
+// Through three points the natural spline follows from one equation; through a line it is that
+// line.
 static void tables_are_natural_splines(void **state)
 {
     struct bench *s = *state;

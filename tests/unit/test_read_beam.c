@@ -215,7 +215,8 @@ static void rotary_inertia_is_given_or_that_of_the_section(void **state)
     check(number(s, b->twist_inertia), 16);
 }
 
-// A parameter called `length` is the one of the model in `length`, the beam's in sections and points.
+// A parameter called `length` is the one of the model in `length`, the beam's in sections and
+// points.
 static void points_lie_along_the_axis_or_beside_it(void **state)
 {
     struct bench *s = *state;

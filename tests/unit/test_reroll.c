@@ -1,4 +1,5 @@
-// Loops of native code: random sweeps over rows have the bits of the tape, in strips and side by side.
+// Loops of native code: random sweeps over rows have the bits of the tape, in strips and side by
+// side.
 #include "codegen/reroll.h"
 #include "codegen/native.h"
 #include "expr/tape.h"
@@ -261,8 +262,8 @@ static uint32_t count_results(const struct ct_loop *loop, enum ct_reach reach)
     return n;
 }
 
-// In lanes: what the next row alone reads has one place, what it reads too late for that one a row; outputs are stored where
-// they belong; constants by row are one double for all lanes.
+// In lanes: what the next row alone reads has one place, what it reads too late for that one a row;
+// outputs are stored where they belong; constants by row are one double for all lanes.
 static void rows_leave_little_in_memory(void **unused)
 {
     (void)unused;

@@ -106,7 +106,8 @@ static void an_endless_tree_fits_a_screen(void **unused)
     ct_arena_destroy(f.arena);
 }
 
-// A recursion of 2000 named steps, each used twice: more paths than a double counts, and a line a step.
+// A recursion of 2000 named steps, each used twice: more paths than a double counts, and a line a
+// step.
 static void names_come_first_where_they_are_asked_for(void **unused)
 {
     (void)unused;

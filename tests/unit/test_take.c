@@ -1,4 +1,5 @@
-// What is taken over runs from functions in closed form: extremes, means, zeros; kinks and jumps inside of steps.
+// What is taken over runs from functions in closed form: extremes, means, zeros; kinks and jumps
+// inside of steps.
 #include "integrate/take.h"
 
 #include <math.h>

@@ -330,8 +330,8 @@ static void compiling_is_linear_in_the_graph(void **unused)
     assert_true(large < 40 * small + 0.02);
 }
 
-// Points that crowd at either end, or are spaced equally: between two of them and at each the value is that of the
-// interval which a search from the first one on finds.
+// Points that crowd at either end, or are spaced equally: between two of them and at each the value
+// is that of the interval which a search from the first one on finds.
 static void tables_with_uneven_points_are_read_right(void **unused)
 {
     (void)unused;

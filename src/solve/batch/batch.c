@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- programs ---------------------------------------------------------------------------------------
+// ---- programs -----------------------------------------------------------------------------------
 
 static bool is_native(const struct ct_batch *s)
 {
@@ -58,7 +58,7 @@ static void prepare_all(struct ct_batch *s)
         prepare_solver(s->solver[i], s->input);
 }
 
-// ---- creation ---------------------------------------------------------------------------------------
+// ---- creation -----------------------------------------------------------------------------------
 
 const char *ct_batch_obstacle(const struct ct_run_options *o)
 {
@@ -176,7 +176,7 @@ struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *
     return s;
 }
 
-// ---- lanes and single numbers -----------------------------------------------------------------------
+// ---- lanes and single numbers -------------------------------------------------------------------
 
 void ct_lane_take(double *out, const vec *v, int l, size_t n)
 {
@@ -190,7 +190,7 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
         v[i][l] = in[i];
 }
 
-// ---- forms ------------------------------------------------------------------------------------------
+// ---- forms --------------------------------------------------------------------------------------
 
 // Large systems have very many choices, and take long to get a form: only that of the start has
 // one.
@@ -308,7 +308,7 @@ static void compare_at_start(struct ct_batch *s, int l)
         }
 }
 
-// ---- the method -------------------------------------------------------------------------------------
+// ---- the method ---------------------------------------------------------------------------------
 
 // a (n), those that are not zero.
 static struct ct_lane_sum sum_of(const struct ct_batch *s, const double *a, int n)
@@ -338,7 +338,7 @@ static void take_method(struct ct_batch *s, const struct ct_method *method)
                                                    : (struct ct_lane_sum){0};
 }
 
-// ---- members come and go ----------------------------------------------------------------------------
+// ---- members come and go ------------------------------------------------------------------------
 
 // The step to begin with, from y and its derivative in one_dy.
 static bool first_step(struct ct_batch *s, int l, const double *y)

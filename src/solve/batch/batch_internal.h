@@ -159,7 +159,9 @@ struct ct_batch {
     int nroot;          // state modes
     const int *root_of; // (nroot) their places among the modes
     vec *side, *g0,
-        *g; // of them: see event_location.h, at the start and, extrapolated a little, at the end of the step
+        // of them: see event_location.h, at the start and, extrapolated a little, at the end of the
+        // step
+        *g;
     vec *g_before;  // and a probe before that
     set unsettled;  // lanes in which one rests on zero or has just fired
     vec rtol, atol; // of the steps
@@ -169,7 +171,7 @@ struct ct_batch {
     double *one_y, *one_dy, *one_point, *one_end; // a single lane's states
 };
 
-// ---- sets of lanes ----------------------------------------------------------------------------------
+// ---- sets of lanes ------------------------------------------------------------------------------
 
 static const set ct_all_lanes = (1u << W) - 1;
 
@@ -184,7 +186,7 @@ static inline bool ct_has_lane(set s, int l)
     return s >> l & 1;
 }
 
-// ---- programs ---------------------------------------------------------------------------------------
+// ---- programs -----------------------------------------------------------------------------------
 
 static inline void ct_lane_run(struct ct_lane_program *p, const vec *input)
 {
@@ -194,7 +196,7 @@ static inline void ct_lane_run(struct ct_lane_program *p, const vec *input)
         ct_tape_eval_lanes(p->tape, W, (const double *)input, (double *)p->out, p->work);
 }
 
-// ---- batch.c ----------------------------------------------------------------------------------------
+// ---- batch.c ------------------------------------------------------------------------------------
 
 /// Take numbers (n) of a lane out of vectors, or put them there.
 void ct_lane_take(double *out, const vec *v, int lane, size_t n);
@@ -205,7 +207,7 @@ bool ct_lane_choose(struct ct_batch *s, int lane);
 /// The next step of the lane, which the run has become at t, y, follows what turns.
 void ct_lane_limit_turn(struct ct_batch *s, int lane, double t, const double *y);
 
-// ---- batch_event.c -----------------------------------------------------------------------------------
+// ---- batch_event.c ------------------------------------------------------------------------------
 
 /// Room for the events of all lanes.
 void ct_lane_make_events(struct ct_batch *s);
@@ -230,7 +232,7 @@ enum ct_lane_found {
 /// may be given up.
 void ct_lane_pass(struct ct_batch *s, int lane);
 
-// ---- batch_single.c -----------------------------------------------------------------------------------
+// ---- batch_single.c -----------------------------------------------------------------------------
 
 /// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or
 /// for everything.

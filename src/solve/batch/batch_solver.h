@@ -12,7 +12,7 @@ static inline void set_input(struct ct_batch *s, vec t, const vec *y)
     s->input[s->m->at_work] = y[s->nq + s->nu];
 }
 
-// ---- accelerations ----------------------------------------------------------------------------------
+// ---- accelerations ------------------------------------------------------------------------------
 
 // Strengths from pivots in the lanes `here`; where the form is sound there.
 static inline mask judge_pivots(struct ct_batch *s, const struct ct_solver_code *c,
@@ -62,7 +62,7 @@ static inline set solve_by_solvers(struct ct_batch *s, vec *dy, set wanted)
     return done;
 }
 
-// ---- are they still good? ---------------------------------------------------------------------------
+// ---- are they still good? -----------------------------------------------------------------------
 
 // Largest of r (nu + rank) against the largest terms of the equations; infinite where it is not
 // finite.
@@ -110,7 +110,7 @@ static inline void check_solvers(struct ct_batch *s, set wanted)
     }
 }
 
-// ---- projection -------------------------------------------------------------------------------------
+// ---- projection ---------------------------------------------------------------------------------
 
 // Phi, v and corrections by the form. Returns lanes of `here` where it is sound.
 static inline set evaluate_closing(struct ct_batch *s, struct ct_lane_solver *f, vec t,

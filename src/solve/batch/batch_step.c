@@ -19,7 +19,7 @@ enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
 // Limit: the member is left to a single run then
 enum { MOST_STEPS = 100000000 };
 
-// ---- projection, as in projection.c ----------------------------------------------------------------
+// ---- projection, as in projection.c -------------------------------------------------------------
 
 static void normalise(struct ct_batch *s, vec *y, set lanes)
 {
@@ -73,7 +73,7 @@ static set project(struct ct_batch *s, vec t, vec *y, set wanted)
     return wanted;
 }
 
-// ---- the derivative, as in run.c -----------------------------------------------------------------
+// ---- the derivative, as in run.c ----------------------------------------------------------------
 
 // dy, finite, but for the power, which some forms know, at the input, (t, y): by forms where they
 // are sound, else by matrices, one by one.
@@ -137,7 +137,7 @@ static set derive(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
     return wanted;
 }
 
-// ---- a try ------------------------------------------------------------------------------------------
+// ---- a try --------------------------------------------------------------------------------------
 
 // The same for `few` states from i on: known where this is called, so that their sums stay in
 // registers.
@@ -386,7 +386,7 @@ static set project_end(struct ct_batch *s, vec t, set wanted)
     return derive(s, t, s->end, s->dend, wanted) & finite(s->dend, s->ny);
 }
 
-// ---- step control, as in driver_step_size.c --------------------------------------------------------------
+// ---- step control, as in driver_step_size.c -----------------------------------------------------
 
 static void plan(struct ct_batch *s, int l)
 {
@@ -452,7 +452,7 @@ static void detect_stiffness(struct ct_batch *s, set wanted)
     }
 }
 
-// ---- what is taken over the step ----------------------------------------------------------------------
+// ---- what is taken over the step ----------------------------------------------------------------
 
 // Further stages and corrections of the interpolant; the step ends on the constraints. Returns the
 // lanes that have it.
@@ -515,7 +515,7 @@ static void take_over_step(struct ct_batch *s, vec end, set wanted)
             ct_lane_give_up(s, l);
 }
 
-// ---- after a try ------------------------------------------------------------------------------------
+// ---- after a try --------------------------------------------------------------------------------
 
 // Lanes in which something turns too fast to be followed by steps of this length.
 static void give_up_fast(struct ct_batch *s, const vec *memory, set wanted)

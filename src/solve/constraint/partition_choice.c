@@ -277,7 +277,7 @@ static bool is_elastic_motion(struct ct_partition *s, size_t k)
     return left <= rounding_pivot * M[k + n * k];
 }
 
-// ---- what elimination leaves of a motion that moves no mass ----------------------------------------
+// ---- what elimination leaves of a motion that moves no mass -------------------------------------
 
 // motion (nu, in/out) += |x| times the absolute values of column j of [B; 1]: independent speed j
 // with the dependent speeds that follow from it.

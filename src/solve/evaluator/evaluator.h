@@ -59,7 +59,8 @@ struct ct_evaluator {
         result,     // output columns
         power,      // d(work)/dt
         validity,   // indicators of linear beams, then squared slopes of all beams
-        base_motion, // of linear beams whose error is estimated: how the base moves (9), the beam's end (2)
+        // of linear beams whose error is estimated: how the base moves (9), the beam's end (2)
+        base_motion,
         beam_mode_state, // of the same: x, x' by shape
         energy,          // kinetic, potential
         root,            // g of each mode
@@ -70,10 +71,14 @@ struct ct_evaluator {
         driver,          // value, rate of each driver
         assembly_sign,   // of each row: not negative in the right assembly
         residual, // r, phi, v; nothing if the equations have no residual, and so the next
-        tangent; // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along directions
+        // dr/dq, dr/du, dr/du', dv/dq, J: the entries; J alone where the rest is found along
+        // directions
+        tangent;
     struct ct_tangent_lanes *lanes; // those, or NULL
     double *
-        slopes; // of the last ct_evaluator_tangent: dr/dq, dr/du, dr/du', dr/dk, dv/dq, J, as the residual lists them
+        // of the last ct_evaluator_tangent: dr/dq, dr/du, dr/du', dr/dk, dv/dq, J, as the residual
+        // lists them
+        slopes;
     double *auxiliary; // workspace (inner values x nu)
     size_t nslope;
 

@@ -227,7 +227,8 @@ struct look {
         part; // the pivot, and against the largest; no more is known than that it is `is_far`
     bool is_far;
     bool
-        is_another; // a position has been stepped over since the last look, or left on another motion
+        // a position has been stepped over since the last look, or left on another motion
+        is_another;
 };
 
 static struct look look_around(struct ct_rank_monitor *w, const struct ct_rank_test *at,

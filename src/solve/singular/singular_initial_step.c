@@ -91,7 +91,8 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
     ct_evaluator_constraint(r->m);
     r->s->sigma_best = 0;
     r->s->prefers_independent
-        = r->is_given; // what follows from them is known less well, the less the nearer the position is
+        // what follows from them is known less well, the less the nearer the position is
+        = r->is_given;
     const bool is_chosen = ct_partition_choose(r->s);
     r->s->prefers_independent = NULL;
     if (is_chosen)

@@ -1,4 +1,5 @@
-// A mechanism through the library as a user runs it: model text -> start and accelerations at t = 0.
+// A mechanism through the library as a user runs it: model text -> start and accelerations at t =
+// 0.
 #ifndef CT_TEST_ORACLE_ENGINE_H
 #define CT_TEST_ORACLE_ENGINE_H
 

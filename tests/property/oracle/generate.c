@@ -64,8 +64,8 @@ static bool is_regular(const struct scene *s, const struct motion *at, const str
     return true;
 }
 
-// Demand the start of joints, one after the other, as long as their speeds are independent of those before. Of a
-// joint all coordinates are demanded or none.
+// Demand the start of joints, one after the other, as long as their speeds are independent of those
+// before. Of a joint all coordinates are demanded or none.
 static int demand_starts(struct scene *s, const struct oracle *o, struct draw *d)
 {
     double row[MOST_COLUMNS][MOST_COLUMNS]; // orthonormal, in the freedoms

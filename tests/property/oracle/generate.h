@@ -1,9 +1,10 @@
-// Random mechanisms that close by construction: bodies get poses, then joints get their frames where they meet.
+// Random mechanisms that close by construction: bodies get poses, then joints get their frames
+// where they meet.
 //
-// Axes and places of joints are shared on purpose - parallel, on one line, through one point, in one plane - so that
-// joints repeat what others impose. What the joints leave free is not decided here: the solver's singular values say it.
-// A draw is kept if they have a clear gap and if the mechanism moves on with the same rank, so that nothing hangs on a
-// singular configuration.
+// Axes and places of joints are shared on purpose - parallel, on one line, through one point, in
+// one plane - so that joints repeat what others impose. What the joints leave free is not decided
+// here: the solver's singular values say it. A draw is kept if they have a clear gap and if the
+// mechanism moves on with the same rank, so that nothing hangs on a singular configuration.
 #ifndef CT_TEST_ORACLE_GENERATE_H
 #define CT_TEST_ORACLE_GENERATE_H
 

@@ -11,8 +11,8 @@ extern void dgesdd_(const char *job, const int *m, const int *n, double *a, cons
 extern void dsyev_(const char *job, const char *uplo, const int *n, double *a, const int *lda,
                    double *w, double *work, const int *lwork, int *info, size_t, size_t);
 
-// Generators leave no singular value between their gap's ends (generate.c: 0.01 and, with data of six digits, 1e-4), and this is in
-// between.
+// Generators leave no singular value between their gap's ends (generate.c: 0.01 and, with data of
+// six digits, 1e-4), and this is in between.
 static const double rank_limit = 1e-3;
 
 static const struct vector none = {{0, 0, 0}};
@@ -22,7 +22,7 @@ static double *numbers(int n)
     return calloc((size_t)n + 1, sizeof(double));
 }
 
-// ---- kinematics of two frames on bodies ---------------------------------------------------------------------------
+// ---- kinematics of two frames on bodies ---------------------------------------------------------
 
 // How frame `to` stands and moves as seen in frame `from`: rates in axes of `from`.
 struct view {
@@ -51,7 +51,8 @@ static struct view view_joint(const struct scene *s, const struct joint *j,
     k.from = end[0];
     k.pose = seen_from(end[0], end[1]);
     k.d = plus(at[1], -1, at[0]);
-    // d/dt of A' d = A' (d' - wi x d); once more gives the relative acceleration with its Coriolis part
+    // d/dt of A' d = A' (d' - wi x d); once more gives the relative acceleration with its Coriolis
+    // part
     const struct vector rate = plus(plus(v[1], -1, v[0]), -1, cross(wi, k.d));
     struct vector b = plus(bias[1], -1, bias[0]);
     b = plus(b, -1, cross(wi, cross(wi, k.d)));
@@ -63,9 +64,10 @@ static struct view view_joint(const struct scene *s, const struct joint *j,
     return k;
 }
 
-// ---- rows ---------------------------------------------------------------------------------------------------------
+// ---- rows ---------------------------------------------------------------------------------------
 
-// Columns 6 (b - 1) ... of body b: acceleration of its frame over size, angular acceleration, in ground axes.
+// Columns 6 (b - 1) ... of body b: acceleration of its frame over size, angular acceleration, in
+// ground axes.
 static double *entry(struct oracle *o, int row, int column)
 {
     return &o->G[row + o->nrow * column];
@@ -130,7 +132,8 @@ static void add_joint(struct oracle *o, int joint, int row, const struct motion 
     }
     for (int i = 0; i < 3; i++) {
         const struct vector e = k.from.R.column[i];
-        // relative acceleration e . (a_j + alpha_j x r_j - a_i - alpha_i x (r_i + d)), the frame's own rotation included
+        // relative acceleration e . (a_j + alpha_j x r_j - a_i - alpha_i x (r_i + d)), the frame's
+        // own rotation included
         add_point(o, row + i, j->to, e, k.r[1]);
         add_point(o, row + i, j->from, scaled(-1, e), plus(k.r[0], 1, k.d));
         add_turn(o, row + 3 + i, j->to, e);
@@ -149,7 +152,8 @@ static void add_joint(struct oracle *o, int joint, int row, const struct motion 
     }
 }
 
-// |d| = length: with n = d/|d|, n . (a_2 - a_1) = -(|d'|^2 - (n . d')^2)/|d| - n . (centripetal parts)
+// |d| = length: with n = d/|d|, n . (a_2 - a_1) = -(|d'|^2 - (n . d')^2)/|d| - n . (centripetal
+// parts)
 static void add_distance(struct oracle *o, int joint, int row, const struct motion *m,
                          struct residual *r)
 {
@@ -189,7 +193,8 @@ static int rows_of(enum joint_type type)
     return type == DISTANCE || type == GEAR ? 1 : 6;
 }
 
-// Places of joints and masses, at the start: the largest extent over the origin of ground and all ends.
+// Places of joints and masses, at the start: the largest extent over the origin of ground and all
+// ends.
 static double size_of(const struct scene *s)
 {
     double size = 0;
@@ -220,7 +225,7 @@ struct motion motion_of_scene(const struct scene *s)
     return m;
 }
 
-// ---- singular values ----------------------------------------------------------------------------------------------
+// ---- singular values ----------------------------------------------------------------------------
 
 static void decompose(struct oracle *o)
 {
@@ -300,7 +305,8 @@ void oracle_close(struct oracle *o)
     free(o->sigma);
 }
 
-// x = least solution of G x = b in the least-squares sense: V sigma^-1 U' b over the singular values that count
+// x = least solution of G x = b in the least-squares sense: V sigma^-1 U' b over the singular
+// values that count
 static void least_solution(const struct oracle *o, const double *b, double *x)
 {
     memset(x, 0, sizeof(double) * (size_t)o->ncol);
@@ -313,7 +319,7 @@ static void least_solution(const struct oracle *o, const double *b, double *x)
     }
 }
 
-// ---- unknowns <-> bodies and joints -----------------------------------------------------------------------------------
+// ---- unknowns <-> bodies and joints -------------------------------------------------------------
 
 static void unpack(const struct oracle *o, const double *x, struct motion *out)
 {
@@ -337,7 +343,7 @@ void oracle_freedom(const struct oracle *o, int k, struct motion *speeds)
     unpack(o, x, speeds);
 }
 
-// ---- bodies -------------------------------------------------------------------------------------------------------
+// ---- bodies -------------------------------------------------------------------------------------
 
 // I v for the inertia of body b in axes that are turned by R
 static struct vector inertia_times(const struct body *b, struct axes R, struct vector v)
@@ -350,7 +356,8 @@ static struct vector inertia_times(const struct body *b, struct axes R, struct v
     return turned(R, h);
 }
 
-// Force and moment about the frame's origin that give body b the acceleration a, alpha: Newton and Euler, with what gravity gives taken off.
+// Force and moment about the frame's origin that give body b the acceleration a, alpha: Newton and
+// Euler, with what gravity gives taken off.
 static void wrench(const struct scene *s, int b, const struct motion *m, struct vector a,
                    struct vector alpha, struct vector *force, struct vector *moment)
 {
@@ -453,7 +460,7 @@ bool oracle_accelerations(const struct oracle *o, const struct motion *m, struct
     return ok;
 }
 
-// ---- finite motion ------------------------------------------------------------------------------------------------
+// ---- finite motion ------------------------------------------------------------------------------
 
 // q <- q Rot(w) for a rotation vector w in axes of the turned frame
 static void turn_quaternion(double q[4], const double w[3])

@@ -14,8 +14,8 @@ enum shared {
     SHARED
 };
 
-// About one line: revolutes and cylinders on it, balls and universal joints with their centre on it, planes across it, rods that
-// begin on it.
+// About one line: revolutes and cylinders on it, balls and universal joints with their centre on
+// it, planes across it, rods that begin on it.
 static enum joint_type place_turn(struct draw *d, struct spot *spot, const struct style *style)
 {
     static const enum joint_type types[]

@@ -30,7 +30,7 @@ void add_body(struct scene *s, struct draw *d, const struct style *style)
     }
 }
 
-// ---- joints -------------------------------------------------------------------------------------------------------
+// ---- joints -------------------------------------------------------------------------------------
 
 static double small_angle(struct draw *d)
 {

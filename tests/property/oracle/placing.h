@@ -8,12 +8,14 @@
 /// What a whole mechanism shares.
 struct style {
     bool
-        is_flat; // all in the x-y plane with axes of ground: the engine can see that the mechanism is planar
+        // all in the x-y plane with axes of ground: the engine can see that the mechanism is planar
+        is_flat;
     struct axes tilt; // of the plane, or of the common direction
     double size;      // [m]
 };
 
-/// Where a joint is wanted, in ground axes: a point, its axis, b of a universal joint; the pitch of a screw.
+/// Where a joint is wanted, in ground axes: a point, its axis, b of a universal joint; the pitch of
+/// a screw.
 struct spot {
     struct vector at, axis, second;
     double pitch;
@@ -22,12 +24,14 @@ struct spot {
 /// One body more, by chance.
 void add_body(struct scene *s, struct draw *d, const struct style *style);
 
-/// One joint more, at a random position q: `from` meets the spot, and the frame of `to` lies where the joint's motion
-/// takes it. A distance goes from the spot's point along `second`. Flat mechanisms have no universal joint: it is a revolute.
+/// One joint more, at a random position q: `from` meets the spot, and the frame of `to` lies where
+/// the joint's motion takes it. A distance goes from the spot's point along `second`. Flat
+/// mechanisms have no universal joint: it is a revolute.
 struct joint *add_joint(struct scene *s, struct draw *d, enum joint_type type, int from, int to,
                         const struct spot *spot, const struct style *style);
 
-/// pairs.c: two or three joints between two bodies, which all allow one motion, on top of each other.
+/// pairs.c: two or three joints between two bodies, which all allow one motion, on top of each
+/// other.
 void draw_pairs(struct scene *s, struct draw *d, const struct style *style);
 /// loops.c: loops whose joints share axes and places; trees and loops in general position.
 void draw_loops(struct scene *s, struct draw *d, const struct style *style);

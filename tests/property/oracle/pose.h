@@ -1,6 +1,7 @@
 // Rotations and poses of rigid bodies, on top of vector.h.
 //
-// A rotation matrix is stored by columns: column i is axis i of the turned frame in axes of the reference frame.
+// A rotation matrix is stored by columns: column i is axis i of the turned frame in axes of the
+// reference frame.
 #ifndef CT_TEST_ORACLE_POSE_H
 #define CT_TEST_ORACLE_POSE_H
 

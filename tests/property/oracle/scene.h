@@ -1,7 +1,9 @@
-// A mechanism as the generator makes it and the solver reads it: rigid bodies, joints and one state.
+// A mechanism as the generator makes it and the solver reads it: rigid bodies, joints and one
+// state.
 //
-// Body 0 is ground. Frames of joints are given in axes of their bodies by a place and three angles, as in a model file. Every
-// number here is the number of the model text: scene_round brings all of them to the digits that are written.
+// Body 0 is ground. Frames of joints are given in axes of their bodies by a place and three angles,
+// as in a model file. Every number here is the number of the model text: scene_round brings all of
+// them to the digits that are written.
 #ifndef CT_TEST_ORACLE_SCENE_H
 #define CT_TEST_ORACLE_SCENE_H
 
@@ -69,7 +71,8 @@ struct scene {
     struct joint joint[MOST_JOINTS];
 };
 
-/// Speeds and coordinates of a joint type; a rotation with three freedoms has a coordinate more than speeds.
+/// Speeds and coordinates of a joint type; a rotation with three freedoms has a coordinate more
+/// than speeds.
 int joint_speeds(enum joint_type type);
 int joint_coordinates(enum joint_type type);
 /// Is coordinate k of this joint type an angle? (The first three of `free` are lengths.)
@@ -77,7 +80,8 @@ bool joint_has_quaternion(enum joint_type type);
 
 struct axes axes_of(const struct frame *f);
 
-/// Bring every number to the digits of the text, so that the solver computes with what the program reads.
+/// Bring every number to the digits of the text, so that the solver computes with what the program
+/// reads.
 void scene_round(struct scene *s);
 /// The model text, with the poses, speeds and accelerations of all bodies and joints as outputs.
 void scene_write(const struct scene *s, FILE *out);
