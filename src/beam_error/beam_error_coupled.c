@@ -486,7 +486,7 @@ void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
 // Shortest useful step: faster motion need not be resolved.
 static double finest(const struct ct_beam_error_modal *s)
 {
-    // Derived: the midpoint rule errs by (2 pi/256)^2 / 24 = 2.5e-5 per step
+    // Derived: the midpoint rule lowers a frequency by the part (2 pi/256)^2/12 = 5e-5
     const double per_period = 256;
     double slowest = INFINITY;
     for (int i = 0; i < s->n; i++)
