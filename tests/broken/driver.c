@@ -31,7 +31,7 @@ static bool read_one(const char *path, const struct ct_set *set, size_t nset)
 int main(int argc, char **argv)
 {
     enum { MOST = 16 };
-    struct ct_set set[MOST];
+    struct ct_set set[MOST] = {{0}};
     size_t nset = 0;
     bool ok = true;
     for (int i = 1; i < argc; i++) {
