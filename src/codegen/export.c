@@ -3,6 +3,7 @@
 
 #include "codegen/c.h"
 #include "codegen/export_text.h"
+#include "codegen/export_header_text.h"
 #include "expr/print.h"
 
 #include <string.h>
@@ -96,47 +97,6 @@ static void put_names(struct ct_export_text *t, const struct ct_export *x)
     ct_export_put(t, " */\n\n");
 }
 
-static const char functions[]
-    = "extern const int @_M_row[], @_M_column[], @_J_row[], @_J_column[];\n"
-      "/* Inputs at the start. */\n"
-      "extern const double @_start[$_NINPUT];\n\n"
-      "/* All work arrays have $_NWORK doubles; nothing is kept in them between calls. */\n\n"
-      "/* Parameters that follow from others. Call it where parameters have been set; then "
-      "@_project, where lengths have. */\n"
-      "void @_parameters(double *in);\n\n"
-      "void @_motion(const double *in, double *out);\n"
-      "void @_constraint(const double *in, double *out);\n"
-      "/* u' [$_NU]. Redundant rows do no harm. Returns the rank of the equations for u' and "
-      "lam. */\n"
-      "int @_accelerations(const double *in, double *a, double *work);\n"
-      "/* Multipliers [$_NROW], of least norm where rows are redundant. Nonzero: there are "
-      "none. */\n"
-      "int @_multipliers(const double *in, double *lam, double *work);\n"
-      "/* The model's outputs [$_NOUTPUT]. */\n"
-      "void @_outputs(const double *in, double *out);\n"
-      "/* Wrenches of joints [$_NREACTION]: force and torque of `from` on `to`. Nonzero: there "
-      "are none. */\n"
-      "int @_reactions(const double *in, double *out, double *work);\n\n"
-      "/* Switching functions [$_NROOT]: comparisons of `if`, `abs`, `sign`, `min`, `max` "
-      "change where one passes zero. */\n"
-      "void @_roots(const double *in, double *out);\n"
-      "/* Switches as the roots say. The functions above take them as they are. */\n"
-      "void @_switch(double *in);\n"
-      "/* Angles and rotations that are followed: once after each step, which must not turn "
-      "them by half a turn. */\n"
-      "void @_memory(double *in);\n\n"
-      "/* q, u onto the constraints, by corrections of least norm; quaternions to unit length. "
-      "Nonzero: that failed, and in\n"
-      " * is as it was. */\n"
-      "int @_project(double *in, double *work);\n"
-      "/* One step of h [s]: the classical Runge-Kutta method of order 4, projected, switches "
-      "located on the way, memories\n"
-      " * updated. 0: done. 1: there is no finite result, 2: no state meets the constraints, "
-      "4: a driven place jumps; in is then\n"
-      " * as it was. 3: done, but switches changed more than eight times, and the last changes "
-      "were not located. */\n"
-      "int @_step(double *in, double h, double *work);\n\n";
-
 const char *ct_export_header(struct ct_arena *a, const struct ct_export *x)
 {
     struct ct_export_text t = {.arena = a, .name = x->name};
@@ -163,7 +123,7 @@ const char *ct_export_header(struct ct_arena *a, const struct ct_export *x)
             "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
     put_layout(&t, x);
     put_names(&t, x);
-    ct_export_put_named(&t, functions);
+    ct_export_put_lines(&t, text_functions);
     if (x->lanes > 1)
         ct_export_put_named(
             &t, "/* The programs for $_LANES inputs side by side: entry i of lane l at "

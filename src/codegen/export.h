@@ -106,8 +106,6 @@ const char *ct_export_fmu(struct ct_arena *a, const struct ct_export *x,
                           const struct ct_export_fmu *f);
 /// Types, and functions, of a version of FMI, for fmu.c.
 struct ct_export_text;
-void ct_export_fmi_types(struct ct_export_text *t, int version);
-void ct_export_fmi_functions(struct ct_export_text *t, int version);
 
 /// Must steps locate switches or kinks?
 bool ct_export_has_events(const struct ct_export *x);

@@ -32,10 +32,10 @@ void ct_export_put_named(struct ct_export_text *t, const char *s)
     }
 }
 
-void ct_export_put_parts(struct ct_export_text *t, const char *const *part)
+void ct_export_put_lines(struct ct_export_text *t, const char *const *line)
 {
-    for (; *part; part++)
-        ct_export_put_named(t, *part);
+    for (; *line; line++)
+        ct_export_put_named(t, *line);
 }
 
 void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n)

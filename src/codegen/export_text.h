@@ -16,8 +16,8 @@ void ct_export_putf(struct ct_export_text *t, const char *fmt, ...)
     __attribute__((format(printf, 2, 3)));
 /// Append s, with the name in place of each @ and the name in capitals in place of each $.
 void ct_export_put_named(struct ct_export_text *t, const char *s);
-/// The same for the parts of a long text; the last is NULL.
-void ct_export_put_parts(struct ct_export_text *t, const char *const *part);
+/// The same for the lines of a template (templates.py); the last is NULL.
+void ct_export_put_lines(struct ct_export_text *t, const char *const *line);
 /// Append {1, 2, 3}: n numbers, at least one.
 void ct_export_put_numbers(struct ct_export_text *t, const double *v, size_t n);
 void ct_export_put_integers(struct ct_export_text *t, const int *v, size_t n);
