@@ -52,18 +52,17 @@ static double toss(unsigned k)
 }
 
 // r (nu), rows (m x 2), out: residuals of motion and of constraints at q, with the speeds at the
-// start of the step and zero accelerations and multipliers.
-static bool find_forces(struct ct_newton_iteration *it, const double *q, double *r,
-                        double *rows)
+// start of the step and the accelerations and multipliers of the derivatives.
+static bool find_residuals(struct ct_newton_iteration *it, const double *q, double *r,
+                           double *rows)
 {
     const struct ct_roundoff_probe *p = &it->probe;
     const double *u = it->y + it->dae->nq;
-    return it->dae->residual(it->dae->user, it->t, q, u, p->zero, p->zero, r, rows,
-                             rows + it->m)
+    return it->dae->residual(it->dae->user, it->t, q, u, p->a, p->lam, r, rows, rows + it->m)
         == CT_EVAL_OK;
 }
 
-// p->r (nu), p->phi (m) = round-off errors of forces and constraints. They are evaluated at
+// p->r (nu), p->phi (m) = round-off errors of residuals and constraints. They are evaluated at
 // positions that differ by a few round-off errors d; what differs from the linear change K d and J
 // d is round-off. here (nu) is overwritten.
 static bool perturb_residuals(struct ct_newton_iteration *it, double *here)
@@ -79,7 +78,7 @@ static bool perturb_residuals(struct ct_newton_iteration *it, double *here)
                     : toss((unsigned)k) * ct_position_roundoff * DBL_EPSILON * place;
     }
     ct_newton_iteration_move(dae, it->y, p->d, p->q);
-    if (!find_forces(it, it->y, here, p->phi) || !find_forces(it, p->q, p->r, p->rows))
+    if (!find_residuals(it, it->y, here, p->phi) || !find_residuals(it, p->q, p->r, p->rows))
         return false;
     for (int k = 0; k < nu; k++)
         p->r[k] = here[k] - p->r[k];

@@ -80,7 +80,9 @@ struct ct_newton_iteration *ct_newton_iteration_create(struct ct_arena *a,
         .r = CT_NEWN(a, double, nu + 1),
         .rows = CT_NEWN(a, double, 2 * m + 1),
         .phi = CT_NEWN(a, double, 2 * m + 1),
-        .zero = CT_NEWN(a, double, nu + m + 1),
+        .a = CT_NEWN(a, double, nu + 1),
+        .lam = CT_NEWN(a, double, m + 1),
+        .zero = CT_NEWN(a, double, m + 1),
     };
     if (is_complex) {
         it->w = CT_NEWN(a, double, nu + 1);
@@ -314,6 +316,8 @@ enum ct_eval ct_newton_iteration_refresh(struct ct_newton_iteration *it, double 
     if (e != CT_EVAL_OK)
         return e;
     stats->jacobians++;
+    memcpy(it->probe.a, a, (size_t)it->nu * sizeof *a);
+    memcpy(it->probe.lam, lam, (size_t)it->m * sizeof *lam);
     it->rate = it->c = it->e = it->slow = 0;
     return CT_EVAL_OK;
 }

@@ -34,7 +34,8 @@ struct ct_roundoff_probe {
     double *q, *d;    // positions near those of the step, and their distance  (nq), (nu)
     double *r, *rows; // residuals of motion and of constraints there  (nu), (rows x 2)
     double *phi;      // residuals of constraints at the start of the step  (rows x 2)
-    double *zero;     // zero accelerations and multipliers  (larger of nu and rows)
+    double *a, *lam;  // accelerations and multipliers of the derivatives  (nu), (rows)
+    double *zero;     // (rows)
 };
 
 struct ct_newton_iteration {
