@@ -23,9 +23,6 @@ static const double share_of_method = 9, share_of_reference = 1;
 enum { REPEATS = 3, MOST_REPEATS = 101 }; // MOST_REPEATS: of short runs
 static const double short_times = 0.05;   // Limit: of one setting together  [s]
 enum { MOST_PER_DECADE = 10 };            // Limit: tolerances have two digits; with a message
-// A warning is given unless the reference is better than the wanted error by this factor. Chosen:
-// by judgement.
-static const double reference_margin = 0.1;
 // Limit: fixed steps: number of halvings, from the spacing of samples, but at least this number of
 // steps in the run.
 static const int most_steps_of_ladder = 7;
@@ -243,7 +240,7 @@ static bool learn_sizes(struct ct_accuracy *a)
                         "there is no end time: 'simulation' needs a 'duration'");
     a->nresult = a->system->equations.nresult;
     a->scale = CT_NEWN(a->own.model, double, a->nresult + 1);
-    a->deviation = CT_NEWN(a->own.model, double, a->nresult + 1);
+    a->difference = CT_NEWN(a->own.model, struct ct_output_error_estimate, a->nresult + 1);
     return ok;
 }
 
@@ -275,7 +272,7 @@ static bool study(struct ct_accuracy *a)
             "the runs for the reference do not agree (%s): they differ by %.2g, so the error "
             "of no run is known better than that",
             a->source, a->uncertainty);
-    else if (a->uncertainty > reference_margin * a->wanted)
+    else if (a->uncertainty > CT_REFERENCE_MARGIN * a->wanted)
         ct_warning(&a->own, (struct ct_mark){0}, CT_E_REFERENCE,
                    "the reference (%s) is known to %.2g only: smaller errors mean nothing",
                    a->source, a->uncertainty);

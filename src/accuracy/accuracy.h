@@ -12,6 +12,11 @@
 #include "report/progress.h"
 #include "sim/sim.h"
 
+/// The reference is good enough with this part of the wanted error; otherwise more runs are made for
+/// it, and then a warning. Derived: the error of a run that is near the wanted one is then known to
+/// a tenth of itself.
+#define CT_REFERENCE_MARGIN 0.1
+
 struct ct_accuracy {
     struct ct_ctx own;
     struct ct_ctx said; // diagnostics of single runs
@@ -28,10 +33,10 @@ struct ct_accuracy {
     double *store;                 // nsample x nresult: results of the run; NULL: not stored
     double *reference;             // nsample x nresult; NaN: unknown
     double *scale;                 // (nresult) largest |reference|; 0: column not compared
-    double *deviation;             // (nresult) workspace
-    double worst;                  // error of the run so far
-    const char *source;            // of the reference
-    double uncertainty;            // NaN: unknown
+    struct ct_output_error_estimate *difference; // (nresult) workspace
+    double worst;                                // error of the run so far
+    const char *source;                          // of the reference
+    double uncertainty;                          // NaN: unknown
     double reference_seconds;
     struct ct_work_precision_point *point;
     size_t npoint, point_cap;

@@ -12,8 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-// Agreement of two runs at which no third one is made. Chosen: 0.01 of the default wanted error.
-static const double good_agreement = 1e-8;
 // Sample times in a file are matched to this part of the run. Derived: files with nine digits.
 static const double same_time = 1e-9;
 static const double reference_limit = 20, quad_limit = 10; // Limit: [s]
@@ -73,38 +71,26 @@ static void choose_pair(struct ct_accuracy *a, const struct candidate *c, int n)
         }
 }
 
-static void drop_small(struct ct_accuracy *a)
-{
-    double largest = 0;
-    for (size_t i = 0; i < a->nresult; i++)
-        largest = fmax(largest, a->scale[i]);
-    for (size_t i = 0; i < a->nresult; i++)
-        if (ct_is_rounding(a->scale[i], a->scale[i], largest))
-            a->scale[i] = 0;
-}
-
-// Fewer than two runs finished: take that one. Its accuracy is unknown, so small columns count as
-// round-off.
+// Fewer than two runs finished: take that one. Its accuracy is unknown.
 static void choose_single(struct ct_accuracy *a, const struct candidate *c, int n)
 {
     for (int i = 0; i < n && !a->reference; i++)
         if (c[i].row) {
             a->reference = c[i].row;
             ct_accuracy_compare(a, a->reference, a->reference, a->scale);
-            drop_small(a);
             a->source = ct_arena_printf(
                 a->own.model, "%s alone: no other method came to its end", c[i].method);
         }
 }
 // ---- in quadruple precision --------------------------------------------------------------
 
-// Is there time for two runs in quadruple precision, 50 or more times as slow and with at least as
-// many steps?
+// Derived: at least the time of an evaluation in quadruple precision against double precision.
+static const double quad_slowdown = 50;
+
+// Is there time for two runs in quadruple precision, with at least as many steps?
 static bool has_time(const struct candidate *c)
 {
-    // Chosen: least slowdown of both runs together against double precision
-    const double least_factor = 100;
-    return c->seconds * least_factor < quad_limit;
+    return 2 * quad_slowdown * c->seconds < quad_limit;
 }
 
 static bool is_in_time(void *user)
@@ -114,15 +100,13 @@ static bool is_in_time(void *user)
 }
 
 // Two runs in quadruple precision with different steps. The first becomes the reference if they
-// agree better than the runs in double precision do, and are as close to those as those are to each
-// other.
+// agree better than the runs in double precision do, and if it is the same motion: as close to those
+// as the wanted error, or as those are to each other.
 static void run_quad(struct ct_accuracy *a)
 {
     // Derived: the error of double precision is above 1e-16; both are far below it, and four digits
     // apart
     const double tolerance[2] = {1e-26, 1e-22};
-    // Chosen: factor for "as close as"
-    const double as_runs_agree = 100; // times the distance of the runs in double precision
     // Derived: 4 units of round-off of stored results, 4 * 2.2e-16
     const double double_rounding = 1e-15;
     double *row[2], *scale = CT_NEWN(a->own.model, double, a->nresult + 1);
@@ -144,7 +128,7 @@ static void run_quad(struct ct_accuracy *a)
     if (own > a->uncertainty)
         return;
     const double distance = ct_accuracy_compare(a, row[0], a->reference, scale);
-    if (distance > as_runs_agree * (a->uncertainty + double_rounding))
+    if (distance > fmax(a->uncertainty, a->wanted))
         return;
     a->reference = row[0];
     memcpy(a->scale, scale, a->nresult * sizeof *scale);
@@ -171,7 +155,9 @@ bool ct_accuracy_find_reference(struct ct_accuracy *a)
     struct candidate *c = a->system->equations.nrow ? loops : open;
     a->uncertainty = INFINITY;
     for (int i = 0; i < NREFERENCE; i++) {
-        if (i > 1 && a->uncertainty <= (i < NREFERENCE - 1 ? good_agreement : DBL_MAX))
+        if (i > 1
+            && a->uncertainty
+                   <= (i < NREFERENCE - 1 ? CT_REFERENCE_MARGIN * a->wanted : DBL_MAX))
             continue;
         if (i == NREFERENCE - 1 && !c[0].row) // stiff system
             // Definition: the last of the list

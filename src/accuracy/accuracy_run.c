@@ -86,22 +86,21 @@ double ct_accuracy_compare(const struct ct_accuracy *a, const double *x, const d
                            double *scale)
 {
     const size_t n = a->nresult;
-    double *deviation = a->deviation, largest = 0, worst = 0;
+    struct ct_output_error_estimate *o = a->difference;
+    double worst = 0;
     for (size_t i = 0; i < n; i++) {
-        scale[i] = deviation[i] = 0;
+        o[i] = (struct ct_output_error_estimate){0};
         for (size_t k = 0; k < a->nsample; k++) {
             if (isnan(x[k * n + i]))
                 continue;
-            scale[i] = fmax(scale[i], fabs(x[k * n + i]));
-            deviation[i] = fmax(deviation[i], fabs(y[k * n + i] - x[k * n + i]));
+            o[i].scale = fmax(o[i].scale, fabs(x[k * n + i]));
+            o[i].absolute = fmax(o[i].absolute, fabs(y[k * n + i] - x[k * n + i]));
         }
-        largest = fmax(largest, scale[i]);
     }
+    ct_output_errors_relate(o, n);
     for (size_t i = 0; i < n; i++) {
-        if (ct_is_rounding(scale[i], deviation[i], largest))
-            scale[i] = 0;
-        else
-            worst = fmax(worst, deviation[i] / scale[i]);
+        scale[i] = isnan(o[i].relative) ? 0 : o[i].scale;
+        worst = fmax(worst, o[i].relative); // ignores NaN
     }
     return worst;
 }

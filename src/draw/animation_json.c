@@ -12,6 +12,7 @@
 // of `to`.
 #include "draw/animation.h"
 
+#include "component/roundoff.h"
 #include "draw/view.h"
 #include "report/packed.h"
 
@@ -41,11 +42,10 @@ static void write3(const struct work *w, const char *key, ct_ex3 v)
 // Writes [pose, x, y, z]; a coordinate that is round-off of the others is 0.
 static void write_place(const struct work *w, const char *key, int pose, const double at[3])
 {
-    // Chosen: 45 eps.
-    const double roundoff = 1e-14, size = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
+    const double size = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
     double v[4] = {pose};
     for (int i = 0; i < 3; i++)
-        v[i + 1] = fabs(at[i]) > roundoff * size ? at[i] : 0;
+        v[i + 1] = fabs(at[i]) > CT_DATA_ROUNDOFF * size ? at[i] : 0;
     ct_json_numbers(w->j, key, v, 4);
 }
 

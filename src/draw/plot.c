@@ -1,4 +1,5 @@
 // Outputs over time as a picture: a panel for each unit, one axis of time.
+#include "component/roundoff.h"
 #include "draw/canvas.h"
 #include "draw/dimension.h"
 #include "system.h"
@@ -117,9 +118,9 @@ struct axis {
 static struct axis choose_axis(double low, double high, int count, bool is_whole)
 {
     static const double mantissas[] = {1, 2, 5, 10};
-    // Chosen: some thousand eps, the round-off of ticks.
-    const double roundoff = 1e-12, most = fmax(fabs(low), fabs(high));
-    const double constant = 1e-6; // a smaller range would need labels of more than six digits
+    const double most = fmax(fabs(low), fabs(high));
+    // Layout: a smaller range would need labels of more than six digits
+    const double constant = 1e-6;
     if (!(high - low > constant * most)) {
         const double margin = most > 0 ? 0.5 * most : 1;
         low -= margin;
@@ -128,12 +129,12 @@ static struct axis choose_axis(double low, double high, int count, bool is_whole
     struct axis a = {.low = low, .high = high};
     const double rough = (high - low) / count, power = pow(10, floor(log10(rough)));
     size_t i = 0;
-    while (i + 1 < COUNT(mantissas) && mantissas[i] * power < rough * (1 - roundoff))
+    while (i + 1 < COUNT(mantissas) && mantissas[i] * power < rough * (1 - CT_DATA_ROUNDOFF))
         i++;
     a.step = mantissas[i] * power;
     if (is_whole) {
-        a.low = floor(low / a.step + roundoff) * a.step;
-        a.high = ceil(high / a.step - roundoff) * a.step;
+        a.low = floor(low / a.step + CT_DATA_ROUNDOFF) * a.step;
+        a.high = ceil(high / a.step - CT_DATA_ROUNDOFF) * a.step;
     }
     const double largest = fmax(fabs(a.low), fabs(a.high));
     const int digits = (int)floor(log10(largest));
@@ -150,8 +151,8 @@ static double place(const struct axis *a, double v)
 static const char *tick_name(struct ct_arena *a, const struct axis *axis, double v)
 {
     const double unit = pow(10, axis->exponent), step = axis->step / unit;
-    // Chosen: above the round-off of log10.
-    const int decimals = (int)fmax(0, -floor(log10(step) + 1e-9));
+    // step is 1, 2 or 5 times a power of ten: 1.5, 3 or 7.5 times it has the same whole exponent
+    const int decimals = (int)fmax(0, -floor(log10(1.5 * step)));
     if (fabs(v) < axis->step / 2)
         return "0";
     const char *text = ct_arena_printf(a, "%.*f", decimals, fabs(v) / unit);

@@ -2,6 +2,7 @@
 // drawn as.
 #include "draw/sketch.h"
 
+#include "component/roundoff.h"
 #include "draw/facet.h"
 
 #include <stdlib.h>
@@ -88,8 +89,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
     const struct reach r = find_reach(d);
     const double w = r.high[0] - r.low[0], h = r.high[1] - r.low[1];
     d->size = fmax(fmax(w, h), r.high[2] - r.low[2]);
-    // Chosen: above round-off of positions.
-    const double nothing = 1e-9 * d->size; // round-off
+    const double nothing = CT_DATA_ROUNDOFF * d->size;
     d->view.scale = fmin(w > nothing ? MOST_WIDTH / w : INFINITY,
                          h > nothing ? MOST_HEIGHT / h : INFINITY);
     if (!isfinite(d->view.scale))
@@ -186,8 +186,7 @@ void ct_sketch_find_blocks(struct ct_sketch *d)
 static bool add_place(const struct ct_sketch *d, struct ct_outline *o, const double place[3],
                       const double **known, size_t *n)
 {
-    // Chosen: positions given with six digits are equal.
-    const double same = 1e-6 * d->size; // [m]
+    const double same = CT_SKETCH_RESOLUTION * d->size; // [m]
     for (size_t i = 0; i < *n; i++) {
         double across[3];
         for (int k = 0; k < 3; k++)

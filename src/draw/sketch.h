@@ -13,6 +13,9 @@
 
 #include <math.h>
 
+/// Distances below this part of the picture are not seen. Layout: a thousandth of a pixel.
+#define CT_SKETCH_RESOLUTION 1e-6
+
 // Layout: of the picture
 enum { CT_STRIP = 84 }; // [px] below, for axes, gravity and the scale
 

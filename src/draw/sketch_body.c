@@ -274,8 +274,7 @@ void ct_sketch_draw_bodies(struct ct_sketch *d)
         o[i] = (struct by_depth){d->outline[i].depth, (int)i};
         // at almost equal depth the order of the lines is kept, so that round-off does not
         // decide
-        // Chosen: positions given with six digits are equal.
-        const double apart = 1e-6 * (d->size > 0 ? d->size : 1);
+        const double apart = CT_SKETCH_RESOLUTION * (d->size > 0 ? d->size : 1);
         o[i].depth = round(o[i].depth / apart);
     }
     qsort(o + 1, n - 1, sizeof *o, compare_depths);

@@ -1,6 +1,8 @@
 // See sketch.h: supports, joints, springs and loads.
 #include "draw/sketch.h"
 
+#include "component/roundoff.h"
+
 // ---- drawing: joints and forces ------------------------------------------------------------
 
 static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j, int k,
@@ -13,8 +15,8 @@ static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j
 static struct ct_spot below(struct ct_spot along)
 {
     const struct ct_spot side = {-along.y, along.x};
-    // Chosen: components of a unit vector below this are 0.
-    const bool turned = side.y < -1e-9 || (fabs(side.y) <= 1e-9 && side.x < 0);
+    const bool turned
+        = side.y < -CT_DATA_ROUNDOFF || (fabs(side.y) <= CT_DATA_ROUNDOFF && side.x < 0);
     return turned ? (struct ct_spot){-side.x, -side.y} : side;
 }
 

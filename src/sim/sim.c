@@ -2,6 +2,7 @@
 #include "sim/sim.h"
 
 #include "base/guard.h"
+#include "component/roundoff.h"
 #include "formulate/beam/flexible_body.h"
 #include "solve/constraint/partition_conditioning.h"
 #include "solve/batch/batch.h"
@@ -143,9 +144,8 @@ static size_t samples_until(const struct ct_simulation *m, double until)
         spacing = m->duration / (double)(m->samples - 1);
     if (!(spacing > 0))
         return m->samples > 1 ? (size_t)m->samples : 2;
-    // Chosen: some thousand eps.
     // a quotient such as 10/0.01 may be rounded up
-    return (size_t)ceil(until / spacing * (1 - 1e-12)) + 1;
+    return (size_t)ceil(until / spacing * (1 - CT_DATA_ROUNDOFF)) + 1;
 }
 
 bool ct_sim_resolve(struct ct_sim *sim, const struct ct_sim_options *o)
@@ -449,8 +449,6 @@ static bool integrate(struct ct_sim *sim)
 static void warn_of_positions(struct ct_sim *sim)
 {
     const struct ct_rank_monitor *w = sim->report.singular;
-    // Chosen: a tenth of eps.
-    const double roundoff = 0.1 * DBL_EPSILON; // amplified by two divisions by a pivot
     const struct ct_mark mark = {.file = sim->system->model.file};
     if (!w)
         return;
@@ -462,7 +460,8 @@ static void warn_of_positions(struct ct_sim *sim)
                    "one; without 'step' "
                    "it is crossed",
                    w->over, w->nover > 1 ? " and more often later" : "");
-    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < roundoff)
+    // two divisions by a pivot, which is as small as the distance, amplify round-off
+    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < DBL_EPSILON)
         ct_warning(
             &sim->own, mark, 0,
             "the motion has come near to a singular configuration at t = %.9g without crossing "

@@ -117,9 +117,11 @@ const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial);
 /// After a run that kept its samples: makes a second run and sets sim->estimate. Raises the
 /// guard.
 void ct_sim_verify(struct ct_sim *sim);
-/// Is a column round-off? scale is its largest value, largest that of the largest column,
-/// deviation the difference between two runs.
-bool ct_is_rounding(double scale, double deviation, double largest);
+/// Sets `relative` of n outputs from scale and absolute. An output is zero up to round-off if it is
+/// that small relative to the largest one, or if the two runs agree in no digit of it and the errors
+/// of the other outputs are as large. Examples: a sum of energies that cancel, a momentum that stays
+/// zero.
+void ct_output_errors_relate(struct ct_output_error_estimate *o, size_t n);
 
 /// Warns of joints that start more than a right angle or half the natural length from their
 /// guesses.

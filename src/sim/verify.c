@@ -15,6 +15,7 @@
 #include "sim/sim.h"
 
 #include "base/guard.h"
+#include "component/roundoff.h"
 #include "solve/singular/singular.h"
 
 #include <float.h>
@@ -52,15 +53,6 @@ struct companion {
     double least_rtol; // for motions with many turns
     long nstep;        // number of steps of the run
 };
-
-// A column is round-off if it is this small relative to the largest one. Sums of terms of order
-// 1 leave some hundred eps; if the two runs agree in no digit, the limit is larger.
-bool ct_is_rounding(double scale, double deviation, double largest)
-{
-    // Chosen: 450 eps, and 4.5e6 eps.
-    const double with_digits = 1e-13, without_digits = 1e-9;
-    return scale <= (deviation < 0.5 * scale ? with_digits : without_digits) * largest;
-}
 
 // Is the method of low order? Then its error is estimated by another method, not by a tighter
 // tolerance.
@@ -147,29 +139,18 @@ static bool has_digits(const struct ct_output_error_estimate *o)
     return o->absolute < 0.5 * o->scale;
 }
 
-// Sets the relative error of outputs that are zero up to round-off: those that agree in no
-// digit and are not larger than the errors of others make them. Examples are a sum of energies
-// that cancel, and a momentum that stays zero.
-static void find_relative(struct ct_output_error_estimate *o, size_t n)
+void ct_output_errors_relate(struct ct_output_error_estimate *o, size_t n)
 {
-    // Chosen: outputs may be sums of up to a hundred others.
-    const double spread = 100; // the errors of such a sum
-    // Chosen: three digits.
-    const double small = 1e-3; // relative to others that agree in no digit
-    double largest = 0, worst = 0, largest_lost = 0;
+    double largest = 0, worst = 0;
     for (size_t i = 0; i < n; i++) {
         largest = fmax(largest, o[i].scale);
         if (has_digits(&o[i]))
             worst = fmax(worst, o[i].absolute / o[i].scale);
-        else
-            largest_lost = fmax(largest_lost, o[i].scale);
     }
     for (size_t i = 0; i < n; i++) {
-        const bool is_zero = ct_is_rounding(o[i].scale, o[i].absolute, largest)
-                          || (!has_digits(&o[i])
-                              && (o[i].scale <= spread * worst * largest
-                                  || o[i].scale <= small * largest_lost));
-        o[i].relative = is_zero ? NAN : o[i].absolute / o[i].scale;
+        const double most
+            = has_digits(&o[i]) ? CT_DATA_ROUNDOFF : fmax(CT_DATA_ROUNDOFF, worst);
+        o[i].relative = o[i].scale <= most * largest ? NAN : o[i].absolute / o[i].scale;
     }
 }
 
@@ -188,7 +169,7 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
     for (size_t i = 0; i < n; i++)
         c->output[i].absolute
             = fmax(c->output[i].absolute * margin, roundoff * c->output[i].scale);
-    find_relative(c->output, n);
+    ct_output_errors_relate(c->output, n);
     for (size_t i = 0; i < n; i++) {
         const struct ct_output_error_estimate *o = &c->output[i];
         if (o->relative > e->worst) {
