@@ -50,14 +50,7 @@ void ct_augmented_bodies_add(struct ct_build *b, int anchor, int cluster, ct_ex 
     b->dynamics.masses.mass[anchor] = ct_ex_add(b->x, b->dynamics.masses.mass[anchor], m);
 }
 
-void ct_mass_add_entry(struct ct_build *b, ct_ex *M, int k, int l, ct_ex v)
-{
-    const size_t n = b->eqs->nu;
-    const size_t i = (size_t)(k > l ? k : l) + n * (size_t)(k > l ? l : k);
-    M[i] = ct_ex_add(b->x, M[i], v);
-}
-
-void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+void ct_mass_spread(struct ct_build *b, struct ct_symmetric *M, const struct ct_term *p, int np,
                     const struct ct_term *q, int nq, ct_ex m)
 {
     for (int i = 0; i < np; i++)
@@ -67,6 +60,6 @@ void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int n
             ct_ex v = ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, q[j].coef), m);
             if (p[i].speed == q[j].speed)
                 v = ct_ex_scale(b->x, 2, v);
-            ct_mass_add_entry(b, M, p[i].speed, q[j].speed, v);
+            ct_symmetric_add(b->x, M, (size_t)p[i].speed, (size_t)q[j].speed, v);
         }
 }

@@ -3,6 +3,7 @@
 #ifndef CT_FORMULATE_MASS_SUMS_H
 #define CT_FORMULATE_MASS_SUMS_H
 
+#include "expr/symmetric.h"
 #include "formulate/build.h"
 
 /// Augmented body: an anchor and a cluster in which the vectors to its masses and to the next
@@ -25,10 +26,8 @@ void ct_augmented_bodies_add_point(struct ct_build *b, int anchor, int cluster, 
 /// Adds a mass at an anchor with first moment and inertia (both local) fixed in the cluster.
 void ct_augmented_bodies_add(struct ct_build *b, int anchor, int cluster, ct_ex m,
                              ct_ex3 moment, const ct_ex33 *inertia);
-/// Add v to entry (i, j) of the lower triangle M (nu x nu), whichever of i and j is larger.
-void ct_mass_add_entry(struct ct_build *b, ct_ex *M, int i, int j, ct_ex v);
-/// Adds m times the product of two sums of terms to the lower triangle M (nu x nu).
-void ct_mass_spread(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np,
+/// Adds m times the product of two sums of terms to M (nu x nu).
+void ct_mass_spread(struct ct_build *b, struct ct_symmetric *M, const struct ct_term *p, int np,
                     const struct ct_term *q, int nq, ct_ex m);
 
 #endif

@@ -138,10 +138,9 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
                          struct ct_beam_parts *p, struct ct_named_inertia *out)
 {
     struct ct_exs *x = b->x;
-    const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
-    struct ct_arena *work = ct_arena_create_under(a); // as large as the system, for each beam
-    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1);
-    ct_flexible_columns(b, f, &out->columns, M);
+    const size_t n = (size_t)f->nelastic;
+    struct ct_symmetric M = ct_symmetric_create(a, b->eqs->nu);
+    ct_flexible_columns(b, f, &out->columns, &M);
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
         for (int i = 0; i < 3; i++) {
@@ -153,12 +152,11 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
         for (size_t l = 0; l <= k; l++) {
             const size_t row = (size_t)f->elastic[k].u, column = (size_t)f->elastic[l].u;
             const char *to = f->elastic[l].name + strlen(f->name) + 1;
-            out->M[k * n + l] = out->M[l * n + k] = name(
-                a, x, p, M[(row > column ? row : column) + nu * (row > column ? column : row)],
-                ct_arena_printf(a, "m_ff_%s.%s", of, to));
+            out->M[k * n + l] = out->M[l * n + k]
+                = name(a, x, p, ct_symmetric_get(&M, row, column),
+                       ct_arena_printf(a, "m_ff_%s.%s", of, to));
         }
     }
-    ct_arena_destroy(work);
     name_forces(a, b, f, p, out);
 }
 

@@ -408,16 +408,15 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
 {
     struct ct_build *b = d->e->build;
     struct ct_exs *x = b->x;
-    const size_t n = (size_t)f->nelastic, nu = b->eqs->nu;
+    const size_t n = (size_t)f->nelastic;
     const char **name = CT_NEWN(d->a, const char *, n + 1);
-    struct ct_arena *work
-        = ct_arena_create_under(d->a); // as large as the system, for each beam
-    ct_ex *M = CT_NEWN(work, ct_ex, nu * nu + 1), *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1),
-          *swept = CT_NEWN(d->a, ct_ex, 3 * n + 1), *mff = CT_NEWN(d->a, ct_ex, n * n + 1),
-          *K = CT_NEWN(d->a, ct_ex, n * n + 1), *q = CT_NEWN(d->a, ct_ex, n + 1),
-          *zero = CT_NEWN(d->a, ct_ex, n + 1), *force = CT_NEWN(d->a, ct_ex, n + 1);
+    struct ct_symmetric M = ct_symmetric_create(d->a, b->eqs->nu);
+    ct_ex *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1), *swept = CT_NEWN(d->a, ct_ex, 3 * n + 1),
+          *mff = CT_NEWN(d->a, ct_ex, n * n + 1), *K = CT_NEWN(d->a, ct_ex, n * n + 1),
+          *q = CT_NEWN(d->a, ct_ex, n + 1), *zero = CT_NEWN(d->a, ct_ex, n + 1),
+          *force = CT_NEWN(d->a, ct_ex, n + 1);
     struct ct_columns c = {CT_NEWN(d->a, ct_ex3, n + 1), CT_NEWN(d->a, ct_ex3, n + 1)};
-    ct_flexible_columns(b, f, &c, M);
+    ct_flexible_columns(b, f, &c, &M);
     for (size_t k = 0; k < n; k++) {
         name[k] = ct_derivation_name(d, f->elastic[k].name);
         q[k] = b->eqs->q[f->elastic[k].q].symbol;
@@ -426,15 +425,14 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
             swept[3 * k + i] = ct_beam_parts_name(p, c.swept[k].e[i]);
         }
     }
-    ct_ex_gradient(x, work, ct_flexible_strain(b, f), q, n, force);
+    ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
     for (size_t i = 0; i < n; i++)
         for (size_t k = 0; k <= i; k++) {
             const size_t row = (size_t)f->elastic[i].u, column = (size_t)f->elastic[k].u;
             mff[i * n + k] = ct_beam_parts_name( // column-major, the lower triangle
-                p, M[(row > column ? row : column) + nu * (row > column ? column : row)]);
+                p, ct_symmetric_get(&M, row, column));
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
-    ct_arena_destroy(work);
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
                                    "m_rf'*A", "(A.6), (A.7)", name, xyz, n, 3, moved, false});
     put_matrix(d, &(struct matrix){"m_thetaf'", "\\boldsymbol{m}_{\\theta f}^{T}", "m_thetaf'",

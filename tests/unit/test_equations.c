@@ -255,7 +255,8 @@ static void the_recursive_form_equals_the_matrix_form(void **state)
 // Entries of the matrices of a beam as the engine has them, and the lines below its block.
 struct engine_beam {
     struct ct_columns columns;
-    ct_ex *M, *velocity, *elastic; // M: nu x nu
+    struct ct_symmetric M; // nu x nu
+    ct_ex *velocity, *elastic;
     double *applied;
 };
 
@@ -270,11 +271,11 @@ static void find_entries(struct fixture *f, const struct ct_flexible *self,
                          felt = ct_flexible_felt(b, self, &m, &less[0], &less[1]),
                          turned = {.w = felt.w};
     s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
-    s->M = CT_NEWN(a, ct_ex, nu * nu + 1);
+    s->M = ct_symmetric_create(a, nu);
     s->velocity = CT_NEWN(a, ct_ex, nu + 1);
     s->elastic = CT_NEWN(a, ct_ex, nu + 1);
     s->applied = CT_NEWN(a, double, n + 1);
-    ct_flexible_columns(b, self, &s->columns, s->M);
+    ct_flexible_columns(b, self, &s->columns, &s->M);
     ct_flexible_inertia_rows(b, self, &turned, CT_BIAS, s->velocity);
     ct_flexible_stiffness_rows(b, self, s->elastic);
 }
@@ -302,8 +303,7 @@ static void set_block(struct fixture *f, const struct ct_beam_block *s,
     double inertia = 0;
     for (int l = 0; l < s->f->nelastic && k >= 0; l++) {
         const size_t i = (size_t)s->f->elastic[k].u, j = (size_t)s->f->elastic[l].u;
-        inertia += engine[of->M[(i > j ? i : j) + e->nu * (i > j ? j : i)].id]
-                 * engine[e->u[j].derivative.id];
+        inertia += engine[ct_symmetric_get(&of->M, i, j).id] * engine[e->u[j].derivative.id];
     }
     const int u = k < 0 ? 0 : s->f->elastic[k].u;
     set_symbol(f, s->inertia, inertia);

@@ -53,7 +53,7 @@ void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, 
 }
 
 void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
-                      int k, ct_ex value, ct_ex *M)
+                      int k, ct_ex value, struct ct_symmetric *M)
 {
     int sj, sk;
     const struct ct_freedom *p = ct_dof_freedom(f, e, j, &sj),
@@ -68,8 +68,7 @@ void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, in
             if (row < column)
                 continue; // the transposed pair is added separately
             v = sj == sk ? v : ct_ex_neg(b->x, v);
-            ct_ex *m = &M[(size_t)row + b->eqs->nu * (size_t)column];
-            *m = ct_ex_add(b->x, *m, v);
+            ct_symmetric_add(b->x, M, (size_t)row, (size_t)column, v);
         }
 }
 

@@ -3,6 +3,7 @@
 #ifndef CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
 #define CT_FORMULATE_BEAM_DEGREES_OF_FREEDOM_H
 
+#include "expr/symmetric.h"
 #include "formulate/beam/flexible_body.h"
 
 /// Deformation (bit) that a kind of freedom belongs to.
@@ -23,7 +24,7 @@ void ct_dof_push(struct ct_build *b, const struct ct_flexible *f, int e, int j, 
 /// Entry of the mass matrix between dof j of element e and dof k of element g; the caller adds the
 /// transposed pair separately.
 void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, int j, int g,
-                      int k, ct_ex value, ct_ex *M);
+                      int k, ct_ex value, struct ct_symmetric *M);
 void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
                         ct_ex3 moved, ct_ex3 swept, struct ct_columns *out);
 /// Second derivatives of the foreshortening at the start of each element of a CHAIN, with the

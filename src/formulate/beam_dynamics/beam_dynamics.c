@@ -195,15 +195,14 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 // Entries of the start of element e, elastic coordinate k, which moves the whole element.
 static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
                           const struct ct_element_sums *s, int e, struct ct_columns *out,
-                          ct_ex *M)
+                          struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const int k = ct_flexible_start(f, e);
     const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
     out->moved[k] = (ct_ex3){{s->m, CT_EX_ZERO, CT_EX_ZERO}};
     out->swept[k] = (ct_ex3){{CT_EX_ZERO, s->moment.e[2], ct_ex_neg(x, s->moment.e[1])}};
-    ct_ex *self = &M[(size_t)own.speed * (b->eqs->nu + 1)];
-    *self = ct_ex_add(x, *self, s->m);
+    ct_symmetric_add(x, M, (size_t)own.speed, (size_t)own.speed, s->m);
     for (int j = 0; j < CT_DOF; j++) {
         int sign;
         const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
@@ -264,7 +263,7 @@ static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
 // Mass entries between elastic coordinates of the straight beam, where condensed rotations have no
 // inertia.
 static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
-                         const struct ct_element_sums *s, ct_ex *M)
+                         const struct ct_element_sums *s, struct ct_symmetric *M)
 {
     const size_t n = (size_t)f->nelastic, nelement = (size_t)f->beam->nelement;
     ct_ex *symbol = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
@@ -284,7 +283,7 @@ static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
 // Mass of a beam with small coordinates: entries between them are those of the straight beam.
 // (small_motion.h)
 static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                       ct_ex *M)
+                       struct ct_symmetric *M)
 {
     struct ct_element_sums *s = f->inertia->method->sums(b, f);
     columns_by_freedom(b, f, s, out);
@@ -298,7 +297,7 @@ static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct c
 // Adds the elements from the tip inwards. In a CHAIN the bending of an element moves everything
 // beyond it, unless element starts are coordinates.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, ct_ex *M)
+                         struct ct_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const bool chain = f->kinematics == CT_AXIAL_CHAIN && !f->nstart;
@@ -338,7 +337,7 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
 // . swept).
 static void base_column(struct ct_build *b, const struct ct_flexible *f,
                         const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
-                        const struct ct_term *term, int nterm, ct_ex *M)
+                        const struct ct_term *term, int nterm, struct ct_symmetric *M)
 {
     for (int k = 0; k < f->nelastic; k++) {
         const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->moved[k]),
@@ -380,7 +379,7 @@ static bool local_lever(struct ct_build *b, const struct ct_flexible *f,
 }
 
 static void base_columns(struct ct_build *b, const struct ct_flexible *f,
-                         const struct ct_columns *c, ct_ex *M)
+                         const struct ct_columns *c, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const struct ct_node_placement *at = &b->kinematics->placement[f->base];
@@ -430,20 +429,20 @@ static bool draws_by_shapes(const struct ct_flexible *f)
 }
 
 static void named_columns(struct ct_build *b, const struct ct_flexible *f,
-                          struct ct_columns *out, ct_ex *M)
+                          struct ct_columns *out, struct ct_symmetric *M)
 {
     const struct ct_named_inertia *n = f->inertia->named;
     for (int k = 0; k < f->nelastic; k++) {
         out->moved[k] = n->columns.moved[k];
         out->swept[k] = n->columns.swept[k];
         for (int l = 0; l <= k; l++)
-            ct_mass_add_entry(b, M, f->elastic[k].u, f->elastic[l].u,
-                              n->M[k * f->nelastic + l]);
+            ct_symmetric_add(b->x, M, (size_t)f->elastic[k].u, (size_t)f->elastic[l].u,
+                             n->M[k * f->nelastic + l]);
     }
 }
 
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, ct_ex *M)
+                         struct ct_columns *out, struct ct_symmetric *M)
 {
     const struct ct_inertia_method *form = f->inertia->method;
     if (f->inertia->named)
@@ -458,7 +457,7 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
         mass_of_sums(b, f, out, M);
 }
 
-void ct_flexible_mass(struct ct_build *b, ct_ex *M)
+void ct_flexible_mass(struct ct_build *b, struct ct_symmetric *M)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];

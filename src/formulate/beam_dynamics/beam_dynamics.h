@@ -43,7 +43,7 @@ struct ct_inertia_method {
     struct ct_element_sums *(*sums)(struct ct_build *b, const struct ct_flexible *f);
     /// Entries between elastic coordinates, added to M; columns of the base's motion.
     void (*mass)(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                 ct_ex *M);
+                 struct ct_symmetric *M);
 };
 
 /// Integrals that appear as symbols in printed equations (report/beam_parts.h).
@@ -112,10 +112,10 @@ void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct
 ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
 /// Entries between elastic coordinates, added to M; columns of the base's motion.
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, ct_ex *M);
+                         struct ct_columns *out, struct ct_symmetric *M);
 /// The same for shapes of the whole beam as coordinates, for methods with sums.
 void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
-                            struct ct_columns *out, ct_ex *M);
+                            struct ct_columns *out, struct ct_symmetric *M);
 /// 2 w x v
 ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 
@@ -140,8 +140,8 @@ void ct_flexible_inertia_derive(struct ct_build *b, struct ct_flexible *f);
 /// Adds mass, first moment and inertia of the beams to anchors and clusters; before augmented
 /// bodies are linked.
 void ct_flexible_lump(struct ct_build *b);
-/// Adds rows and columns of the elastic coordinates to the lower triangle M (nu x nu).
-void ct_flexible_mass(struct ct_build *b, ct_ex *M);
+/// Adds rows and columns of the elastic coordinates to the M (nu x nu).
+void ct_flexible_mass(struct ct_build *b, struct ct_symmetric *M);
 /// Adds the contribution of deformation to the sweep: force at the anchor of the base, torque on
 /// its cluster, rows of the elastic coordinates. apparent: by anchor, acceleration minus gravity.
 void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *apparent,

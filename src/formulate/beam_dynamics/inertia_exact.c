@@ -329,7 +329,7 @@ static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_re
 }
 
 static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                 ct_ex *M)
+                 struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     for (int i = 0; i < f->beam->nelement; i++) {

@@ -115,7 +115,7 @@ static void add_beyond(struct ct_build *b, const struct ct_flexible *f, struct r
 }
 
 void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
-                            struct ct_columns *out, ct_ex *M)
+                            struct ct_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const int n = f->nelastic;
@@ -141,8 +141,7 @@ void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
     }
     for (int k = 0; k < n; k++)
         for (int i = k; i < n; i++) {
-            const int u = f->elastic[i].u, v = f->elastic[k].u;
-            ct_ex *entry = &M[(size_t)(u > v ? u : v) + b->eqs->nu * (size_t)(u > v ? v : u)];
-            *entry = ct_ex_add(x, *entry, ct_ex_add(x, fixed[i + n * k], own[i + n * k]));
+            const size_t u = (size_t)f->elastic[i].u, v = (size_t)f->elastic[k].u;
+            ct_symmetric_add(x, M, u, v, ct_ex_add(x, fixed[i + n * k], own[i + n * k]));
         }
 }

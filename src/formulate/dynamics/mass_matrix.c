@@ -118,13 +118,14 @@ static ct_ex3 column_inertia_torque(struct ct_build *b, const struct column *c)
 
 // ---- the matrix --------------------------------------------------------------------------------
 
-static void spread_self(struct ct_build *b, ct_ex *M, const struct ct_term *p, int np, ct_ex m)
+static void spread_self(struct ct_build *b, struct ct_symmetric *M, const struct ct_term *p,
+                        int np, ct_ex m)
 {
     for (int i = 0; i < np; i++)
         for (int j = 0; j <= i; j++)
             if (p[i].speed >= 0 && p[j].speed >= 0)
-                ct_mass_add_entry(b, M, p[i].speed, p[j].speed,
-                                  ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
+                ct_symmetric_add(b->x, M, (size_t)p[i].speed, (size_t)p[j].speed,
+                                 ct_ex_mul(b->x, ct_ex_mul(b->x, p[i].coef, p[j].coef), m));
 }
 
 static bool has_unknown(const struct ct_term *p, int np)
@@ -146,7 +147,7 @@ static bool is_row_of(const struct ct_build *b, const int *depth, int r, int c)
     return depth[r] != depth[c] ? depth[r] < depth[c] : r < c;
 }
 
-static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
+static void rotation_column(struct ct_composite_sums *s, struct ct_symmetric *M, size_t r,
                             const struct column *c, const int *depth,
                             const struct ct_couplings *couplings)
 {
@@ -197,7 +198,7 @@ static void rotation_column(struct ct_composite_sums *s, ct_ex *M, size_t r,
     }
 }
 
-static void translation_pair(struct ct_build *b, ct_ex *M, size_t i, size_t j)
+static void translation_pair(struct ct_build *b, struct ct_symmetric *M, size_t i, size_t j)
 {
     const struct ct_anchor *out = &b->kinematics->anchor[i], *in = &b->kinematics->anchor[j];
     for (int k = 0; k < out->ntranslation_axis; k++)
@@ -221,7 +222,7 @@ static void translation_pair(struct ct_build *b, ct_ex *M, size_t i, size_t j)
 }
 
 // Entries between the translations of an anchor and those of its inboard anchors.
-static void translation_pairs(struct ct_build *b, ct_ex *M)
+static void translation_pairs(struct ct_build *b, struct ct_symmetric *M)
 {
     int *sliding = CT_NEWN(
             b->arena, int,
@@ -270,7 +271,7 @@ void ct_mass_matrix_derive(struct ct_build *b)
     struct ct_equations *e = b->eqs;
     struct ct_composite_sums s = ct_composite_sums_create(b);
     struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
-    ct_ex *M = CT_NEWN(work, ct_ex, e->nu * e->nu + 1);
+    struct ct_symmetric M = ct_symmetric_create(work, e->nu);
     const int *depth = start_depths(&s);
     const struct ct_couplings *couplings = ct_couplings_find(&s);
     struct column c = {.torque = CT_NEWN(b->arena, ct_ex3, b->kinematics->nanchor),
@@ -293,15 +294,16 @@ void ct_mass_matrix_derive(struct ct_build *b)
             c.inertia = s.inertia[c.cluster];
             ct_composite_sums_add_full(&s, 0, c.cluster, &c.inertia);
         }
-        rotation_column(&s, M, r, &c, depth, couplings);
+        rotation_column(&s, &M, r, &c, depth, couplings);
     }
-    translation_pairs(b, M);
-    ct_flexible_mass(b, M);
+    translation_pairs(b, &M);
+    ct_flexible_mass(b, &M);
     for (size_t k = e->nmotion; k < e->nmotion + e->nstate; k++)
-        M[k + e->nu * k] = CT_EX_ONE;
+        *ct_symmetric_at(&M, k, k) = CT_EX_ONE;
     for (size_t i = 0; i < e->nu; i++)
-        for (size_t j = 0; j <= i; j++) {
-            const struct ct_entry entry = {(int)i, (int)j, M[i + e->nu * j]};
+        for (size_t j = 0; j < M.row[i].n && M.row[i].place[j].column <= i; j++) {
+            const struct ct_symmetric_place *p = &M.row[i].place[j];
+            const struct ct_entry entry = {(int)i, (int)p->column, M.value[p->value]};
             if (!ct_ex_is_zero(entry.value))
                 CT_PUSH(b->arena, e->M, e->nM, e->M_cap, entry);
         }

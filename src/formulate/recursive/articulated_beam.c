@@ -28,9 +28,14 @@ static bool is_zero(const ct_ex *v)
     return true;
 }
 
-static ct_ex *entry_of(struct ct_articulated_beam *e, int k, int l)
+static ct_ex entry_of(const struct ct_articulated_beam *e, int k, int l)
 {
-    return k > l ? &e->M[k + e->nall * l] : &e->M[l + e->nall * k];
+    return ct_symmetric_get(&e->M, (size_t)k, (size_t)l);
+}
+
+static void add_entry(struct ct_exs *x, struct ct_articulated_beam *e, int k, int l, ct_ex v)
+{
+    ct_symmetric_add(x, &e->M, (size_t)k, (size_t)l, v);
 }
 
 static int place_of(const struct ct_articulated_beam *e, int speed)
@@ -74,7 +79,7 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
         e->number[k] = -1;
     for (int k = 0; k < e->n; k++)
         e->number[f->elastic[k].u] = k;
-    e->M = CT_NEWN(w->work, ct_ex, n * n + 1);
+    e->M = ct_symmetric_create(w->work, n);
     e->row = CT_NEWN(w->work, ct_ex, n + 1);
     e->a = CT_NEWN(w->work, ct_ex, n + 1);
     e->G = CT_NEWN(w->work, struct ct_spatial_vector, n + 1);
@@ -135,17 +140,17 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
                 int other;
                 const int to = dof_place(e, i, l, &other);
                 if (to >= 0 && to <= at) // the transposed pair is visited separately
-                    add_to(x, entry_of(e, at, to), ct_ex_scale(x, sign * other, s[i].M[j][l]));
+                    add_entry(x, e, at, to, ct_ex_scale(x, sign * other, s[i].M[j][l]));
             }
             if (i > 0)
-                add_to(x, entry_of(e, carried, at), ct_ex_scale(x, sign, s[i].moved[j].e[0]));
+                add_entry(x, e, carried, at, ct_ex_scale(x, sign, s[i].moved[j].e[0]));
         }
         if (i == 0)
             continue; // the first element has no predecessor
         const ct_ex3 along = {{s[i].m, CT_EX_ZERO, CT_EX_ZERO}};
         const ct_ex3 about = {{CT_EX_ZERO, s[i].moment.e[2], ct_ex_neg(x, s[i].moment.e[1])}};
         const ct_ex3 f = ct_ex33_apply(x, A, along), n = ct_ex33_apply(x, A, about);
-        add_to(x, entry_of(e, carried, carried), s[i].m);
+        add_entry(x, e, carried, carried, s[i].m);
         for (int r = 0; r < CT_SPATIAL_SIZE; r++)
             add_to(x, &k->C[carried].e[r], r < 3 ? n.e[r] : f.e[r - 3]);
     }
@@ -161,7 +166,7 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     const struct ct_flexible *f = e->f;
     const struct ct_inertia *I = f->inertia;
     struct ct_articulated_body *k = &w->body[i];
-    const size_t nu = b->eqs->nu;
+    struct ct_symmetric M = ct_symmetric_create(w->work, b->eqs->nu); // by speed
     struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
                            CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
@@ -174,7 +179,7 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     if (e->is_augmented) {
         add_elements(w, k, e, A, &c);
     } else
-        ct_flexible_columns(b, f, &c, w->M);
+        ct_flexible_columns(b, f, &c, &M);
     k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
     k->f = ct_ex3_add(x, k->f, ct_ex33_apply(x, A, F));
     for (int j = 0; j < e->nall; j++) {
@@ -184,12 +189,12 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
             k->C[j].e[r] = ct_ex_add(x, k->C[j].e[r], r < 3 ? swept.e[r] : moved.e[r - 3]);
     }
     for (int j = 0; j < e->n; j++) {
-        const size_t u = (size_t)f->elastic[j].u;
-        e->row[j] = ct_ex_add(x, e->row[j], w->row[u]);
-        for (int l = 0; l <= j; l++) {
-            const size_t v = (size_t)f->elastic[l].u;
-            ct_ex *to = entry_of(e, j, l);
-            *to = ct_ex_add(x, *to, w->M[u > v ? u + nu * v : v + nu * u]);
+        const struct ct_symmetric_row *row = &M.row[f->elastic[j].u];
+        e->row[j] = ct_ex_add(x, e->row[j], w->row[f->elastic[j].u]);
+        for (size_t l = 0; l < row->n; l++) {
+            const int to = e->number[row->place[l].column];
+            if (to <= j)
+                add_entry(x, e, j, to, M.value[row->place[l].value]);
         }
     }
 }
@@ -212,13 +217,10 @@ static void add_screws(struct ct_articulated *w, int i, struct ct_articulated_be
         }
         for (int l = 0; l < e->nall; l++) {
             const ct_ex v = product(x, S[j].e, k->C[l].e);
-            ct_ex *to = entry_of(e, own, l);
-            *to = ct_ex_add(x, *to, l == own ? ct_ex_scale(x, 2, v) : v);
+            add_entry(x, e, own, l, l == own ? ct_ex_scale(x, 2, v) : v);
         }
-        for (int l = 0; l <= j; l++) {
-            ct_ex *to = entry_of(e, own, place_of(e, m->screw[l].speed));
-            *to = ct_ex_add(x, *to, product(x, S[l].e, P[j].e));
-        }
+        for (int l = 0; l <= j; l++)
+            add_entry(x, e, own, place_of(e, m->screw[l].speed), product(x, S[l].e, P[j].e));
     }
     for (int j = 0; j < m->nfree; j++) {
         ct_ex *C = k->C[place_of(e, m->screw[j].speed)].e;
@@ -248,29 +250,50 @@ static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body
 {
     struct ct_exs *x = w->b->x;
     const int speed = e->f->elastic[j].u;
-    const ct_ex D = w->pivot[speed] = *entry_of(e, j, j), g = ct_ex_div(x, CT_EX_ONE, D);
+    const ct_ex D = w->pivot[speed] = entry_of(e, j, j), g = ct_ex_div(x, CT_EX_ONE, D);
     const ct_ex rest = e->row[j];
     e->is_done[j] = true;
     e->order[e->nstep++] = j;
     e->row[j] = ct_ex_mul(x, rest, g);
     for (int r = 0; r < CT_SPATIAL_SIZE; r++)
         e->G[j].e[r] = ct_ex_mul(x, k->C[j].e[r], g);
-    for (int l = e->nall; l-- > 0;) {
-        ct_ex *at = entry_of(e, j, l);
-        if (e->is_done[l] || ct_ex_is_zero(*at))
+    const struct ct_symmetric_row *row = &e->M.row[j];
+    for (size_t at = row->n; at-- > 0;) {
+        const size_t l = row->place[at].column, value = row->place[at].value;
+        if (e->is_done[l] || ct_ex_is_zero(e->M.value[value]))
             continue;
-        const ct_ex a = ct_ex_mul(x, *at, g);
-        for (int i = 0; i <= l; i++) {
-            ct_ex *to = entry_of(e, l, i);
-            if (!e->is_done[i])
-                *to = ct_ex_sub(x, *to, ct_ex_mul(x, a, *entry_of(e, j, i)));
-        }
+        const ct_ex a = ct_ex_mul(x, e->M.value[value], g);
+        for (size_t i = 0; i <= at; i++)
+            if (!e->is_done[row->place[i].column])
+                ct_symmetric_subtract(x, &e->M, l, row->place[i].column,
+                                      ct_ex_mul(x, a, e->M.value[row->place[i].value]));
         for (int r = 0; r < CT_SPATIAL_SIZE; r++)
             k->C[l].e[r] = ct_ex_sub(x, k->C[l].e[r], ct_ex_mul(x, a, k->C[j].e[r]));
         e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a, rest));
-        *at = a;
+        e->M.value[value] = a;
     }
     reduce_body(x, k, &e->G[j], &k->C[j], e->row[j]);
+}
+
+// Columns (n, out), ascending, of two rows that are left to be eliminated.
+static const size_t *columns_of(const struct ct_articulated *w,
+                                const struct ct_articulated_beam *e, const int rows[2],
+                                size_t *n)
+{
+    const struct ct_symmetric_row *p = &e->M.row[rows[0]], *q = &e->M.row[rows[1]];
+    size_t *column = CT_NEWN(w->work, size_t, p->n + q->n + 1);
+    *n = 0;
+    for (size_t i = 0, j = 0; i < p->n || j < q->n;) {
+        const size_t a = i < p->n ? p->place[i].column : SIZE_MAX,
+                     b = j < q->n ? q->place[j].column : SIZE_MAX, c = a < b ? a : b;
+        i += a == c;
+        j += b == c;
+        if (!e->is_done[c]
+            && !(ct_ex_is_zero(ct_symmetric_get(&e->M, (size_t)rows[0], c))
+                 && ct_ex_is_zero(ct_symmetric_get(&e->M, (size_t)rows[1], c))))
+            column[(*n)++] = c;
+    }
+    return column;
 }
 
 // Eliminates a condensed rotation together with its multiplier, block [h p; p q]. It is regular: h
@@ -280,8 +303,8 @@ static void free_follower(struct ct_articulated *w, struct ct_articulated_body *
 {
     struct ct_exs *x = w->b->x;
     const int at[2] = {follower(e, number), multiplier(e, number)};
-    const ct_ex h = *entry_of(e, at[0], at[0]), p = *entry_of(e, at[0], at[1]),
-                q = *entry_of(e, at[1], at[1]),
+    const ct_ex h = entry_of(e, at[0], at[0]), p = entry_of(e, at[0], at[1]),
+                q = entry_of(e, at[1], at[1]),
                 g
                 = ct_ex_div(x, CT_EX_ONE, ct_ex_sub(x, ct_ex_mul(x, h, q), ct_ex_mul(x, p, p)));
     const ct_ex minus = ct_ex_neg(x, ct_ex_mul(x, p, g));
@@ -296,28 +319,27 @@ static void free_follower(struct ct_articulated *w, struct ct_articulated_body *
             e->G[at[i]].e[r] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], k->C[at[0]].e[r]),
                                          ct_ex_mul(x, inverse[i][1], k->C[at[1]].e[r]));
     }
-    *entry_of(e, at[0], at[1]) = CT_EX_ZERO; // both are found together in the back substitution
-    for (int l = e->nall; l-- > 0;) {
-        if (e->is_done[l])
-            continue;
-        ct_ex *const to[2] = {entry_of(e, at[0], l), entry_of(e, at[1], l)};
-        if (ct_ex_is_zero(*to[0]) && ct_ex_is_zero(*to[1]))
-            continue;
+    // both are found together in the back substitution
+    *ct_symmetric_at(&e->M, (size_t)at[0], (size_t)at[1]) = CT_EX_ZERO;
+    size_t n;
+    const size_t *other = columns_of(w, e, at, &n);
+    for (size_t at_l = n; at_l-- > 0;) {
+        const int l = (int)other[at_l];
+        const ct_ex to[2] = {entry_of(e, at[0], l), entry_of(e, at[1], l)};
         ct_ex a[2];
         for (int i = 0; i < 2; i++)
-            a[i] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], *to[0]),
-                             ct_ex_mul(x, inverse[i][1], *to[1]));
+            a[i] = ct_ex_add(x, ct_ex_mul(x, inverse[i][0], to[0]),
+                             ct_ex_mul(x, inverse[i][1], to[1]));
         for (int i = 0; i < 2; i++) {
-            for (int j = 0; j <= l; j++)
-                if (!e->is_done[j])
-                    *entry_of(e, l, j) = ct_ex_sub(x, *entry_of(e, l, j),
-                                                   ct_ex_mul(x, a[i], *entry_of(e, at[i], j)));
+            for (size_t j = 0; j <= at_l; j++)
+                ct_symmetric_subtract(x, &e->M, other[at_l], other[j],
+                                      ct_ex_mul(x, a[i], entry_of(e, at[i], (int)other[j])));
             for (int r = 0; r < CT_SPATIAL_SIZE; r++)
                 k->C[l].e[r] = ct_ex_sub(x, k->C[l].e[r], ct_ex_mul(x, a[i], k->C[at[i]].e[r]));
             e->row[l] = ct_ex_sub(x, e->row[l], ct_ex_mul(x, a[i], rest[i]));
         }
-        *to[0] = a[0];
-        *to[1] = a[1];
+        for (int i = 0; i < 2; i++)
+            *ct_symmetric_at(&e->M, (size_t)at[i], other[at_l]) = a[i];
     }
     for (int i = 0; i < 2; i++)
         reduce_body(x, k, &e->G[at[i]], &k->C[at[i]], e->row[at[i]]);
@@ -352,18 +374,20 @@ static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
     int place[CT_AXIS_DOF + 1];
     ct_ex weight[CT_AXIS_DOF + 1];
     const int n = carried_by(w, e, i, place, weight);
-    const ct_ex own = *entry_of(e, p, p);
+    const ct_ex own = entry_of(e, p, p);
+    const struct ct_symmetric_row *row = &e->M.row[p];
     e->is_done[p] = true;
     e->order[e->nstep++] = p;
     for (int t = 0; t < n; t++) {
-        for (int z = 0; z < e->nall; z++) {
-            const ct_ex v = ct_ex_mul(x, weight[t], *entry_of(e, p, z));
+        for (size_t l = 0; l < row->n; l++) {
+            const int z = (int)row->place[l].column;
+            const ct_ex v = ct_ex_mul(x, weight[t], e->M.value[row->place[l].value]);
             if (!e->is_done[z])
-                add_to(x, entry_of(e, place[t], z), z == place[t] ? ct_ex_scale(x, 2, v) : v);
+                add_entry(x, e, place[t], z, z == place[t] ? ct_ex_scale(x, 2, v) : v);
         }
         const ct_ex heavy = ct_ex_mul(x, weight[t], own);
         for (int u = 0; u <= t; u++)
-            add_to(x, entry_of(e, place[t], place[u]), ct_ex_mul(x, weight[u], heavy));
+            add_entry(x, e, place[t], place[u], ct_ex_mul(x, weight[u], heavy));
         for (int r = 0; r < CT_SPATIAL_SIZE; r++)
             add_to(x, &k->C[place[t]].e[r], ct_ex_mul(x, weight[t], k->C[p].e[r]));
         add_to(x, &e->row[place[t]], ct_ex_mul(x, weight[t], e->row[p]));
@@ -386,9 +410,10 @@ static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
     for (int k = 0; k < e->nfollow; k++) {
         int n;
         const struct ct_condensation_term *law = ct_condensation_law(e->f, k, &n);
-        *entry_of(e, multiplier(e, k), follower(e, k)) = CT_EX_ONE;
+        const size_t row = (size_t)multiplier(e, k);
+        *ct_symmetric_at(&e->M, row, (size_t)follower(e, k)) = CT_EX_ONE;
         for (int i = 0; i < n; i++)
-            *entry_of(e, multiplier(e, k), freedom_place(e, law[i].freedom))
+            *ct_symmetric_at(&e->M, row, (size_t)freedom_place(e, law[i].freedom))
                 = ct_ex_const(x, law[i].by);
     }
 }
@@ -401,8 +426,8 @@ static bool feels_followers(struct ct_articulated_beam *e, const struct ct_spati
         const int at = follower(e, k);
         if (e->is_augmented || !ct_ex_is_zero(e->row[at]) || !is_zero(C[at].e))
             return true;
-        for (int l = 0; l < e->nall; l++)
-            if (!ct_ex_is_zero(*entry_of(e, at, l)))
+        for (size_t i = 0; i < e->M.row[at].n; i++)
+            if (!ct_ex_is_zero(e->M.value[e->M.row[at].place[i].value]))
                 return true;
     }
     return false;
@@ -478,10 +503,14 @@ static void find_accelerations(struct ct_articulated *w, const struct ct_articul
     for (int step = e->nstep; step-- > 0;) {
         const int j = e->order[step];
         if (!is_start(e, j)) {
+            const struct ct_symmetric_row *row = &e->M.row[j];
             e->a[j] = ct_ex_sub(x, e->row[j], product(x, e->G[j].e, A));
-            for (int l = 0; l < e->nall; l++)
+            for (size_t i = 0; i < row->n; i++) {
+                const size_t l = row->place[i].column;
                 if (e->is_done[l])
-                    e->a[j] = ct_ex_sub(x, e->a[j], ct_ex_mul(x, *entry_of(e, j, l), e->a[l]));
+                    e->a[j] = ct_ex_sub(x, e->a[j],
+                                        ct_ex_mul(x, e->M.value[row->place[i].value], e->a[l]));
+            }
             if (j < e->n)
                 out[e->f->elastic[j].u] = e->a[j];
         } else {

@@ -47,9 +47,9 @@ struct ct_articulated_beam {
     // follows: condensed rotations are eliminated with their multipliers; else they are computed
     // afterwards
     bool follows;
-    int *number; // by speed: its index, or -1
-    ct_ex *M;    // nall x nall, lower triangle; after elimination divided by the pivot
-    ct_ex *row;  // right side; after elimination divided by the pivot
+    int *number;                 // by speed: its index, or -1
+    struct ct_symmetric M;       // between unknowns; after elimination divided by the pivot
+    ct_ex *row;                  // right side; after elimination divided by the pivot
     struct ct_spatial_vector *G; // C over the pivot
     ct_ex *a;                    // e''
     int *order, nstep;           // of elimination
@@ -64,7 +64,7 @@ struct ct_articulated {
     ct_ex *pivot;
     struct ct_articulated_body *body;
     struct ct_articulated_beam *elastic; // by beam
-    ct_ex *M, *row; // of the beams alone, by speed: lower triangle (nu x nu), (nu)
+    ct_ex *row;                          // of the beams alone, by speed
 };
 
 /// Entry (i, j) of a body's matrix, its rows n, f and columns al, a.

@@ -246,10 +246,7 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
     w.elastic = CT_NEWN(work, struct ct_articulated_beam, s->nbeam + 1);
     for (size_t i = 0; i < s->nbeam; i++)
         ct_articulated_beam_start(&w, i);
-    if (s->nbeam) {
-        w.M = CT_NEWN(work, ct_ex, b->eqs->nu * b->eqs->nu + 1);
-        w.row = CT_NEWN(work, ct_ex, b->eqs->nu + 1);
-    }
+    w.row = CT_NEWN(work, ct_ex, b->eqs->nu + 1);
     for (size_t i = s->n; i-- > 1;) {
         const struct ct_member *m = &s->member[i];
         add_own(&w, (int)i);

@@ -178,10 +178,9 @@ static void gather(struct ct_build *b, const struct ct_member *m, const struct c
 }
 
 static void column(struct ct_build *b, const struct ct_members *s, const struct composite *own,
-                   int i, const struct ct_screw *f, ct_ex *M)
+                   int i, const struct ct_screw *f, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
-    const size_t n = b->eqs->nu;
     struct wrench w;
     w.n = ct_ex3_add(x, ct_ex33_apply(x, &own->J, f->rotation),
                      ct_ex3_cross(x, own->h, f->translation));
@@ -190,14 +189,14 @@ static void column(struct ct_build *b, const struct ct_members *s, const struct 
     for (; i; i = s->member[i].parent) {
         const struct ct_member *m = &s->member[i];
         for (int k = 0; k < m->nfree; k++) {
-            const size_t r = (size_t)f->speed, c = (size_t)m->screw[k].speed;
-            M[r > c ? r + n * c : c + n * r] = power(b, &m->screw[k], &w);
+            *ct_symmetric_at(M, (size_t)f->speed, (size_t)m->screw[k].speed)
+                = power(b, &m->screw[k], &w);
         }
         w = hand_inwards(b, m, w);
     }
 }
 
-static void find_masses(struct ct_build *b, const struct ct_members *s, ct_ex *M)
+static void find_masses(struct ct_build *b, const struct ct_members *s, struct ct_symmetric *M)
 {
     struct composite *body = CT_NEWN(b->arena, struct composite, s->n);
     for (size_t i = s->n; i-- > 1;) {
@@ -212,12 +211,12 @@ static void find_masses(struct ct_build *b, const struct ct_members *s, ct_ex *M
 }
 
 void ct_composite_derive(struct ct_build *b, const struct ct_members *s, const ct_ex *effort,
-                         ct_ex *M, ct_ex *Q)
+                         struct ct_symmetric *M, ct_ex *Q)
 {
     find_masses(b, s, M);
     find_efforts(b, s, CT_BIAS, Q);
     for (size_t k = 0; k < b->eqs->nu; k++)
         Q[k] = ct_ex_sub(b->x, effort[k], Q[k]);
     for (size_t k = b->eqs->nmotion; k < b->eqs->nu; k++)
-        M[k + b->eqs->nu * k] = CT_EX_ONE;
+        *ct_symmetric_at(M, k, k) = CT_EX_ONE;
 }

@@ -31,13 +31,20 @@ struct pivot {
     ct_ex value, reciprocal;
 };
 
-static struct pivot take_pivot(struct ct_exs *x, const ct_ex *H, size_t n, size_t k)
+// Entries of row k left of the diagonal that are not zero.
+static size_t nonzeros_below(const struct ct_symmetric *H, size_t k)
 {
-    struct pivot p = {H[k + n * k], CT_EX_ZERO};
-    size_t below = 0;
-    for (size_t i = 0; i < k; i++)
-        below += !ct_ex_is_zero(H[k + n * i]);
-    if (below > 1)
+    const struct ct_symmetric_place *p = H->row[k].place;
+    size_t n = 0;
+    for (size_t i = 0; i < H->row[k].n && p[i].column < k; i++)
+        n += !ct_ex_is_zero(H->value[p[i].value]);
+    return n;
+}
+
+static struct pivot take_pivot(struct ct_exs *x, const struct ct_symmetric *H, size_t k)
+{
+    struct pivot p = {ct_symmetric_get(H, k, k), CT_EX_ZERO};
+    if (nonzeros_below(H, k) > 1)
         p.reciprocal = ct_ex_div(x, CT_EX_ONE, p.value);
     return p;
 }
@@ -50,9 +57,10 @@ static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
 
 // M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards,
 // so that this order causes no fill-in in a branched chain, and structural zeros cost nothing. M is
-// positive definite, so that no pivoting is needed. H: lower triangle of M. Source: Featherstone
+// positive definite, so that no pivoting is needed. H: M. Source: Featherstone
 // (2008), key featherstone2008, 8.5.
-static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex *pivots)
+static ct_ex *solve_symbolic(struct ct_build *b, struct ct_symmetric *H, const ct_ex *Q,
+                             ct_ex *pivots)
 {
     struct ct_exs *x = b->x;
     const size_t n = b->eqs->nu;
@@ -60,39 +68,44 @@ static ct_ex *solve_symbolic(struct ct_build *b, ct_ex *H, const ct_ex *Q, ct_ex
     ct_ex *u = CT_NEWN(b->arena, ct_ex, n + 1);
     // H becomes D on the diagonal and L (unit, lower) below
     for (size_t k = n; k-- > 0;) {
-        pivot[k] = take_pivot(x, H, n, k);
+        pivot[k] = take_pivot(x, H, k);
         pivots[k] = pivot[k].value;
-        for (size_t i = k; i-- > 0;) {
-            if (ct_ex_is_zero(H[k + n * i]))
+        const struct ct_symmetric_place *p = H->row[k].place;
+        for (size_t i = H->row[k].n; i-- > 0;) {
+            const ct_ex v = H->value[p[i].value];
+            if (p[i].column >= k || ct_ex_is_zero(v))
                 continue;
-            const ct_ex a = divide(x, H[k + n * i], &pivot[k]);
+            const ct_ex a = divide(x, v, &pivot[k]);
             for (size_t j = 0; j <= i; j++)
-                H[i + n * j] = ct_ex_sub(x, H[i + n * j], ct_ex_mul(x, a, H[k + n * j]));
-            H[k + n * i] = a;
+                ct_symmetric_subtract(x, H, p[i].column, p[j].column,
+                                      ct_ex_mul(x, a, H->value[p[j].value]));
+            H->value[p[i].value] = a;
         }
     }
     for (size_t k = 0; k < n; k++)
         u[k] = Q[k];
     for (size_t k = n; k-- > 0;) // L' z = Q
-        for (size_t i = 0; i < k; i++)
-            u[i] = ct_ex_sub(x, u[i], ct_ex_mul(x, H[k + n * i], u[k]));
+        for (size_t i = 0; i < H->row[k].n && H->row[k].place[i].column < k; i++) {
+            const struct ct_symmetric_place p = H->row[k].place[i];
+            u[p.column] = ct_ex_sub(x, u[p.column], ct_ex_mul(x, H->value[p.value], u[k]));
+        }
     for (size_t k = 0; k < n; k++) { // D y = z, L u = y
         u[k] = divide(x, u[k], &pivot[k]);
-        for (size_t i = 0; i < k; i++)
-            u[k] = ct_ex_sub(x, u[k], ct_ex_mul(x, H[k + n * i], u[i]));
+        for (size_t i = 0; i < H->row[k].n && H->row[k].place[i].column < k; i++) {
+            const struct ct_symmetric_place p = H->row[k].place[i];
+            u[k] = ct_ex_sub(x, u[k], ct_ex_mul(x, H->value[p.value], u[p.column]));
+        }
     }
     return u;
 }
 
-// Operation count of the symbolic solution from the nonzeros of the lower triangle H; d: nonzeros
-// in the row of pivot k.
-static double symbolic_cost(const ct_ex *H, size_t n)
+// Operation count of the symbolic solution from the nonzeros of H; d: nonzeros in the row of pivot
+// k.
+static double symbolic_cost(const struct ct_symmetric *H)
 {
     double cost = 0;
-    for (size_t k = 0; k < n; k++) {
-        double d = 0;
-        for (size_t i = 0; i < k; i++)
-            d += !ct_ex_is_zero(H[k + n * i]);
+    for (size_t k = 0; k < H->n; k++) {
+        const double d = (double)nonzeros_below(H, k);
         cost += d * d + 6 * d + 5;
     }
     return cost;
@@ -131,17 +144,16 @@ static double least_matrix_cost(struct ct_build *b, const struct ct_members *s)
     return fmin(cost, dense_cost((double)n)) + 2 * nonzeros;
 }
 
-static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
+static struct trial try_matrix(struct ct_build *b, struct ct_symmetric *H, const ct_ex *Q)
 {
     const size_t n = b->eqs->nu;
     ct_ex *all = NULL; // M and Q
     size_t k = 0, cap = 0;
-    for (size_t i = 0; i < n * n; i++)
-        if (!ct_ex_is_zero(H[i]))
-            CT_PUSH(b->ctx->scratch, all, k, cap, H[i]);
+    for (size_t i = 0; i < H->nvalue; i++)
+        CT_PUSH(b->ctx->scratch, all, k, cap, H->value[i]);
     for (size_t i = 0; i < n; i++)
         CT_PUSH(b->ctx->scratch, all, k, cap, Q[i]);
-    const double unrolled = symbolic_cost(H, n), dense = dense_cost((double)n);
+    const double unrolled = symbolic_cost(H), dense = dense_cost((double)n);
     // there are at least as many nodes as operations: count operations only for very many nodes
     const double most = (double)b->x->nnode + unrolled;
     const bool is_short = unrolled < dense && most < longest_program;
@@ -158,24 +170,23 @@ static struct trial try_matrix(struct ct_build *b, ct_ex *H, const ct_ex *Q)
 static struct trial try_cutsets(struct ct_build *b)
 {
     const struct ct_equations *e = b->eqs;
-    const size_t n = e->nu;
     struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
     ct_dynamics_derive(b);
-    ct_ex *H = CT_NEWN(work, ct_ex, n * n + 1);
+    struct ct_symmetric H = ct_symmetric_create(work, e->nu);
     for (size_t i = 0; i < e->nM; i++)
-        H[(size_t)e->M[i].row + n * (size_t)e->M[i].column] = e->M[i].value;
-    const struct trial t = try_matrix(b, H, e->Q);
+        *ct_symmetric_at(&H, (size_t)e->M[i].row, (size_t)e->M[i].column) = e->M[i].value;
+    const struct trial t = try_matrix(b, &H, e->Q);
     ct_arena_destroy(work);
     return t;
 }
 
 static struct trial try_composite(struct ct_build *b, const struct ct_members *s)
 {
-    const size_t n = b->eqs->nu;
     struct ct_arena *work = ct_arena_create_under(b->ctx->scratch);
-    ct_ex *H = CT_NEWN(work, ct_ex, n * n + 1), *Q = CT_NEWN(b->arena, ct_ex, n + 1);
-    ct_composite_derive(b, s, b->loads->effort, H, Q);
-    struct trial t = try_matrix(b, H, Q);
+    struct ct_symmetric H = ct_symmetric_create(work, b->eqs->nu);
+    ct_ex *Q = CT_NEWN(b->arena, ct_ex, b->eqs->nu + 1);
+    ct_composite_derive(b, s, b->loads->effort, &H, Q);
+    struct trial t = try_matrix(b, &H, Q);
     ct_arena_destroy(work);
     if (!t.solution)
         t.cost = INFINITY; // a solver call uses M and Q of the equations
