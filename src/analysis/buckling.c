@@ -23,19 +23,11 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: n eps for n up to some ten thousand coordinates.
-// relative to the largest eigenvalue: below it a direction has no stiffness
-static const double none = 1e-11;
-// Derived: the slope of K is a difference quotient, which has half the digits of K.
-static const double symmetric = 1e-8; // relative to the largest entry: limit of asymmetry
-// Chosen: 450 eps, above the round-off that the iteration leaves.
-static const double refined = 1e-13; // relative to the load factor: refinement has converged
-// The second load level at which K is evaluated to find its slope, relative to the estimate of
-// the first load factor; for dense and for sparse stiffness. The slope is a difference
-// quotient. Its relative error from round-off of K is cond(K) eps at the first factor, 1e-4 for
-// 1000 elements.
-// Chosen: a smaller step has less curvature and more round-off.
-static const double small_load = 1e-2, half_load = 0.5;
+// The second load level at which K is evaluated to find its slope, relative to the estimate of the
+// first load factor. The slope is a difference quotient, with an error of cond(K) eps/small_load by
+// round-off and of the order of small_load by curvature. Derived: both are equal at the square root
+// of cond(K) eps, 1e-4 for 1000 elements.
+static const double small_load = 1e-2;
 // Largest slope of a beam axis [rad] at which the search continues. The beam model shortens the
 // axis by half the square of the slope, which is half of its length at a slope of 1.
 // Definition: of the second-order shortening of the beam axis.
@@ -45,8 +37,9 @@ static const double straight = 1e-8; // [rad] below it the axis is straight but 
 // At a limit point the eigenvalue falls to zero with the square root of the remaining path. If
 // the eigenvalue at the end of the path is larger than this fraction of its value one step
 // before, Newton's method has left the path and the end is no limit point.
-// Chosen: by trial.
-static const double folded = 1e-2;
+// Derived: Newton's method converges to within sqrt(eps) of a limit point, where the eigenvalue has
+// fallen to eps^(1/4). The geometric mean of that and 1 is eps^(1/8).
+static const double folded = 1.1e-2;
 // Derived: first_step, 1/16, beyond the estimate.
 static const double behind = 1 + 1. / 16; // of the last estimate: where the search may end
 // Relative to the load factor: a correction below this that is not less than half the last one
@@ -87,6 +80,7 @@ struct search {
     size_t nfound, cap;
     double searched;                // largest load factor that the search has reached
     bool is_large;                  // the stiffness is sparse
+    bool has_potential;             // the loads have one: the stiffness is symmetric
     struct ct_point *free, *loaded; // sparse stiffness without and with load
     // shapes of the linear problem, nu x (count + 1); workspace, nu + nrow each
     double *shape, *b, *y, *K0x;
@@ -95,33 +89,19 @@ struct search {
 
 // A point on the path of equilibria.
 struct place {
-    double factor, *y, *lam, *memory;
+    double factor;
+    struct ct_kept_state state;
 };
 
-static struct place place_create(struct search *s)
+static struct place place_create(const struct ct_linear *l)
 {
-    const struct ct_evaluator *m = s->l->m;
-    return (struct place){.y = CT_NEWN(s->a, double, m->nq + m->nu + 1),
-                          .lam = CT_NEWN(s->a, double, m->nrow + 1),
-                          .memory = CT_NEWN(s->a, double, m->e->nmemory + 1)};
+    return (struct place){.state = ct_kept_state_create(l)};
 }
 
 static void keep(const struct ct_linear *l, size_t at, struct place *p)
 {
-    const struct ct_evaluator *m = l->m;
-    p->factor = m->input[at];
-    memcpy(p->y, l->y, (m->nq + m->nu + 1) * sizeof *p->y);
-    memcpy(p->lam, l->lam, m->nrow * sizeof *p->lam);
-    memcpy(p->memory, m->input + m->at_memory, m->e->nmemory * sizeof *p->memory);
-}
-
-static void copy_place(const struct search *s, struct place *to, const struct place *from)
-{
-    const struct ct_evaluator *m = s->l->m;
-    to->factor = from->factor;
-    memcpy(to->y, from->y, (m->nq + m->nu + 1) * sizeof *to->y);
-    memcpy(to->lam, from->lam, m->nrow * sizeof *to->lam);
-    memcpy(to->memory, from->memory, m->e->nmemory * sizeof *to->memory);
+    p->factor = l->m->input[at];
+    ct_linear_keep(l, &p->state);
 }
 
 static void set_factor(const struct ct_linear *l, size_t at, double factor)
@@ -132,18 +112,14 @@ static void set_factor(const struct ct_linear *l, size_t at, double factor)
 
 static void go_back(struct ct_linear *l, size_t at, const struct place *p)
 {
-    const struct ct_evaluator *m = l->m;
-    memcpy(l->y, p->y, (m->nq + m->nu + 1) * sizeof *p->y);
-    memcpy(l->lam, p->lam, m->nrow * sizeof *p->lam);
-    memcpy(m->input + m->at_memory, p->memory, m->e->nmemory * sizeof *p->memory);
+    ct_linear_go_back(l, &p->state);
     set_factor(l, at, p->factor);
 }
 
 bool ct_buckling_load(struct ct_linear *l, size_t at, double factor)
 {
     struct ct_equilibrium_result result;
-    struct search s = {.l = l, .a = l->arena};
-    struct place last = place_create(&s);
+    struct place last = place_create(l);
     keep(l, at, &last);
     int tries = 0;
     for (int i = 0; i < MOST_HALVINGS && tries < MOST_TRIES && last.factor != factor; tries++) {
@@ -196,15 +172,6 @@ static void restrict_to(struct search *s, double *out, const double *K)
     ct_matrix_multiply_transposed(out, s->P, s->B, s->n, s->f, s->n);
 }
 
-static bool is_symmetric(const double *K, int n)
-{
-    double worst = 0;
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < j; i++)
-            worst = fmax(worst, fabs(K[i + n * j] - K[j + n * i]));
-    return worst <= symmetric * ct_vector_largest(K, (size_t)n * (size_t)n);
-}
-
 // Finds a basis P of the directions that have stiffness at some load. Rigid-body motions, which
 // have none at any load, are left out.
 static void find_directions(struct search *s)
@@ -220,8 +187,8 @@ static void find_directions(struct search *s)
     s->n = 0;
     for (int k = 0; k < f; k++) {
         ct_matrix_multiply(v, s->K1, H + f * k, f, f, 1);
-        if (fabs(s->value[k]) > none * stiffest
-            || ct_vector_largest(v, (size_t)f) > none * change)
+        if (fabs(s->value[k]) > ct_roundoff(f) * stiffest
+            || ct_vector_largest(v, (size_t)f) > ct_roundoff(f) * change)
             memcpy(s->P + f * s->n++, H + f * k, (size_t)f * sizeof *s->P);
     }
 }
@@ -256,7 +223,7 @@ static int linear_factors(struct search *s, double *c)
     for (int k = 0; k < n; k++)
         size = fmax(size, hypot(re[k], im[k]));
     for (int k = 0; k < n; k++)
-        if (fabs(im[k]) <= sqrt(DBL_EPSILON) * size && re[k] < -none * size)
+        if (fabs(im[k]) <= sqrt(DBL_EPSILON) * size && re[k] < -ct_roundoff(n) * size)
             c[found++] = -1 / re[k];
     ct_sort(s->a, c, (size_t)found, sizeof *c, ascending, NULL);
     return found;
@@ -269,6 +236,7 @@ static bool slope(struct search *s, const struct place *start, double c)
     go_back(s->l, s->at, start);
     if (!ct_buckling_load(s->l, s->at, c) || !stiffness(s, s->K1))
         return false;
+    s->has_potential &= ct_linear_is_symmetric(s->a, s->K1, s->f);
     for (size_t i = 0; i < ff; i++)
         s->K1[i] = (s->K1[i] - s->K0[i]) / c;
     find_directions(s);
@@ -308,9 +276,9 @@ static int estimate(struct search *s, const struct place *start, double *c)
     int n = 0;
     for (int i = 0; i < MOST_LEVELS && !factors(s, start, level, c, &n); i++)
         level /= 4;
-    const double second = n ? (s->is_large ? half_load : small_load) * c[0] : 0;
+    const double second = n ? small_load * c[0] : 0;
     int again = 0;
-    if (n && (s->is_large || level > second) && factors(s, start, second, c, &again))
+    if (n && level > second && factors(s, start, second, c, &again))
         n = again;
     return n;
 }
@@ -353,7 +321,7 @@ static double refine(struct search *s, struct place *a, double va, double b, dou
                      bool reached, int k, struct ct_buckling_factor *out)
 {
     double low = a->factor;
-    for (int i = 0; i < MOST_REFINE && b - low > refined * b; i++) {
+    for (int i = 0; i < MOST_REFINE && b > low; i++) {
         double c = reached ? (low * vb - b * va) / (vb - va) : low + (b - low) / 2, v;
         if (!(c > low && c < b))
             c = low + (b - low) / 2;
@@ -424,7 +392,8 @@ static bool is_gentle(const double *before, const double *after, int next, int n
 // that the factors of the path may be far from the linear ones.
 static bool march(struct search *s, const struct place *start, double step, double last)
 {
-    struct place here = place_create(s), next = place_create(s), first = place_create(s);
+    struct place here = place_create(s->l), next = place_create(s->l),
+                 first = place_create(s->l);
     go_back(s->l, s->at, start);
     if ((!s->is_large && !ct_linear_rest(s->l)) || !eigenvalues(s))
         return false;
@@ -461,7 +430,8 @@ static bool march(struct search *s, const struct place *start, double step, doub
         const int now = reached ? count_negative(s) : negative + 1;
         for (int k = negative; k < now && s->nfound < s->count; k++) {
             struct ct_buckling_factor f = {0};
-            copy_place(s, &first, &here);
+            go_back(s->l, s->at, &here);
+            keep(s->l, s->at, &first);
             const double left
                 = refine(s, &first, before[k], c, reached ? after[k] : 0, reached, k, &f);
             is_lost = f.is_limit && left > folded * before[k];
@@ -476,7 +446,9 @@ static bool march(struct search *s, const struct place *start, double step, doub
         negative = now;
         s->searched = c;
         is_bent = steep > straight;
-        copy_place(s, &here, &next);
+        const struct place spare = here;
+        here = next;
+        next = spare;
         memcpy(before, after, (size_t)s->n * sizeof *before);
         h = fmin(2 * h, fmax(here.factor, step));
     }
@@ -528,7 +500,7 @@ static bool refine_linear(struct search *s, double linear, double *x,
             return false;
         const bool is_singular = !step(s, c, x, &d);
         c += is_singular ? 0 : d;
-        if (is_singular || fabs(d) <= refined * c
+        if (is_singular || fabs(d) <= DBL_EPSILON * c
             || (fabs(d) <= nearly * c && fabs(d) > last / 2)) {
             *out = (struct ct_buckling_factor){.factor = c, .linear = linear, .is_exact = true};
             return fabs(c - linear) <= in_proportion * linear;
@@ -597,10 +569,9 @@ static bool no_buckling(const struct search *s)
     return ct_error(s->l->ctx, (struct ct_mark){.file = s->l->m->model->file}, CT_E_NO_BUCKLING,
                     "the load does not lead to buckling: no positive factor makes the "
                     "stiffness vanish%s",
-                    s->is_large || is_symmetric(s->K1, s->f)
-                        ? ""
-                        : "; it has no potential and may lead to flutter: "
-                          "see the modes of the loaded model");
+                    s->has_potential ? ""
+                                     : "; it has no potential and may lead to flutter: "
+                                       "see the modes of the loaded model");
 }
 
 static bool none_on_path(const struct search *s)
@@ -626,7 +597,12 @@ static bool is_stable(struct search *s)
 bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
                       struct ct_buckling_list *list, bool *applies)
 {
-    struct search s = {.l = l, .a = l->arena, .at = at, .count = count, .is_large = !l->M};
+    struct search s = {.l = l,
+                       .a = l->arena,
+                       .at = at,
+                       .count = count,
+                       .is_large = !l->M,
+                       .has_potential = true};
     s.f = s.is_large ? l->nu - l->nrow : l->nfree;
     *list = (struct ct_buckling_list){.has_potential = true};
     *applies = !s.is_large || is_stable(&s);
@@ -634,7 +610,7 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
         return true;
     if (!s.f)
         return no_buckling(&s);
-    struct place start = place_create(&s);
+    struct place start = place_create(l);
     double *c = CT_NEWN(s.a, double, (s.is_large ? count : (size_t)s.f) + 1);
     keep(l, at, &start);
     if (s.is_large) {
@@ -644,13 +620,13 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
     } else {
         reserve_dense(&s);
         stiffness(&s, s.K0);
+        s.has_potential = ct_linear_is_symmetric(s.a, s.K0, s.f);
     }
     const int n = estimate(&s, &start, c);
     *applies = !s.is_large || n; // without eigenvalues the load may have no potential
     if (!n)
         return *applies ? no_buckling(&s) : true;
-    if (!s.is_large)
-        list->has_potential = is_symmetric(s.K0, s.f) && is_symmetric(s.K1, s.f);
+    list->has_potential = s.has_potential;
     const bool is_refined = s.is_large && refine_all(&s, &start, c, n);
     if (!is_refined && list->has_potential
         && !march(&s, &start, first_step * c[0], behind * c[n - 1]))

@@ -43,13 +43,9 @@ static bool judge_large(struct ct_equilibrium *q, bool *applies)
         q->growth = fmax(q->growth, mode[i].re);
         if (w2 >= q->stiffness)
             continue;
-        int most = 0;
-        for (int k = 0; k < q->at.l->nu; k++)
-            // Chosen: entries this close are equal, and the first one is taken.
-            if (fabs(mode[i].shape[k]) > fabs(mode[i].shape[most]) * (1 + 1e-9))
-                most = k;
         q->stiffness = w2;
-        q->softest = ct_linear_coordinate(q->at.e, a, most);
+        q->softest = ct_linear_coordinate(
+            q->at.e, a, ct_linear_largest_entry(mode[i].shape, NULL, q->at.l->nu));
     }
     return true;
 }
@@ -64,12 +60,9 @@ static bool judge(struct ct_equilibrium *q)
     double *y = CT_NEWN(a, double, l->nfree + 1), *dq = CT_NEWN(a, double, l->nu + 1);
     q->stiffness = q->at.e->nstate ? INFINITY : ct_stiffness_least(a, l, y);
     ct_linear_expand(l, dq, y);
-    int most = 0;
-    for (int k = 0; k < l->nu; k++)
-        // Chosen: entries this close are equal, and the first one is taken.
-        if (fabs(dq[k]) > fabs(dq[most]) * (1 + 1e-9))
-            most = k;
-    q->softest = l->nu ? ct_linear_coordinate(q->at.e, a, most) : "";
+    q->softest = l->nu
+                   ? ct_linear_coordinate(q->at.e, a, ct_linear_largest_entry(dq, NULL, l->nu))
+                   : "";
     q->growth = -INFINITY;
     if (!l->nfree)
         return true;

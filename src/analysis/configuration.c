@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Chosen: 4500 eps, the round-off of speeds that the constraint rows ask for.
-static const double still = 1e-12; // [m/s, rad/s] a slower speed is zero
-
 // ---- equations ------------------------------------------------------------------------------
 
 static const char **branches(struct ct_arena *a, const struct ct_equations *e,
@@ -104,7 +101,7 @@ static bool are_steady(const struct ct_equations *e, const struct ct_linear *l)
         if (!is_steady(e, l, i))
             return false;
     for (size_t k = 0; k < e->nmotion; k++)
-        if (fabs(l->y[l->m->nq + k]) > still) // the constraint rows require a speed
+        if (l->y[l->m->nq + k] != 0) // the constraint rows require a speed
             return false;
     return true;
 }

@@ -15,40 +15,12 @@
 #include <math.h>
 #include <string.h>
 
-// A direction has no mass if its eigenvalue of the scaled mass matrix is below this fraction of
-// the largest.
-// Derived: n eps, n up to some thousand.
-static const double massless = 1e-12;
-// An entry is zero if it is this small relative to the largest, per term of its sum.
-// Derived: round-off of products of four factors.
-static const double roundoff = 16 * DBL_EPSILON;
-// Derived: second derivatives of large beams lose six digits.
-static const double symmetric
-    = 1e-9; // relative: derivatives of a potential are symmetric but for round-off
-
 // out (k x k) = V' A V, V (n x k)
 static void congruence(double *out, const double *V, const double *A, double *work, int n,
                        int k)
 {
     ct_matrix_multiply(work, A, V, n, n, k);
     ct_matrix_multiply_transposed(out, V, work, k, n, k);
-}
-
-// Each pair of entries is compared with the largest entries of their columns: a load without
-// potential may be small compared with stiff elements elsewhere.
-static bool is_symmetric(struct ct_arena *a, const double *A, int n)
-{
-    double *size = CT_NEWN(a, double, n + 1), most = 0;
-    for (int j = 0; j < n; j++) {
-        size[j] = sqrt(ct_vector_largest(A + (size_t)n * (size_t)j, (size_t)n));
-        most = fmax(most, size[j] * size[j]);
-    }
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < j; i++)
-            if (fabs(A[i + n * j] - A[j + n * i])
-                > symmetric * size[i] * size[j] + roundoff * n * most)
-                return false;
-    return true;
 }
 
 static void symmetrise(double *A, int n)
@@ -85,7 +57,7 @@ static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct ba
     s->V = CT_NEWN(a, double, n *n + 1);
     s->N = CT_NEWN(a, double, n *n + 1);
     for (int k = 0; k < n; k++) {
-        const bool moves = value[k] > massless * value[n - 1];
+        const bool moves = value[k] > ct_roundoff(n) * value[n - 1];
         double *out = moves ? s->V + n * s->k++ : s->N + n * s->n0++;
         for (int i = 0; i < n; i++)
             out[i] = scale[i] * M[i + n * k] / (moves ? sqrt(value[k]) : 1);
@@ -94,7 +66,7 @@ static void split_by_mass(struct ct_arena *a, const double *Mr, int n, struct ba
     for (int i = 0; i < n && s->k; i++)
         s->error[i]
             // error of an eigenvector: round-off over the gap to other eigenvalues
-            *= roundoff * n * value[n - 1] / value[s->n0];
+            *= ct_roundoff(n) * value[n - 1] / value[s->n0];
 }
 
 // Bounds the errors of N' K B (n0 x m, with B n x m) that come from round-off, from the errors
@@ -112,7 +84,7 @@ static void bound_errors(double *bound, const struct basis *s, const double *K, 
                 off += is_same ? fabs(K[p + n * q]) * s->error[q] : 0;
             }
             for (int i = 0; i < n0; i++)
-                bound[i + n0 * j] += fabs(s->N[p + n * i]) * (roundoff * n * exact + off)
+                bound[i + n0 * j] += fabs(s->N[p + n * i]) * (ct_roundoff(n) * exact + off)
                                    + s->error[p] * (exact + off);
         }
 }
@@ -196,7 +168,7 @@ static void solve_symmetric(struct ct_arena *a, const double *Mr, const double *
 static void clear_zeros(struct basis *s)
 {
     const double zero
-        = roundoff * s->n * fmax(fabs(s->w2[s->k ? s->k - 1 : 0]), fabs(s->w2[0]));
+        = ct_roundoff(s->n) * fmax(fabs(s->w2[s->k ? s->k - 1 : 0]), fabs(s->w2[0]));
     for (int j = 0; j < s->k; j++)
         if (fabs(s->w2[j]) <= zero)
             s->w2[j] = 0;
@@ -211,7 +183,7 @@ static bool factor_stiffness(double *L, const double *K, int n)
     if (!ct_cholesky(L, n, n))
         return false;
     for (int i = 0; i < n; i++)
-        if (!(L[i + n * i] * L[i + n * i] > roundoff * n * K[i + n * i]))
+        if (!(L[i + n * i] * L[i + n * i] > ct_roundoff(n) * K[i + n * i]))
             return false;
     return true;
 }
@@ -272,17 +244,8 @@ struct list {
 // Scales a shape so that its largest entry is 1.
 static void normalise(double *shape, int nu)
 {
-    int most = 0;
-    double size = 0;
-    for (int i = 0; i < nu; i++) {
-        const double here = hypot(shape[i], shape[i + nu]);
-        // Chosen: entries this close are equal; the first one is taken, whatever the round-off.
-        if (here > size * (1 + 1e-9)) {
-            size = here;
-            most = i;
-        }
-    }
-    const double re = shape[most], im = shape[most + nu];
+    const int most = ct_linear_largest_entry(shape, shape + nu, nu);
+    const double re = shape[most], im = shape[most + nu], size = hypot(re, im);
     for (int i = 0; i < nu && size > 0; i++) {
         const double x = shape[i], y = shape[i + nu];
         shape[i] = (x * re + y * im) / (size * size);
@@ -317,7 +280,7 @@ double ct_modes_roundoff(const struct ct_motion_mode *mode, size_t nmode, double
     *fastest = 0;
     for (size_t i = 0; i < nmode; i++)
         *fastest = fmax(*fastest, hypot(mode[i].re, mode[i].im));
-    return roundoff * 2 * (double)nmode * *fastest; // as for zeros of 2 nmode states
+    return ct_roundoff(2 * (int)nmode) * *fastest; // as for zeros of 2 nmode states
 }
 
 void ct_modes_sort(struct ct_arena *a, struct ct_motion_mode *mode, size_t nmode)
@@ -415,7 +378,7 @@ static bool add_general(struct list *list, double *A, const double *T, int n, do
 static void clear_roundoff(double *A, int n, double size)
 {
     for (int i = 0; i < n * n; i++)
-        if (fabs(A[i]) <= roundoff * n * size)
+        if (fabs(A[i]) <= ct_roundoff(n) * size)
             A[i] = 0;
 }
 
@@ -425,7 +388,7 @@ static int count_free(const struct ct_linear *l, int f)
     const double size = ct_vector_largest(l->Kr, (size_t)f * (size_t)f);
     int n = 0;
     for (int i = 0; i < f; i++)
-        n += ct_vector_largest(l->Kr + f * i, (size_t)f) <= roundoff * size
+        n += ct_vector_largest(l->Kr + f * i, (size_t)f) <= ct_roundoff(f) * size
           && ct_vector_largest(l->G + f * i, (size_t)f) == 0;
     return n;
 }
@@ -437,7 +400,7 @@ static int count_steady(struct ct_arena *a, const double *A, int n)
            *work = CT_NEWN(a, double, ct_qr_pivot_work(n, n));
     int *column = CT_NEWN(a, int, n + 1);
     memcpy(R, A, (size_t)n * (size_t)n * sizeof *R);
-    return n - ct_qr_pivot(R, column, tau, n, n, n, roundoff * n, work);
+    return n - ct_qr_pivot(R, column, tau, n, n, n, ct_roundoff(n), work);
 }
 
 // y = V e1/s, w = V e2:  e1' = s e2 + (s g /s) e1,  e2' = -(k/s) e1 - c e2
@@ -474,7 +437,7 @@ static bool solve_modal(struct list *list, const struct basis *s)
             T[i + f * j] = s->V[i + f * j] / rate[j];
         }
     }
-    const double zero = roundoff * n * ct_vector_largest(A, (size_t)n * (size_t)n);
+    const double zero = ct_roundoff(n) * ct_vector_largest(A, (size_t)n * (size_t)n);
     const int free = count_free(l, f), steady = count_steady(a, A, n);
     return add_general(list, A, T, n, zero, steady > free ? steady : free);
 }
@@ -521,7 +484,7 @@ static bool solve_state_space(struct list *list, int rigid)
         balance(s.A, s.y_x, s.n, list->l->nfree);
         rigid = count_steady(list->a, s.A, s.n);
     }
-    const double zero = roundoff * s.n * ct_vector_largest(s.A, (size_t)s.n * (size_t)s.n);
+    const double zero = ct_roundoff(s.n) * ct_vector_largest(s.A, (size_t)s.n * (size_t)s.n);
     return add_general(list, s.A, s.y_x, s.n, zero, rigid);
 }
 
@@ -549,7 +512,7 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
             clear_zeros(&s);
         for (int j = 0; j < s.k; j++)
             rigid += s.w2[j] == 0;
-        if (!has_speeds && !l->is_moving && s.is_held && is_symmetric(a, l->Kr, f)) {
+        if (!has_speeds && !l->is_moving && s.is_held && ct_linear_is_symmetric(a, l->Kr, f)) {
             *how = "symmetric";
             if (is_positive)
                 sharpen_slow(a, l->Mr, L, &s);

@@ -7,30 +7,27 @@
 #include "formulate/build.h"
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Longest rotation in one step [rad].
-// Chosen: shorter steps are more steps; longer ones may jump to another equilibrium.
-static const double longest_turn = 0.2;
 // Longest translation in one step [m] at first. It is doubled after each successful step.
 // Limit: of the first steps.
 static const double first_length = 0.2;
-// Size of a step, relative to the coordinates, at which the search has converged.
-// Chosen: 450 eps, above the round-off of the coordinates.
-static const double arrived = 1e-13;
 // Limit: with a message.
 enum { MOST_STEPS = 1000, MOST_HALVINGS = 40 };
 
-static void find_turns(struct ct_equilibrium_search *s)
+bool *ct_equilibrium_turns(const struct ct_linear *l)
 {
-    const struct ct_equations *e = s->l->m->e;
-    for (size_t k = 0; k < e->nu; k++)
-        s->turns[k] = e->u[k].q < 0;
+    const struct ct_equations *e = l->m->e;
+    bool *turns = CT_NEWN(l->arena, bool, e->nu + 1);
+    for (size_t k = 0; k < e->nmotion; k++)
+        turns[k] = e->u[k].q < 0;
     for (size_t i = 0; i < e->ncoordinate; i++)
         if (e->coordinate[i].u >= 0 && e->coordinate[i].in_rotation
             && !e->coordinate[i].in_translation)
-            s->turns[e->coordinate[i].u] = true;
+            turns[e->coordinate[i].u] = true;
+    return turns;
 }
 
 static struct ct_equilibrium_search search_create(struct ct_linear *l,
@@ -41,31 +38,10 @@ static struct ct_equilibrium_search search_create(struct ct_linear *l,
     struct ct_equilibrium_search s = {.l = l, .method = method, .length = first_length};
     s.dq = CT_NEWN(a, double, nu);
     s.dlam = CT_NEWN(a, double, nrow);
-    s.turns = CT_NEWN(a, bool, nu);
-    s.kept_y = CT_NEWN(a, double, l->m->nq + nu);
-    s.kept_lam = CT_NEWN(a, double, nrow);
-    s.kept_memory = CT_NEWN(a, double, l->m->e->nmemory + 1);
-    find_turns(&s);
+    s.turns = ct_equilibrium_turns(l);
+    s.before = ct_kept_state_create(l);
     method->reserve(&s);
     return s;
-}
-
-static void keep(struct ct_equilibrium_search *s)
-{
-    const struct ct_linear *l = s->l;
-    const struct ct_evaluator *m = l->m;
-    memcpy(s->kept_y, l->y, (m->nq + m->nu + 1) * sizeof *l->y);
-    memcpy(s->kept_lam, l->lam, m->nrow * sizeof *l->lam);
-    memcpy(s->kept_memory, m->input + m->at_memory, m->e->nmemory * sizeof *s->kept_memory);
-}
-
-static void go_back(const struct ct_equilibrium_search *s)
-{
-    const struct ct_linear *l = s->l;
-    const struct ct_evaluator *m = l->m;
-    memcpy(l->y, s->kept_y, (m->nq + m->nu + 1) * sizeof *l->y);
-    memcpy(l->lam, s->kept_lam, m->nrow * sizeof *l->lam);
-    memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
 // The fraction of dq that the limits of step length allow.
@@ -73,7 +49,7 @@ static double allowed(const struct ct_equilibrium_search *s)
 {
     double part = 1;
     for (int k = 0; k < s->l->nu; k++) {
-        const double most = s->turns[k] ? longest_turn : s->length;
+        const double most = s->turns[k] ? ct_longest_turn : s->length;
         if (fabs(s->dq[k]) * part > most)
             part = most / fabs(s->dq[k]);
     }
@@ -103,14 +79,14 @@ static bool take_step(struct ct_equilibrium_search *s)
 static bool go(struct ct_equilibrium_search *s)
 {
     struct ct_linear *l = s->l;
-    // Chosen: by trial.
-    const double before = s->method->slope(s), part = allowed(s), turned_back = 0.5;
+    // Definition: the curvature condition of Wolfe, Nocedal and Wright (2006), 3.1.
+    const double turned_back = 0.9, before = s->method->slope(s), part = allowed(s);
     const size_t nu = (size_t)l->nu;
     scale_step(s, part);
     const bool is_fine = s->is_newton
                       // below this length the slope is round-off
                       && ct_vector_largest(s->dq, nu) < CT_EQUILIBRIUM_FINE;
-    keep(s);
+    ct_linear_keep(l, &s->before);
     for (int i = 0; i < MOST_HALVINGS; i++) {
         if (take_step(s)
             && (is_fine
@@ -124,7 +100,7 @@ static bool go(struct ct_equilibrium_search *s)
         }
         if (l->ctx->nerror)
             return false;
-        go_back(s);
+        ct_linear_go_back(l, &s->before);
         scale_step(s, 0.5);
     }
     return false;
@@ -140,7 +116,7 @@ static double step_size(const struct ct_equilibrium_search *s)
 // Is the remaining error round-off of the coordinates? `last`: size of the step before.
 static bool has_arrived(double size, double last)
 {
-    return size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2);
+    return size <= DBL_EPSILON || (size <= CT_EQUILIBRIUM_FINE && size > last / 2);
 }
 
 // ---- along a path of equilibria ------------------------------------------------------------
@@ -180,21 +156,29 @@ bool ct_equilibrium_rates(struct ct_linear *l, struct ct_equilibrium_result *out
 
 // ---- the search -----------------------------------------------------------------------------
 
-static bool report_missing(const struct ct_equilibrium_search *s)
+bool ct_equilibrium_report_missing(const struct ct_linear *l, int k)
 {
-    const struct ct_linear *l = s->l;
-    int k = 0;
-    for (int i = 0; i < l->nu; i++)
-        if (fabs(s->dq[i]) > fabs(s->dq[k]))
-            k = i;
-    const struct ct_u *u = &l->m->e->u[k];
-    const struct ct_mark mark = u->joint >= 0 ? l->m->model->joint[u->joint].mark
-                              : u->body >= 0  ? l->m->model->body[u->body].instance.mark
-                                              : (struct ct_mark){.file = l->m->model->file};
+    const struct ct_equations *e = l->m->e;
+    const struct ct_model *model = l->m->model;
+    const struct ct_u *u = &e->u[k];
+    if (ct_speed_is_state(e, (size_t)k))
+        return ct_error(l->ctx, model->state[(size_t)k - e->nmotion].rate_mark,
+                        CT_E_EQUILIBRIUM,
+                        "no equilibrium is found: the state '%s' goes on to change; its rate, "
+                        "or what it acts on, must come to rest somewhere near the start",
+                        u->name);
+    const struct ct_mark mark = u->joint >= 0 ? model->joint[u->joint].mark
+                              : u->body >= 0  ? model->body[u->body].instance.mark
+                                              : (struct ct_mark){.file = model->file};
     return ct_error(l->ctx, mark, CT_E_EQUILIBRIUM,
                     "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
                     "start nearer to an equilibrium",
-                    ct_linear_coordinate(l->m->e, l->arena, k));
+                    ct_linear_coordinate(e, l->arena, k));
+}
+
+static bool report_missing(const struct ct_equilibrium_search *s)
+{
+    return ct_equilibrium_report_missing(s->l, ct_linear_largest_entry(s->dq, NULL, s->l->nu));
 }
 
 // Descends the potential from a position that is evaluated. False, without a diagnostic of its
@@ -219,34 +203,20 @@ static bool descend(struct ct_equilibrium_search *s, struct ct_equilibrium_resul
     }
 }
 
-// Do forces without a potential act, such as forces that turn with a body?
-static bool has_no_potential(const struct ct_linear *l)
-{
-    // Derived: as for symmetric matrices in eigenvalues.c.
-    const double roundoff = 1e-9; // relative to the largest stiffness
-    double odd = 0, largest = 0;
-    for (int j = 0; j < l->nfree; j++)
-        for (int i = 0; i < l->nfree; i++) {
-            odd = fmax(odd, fabs(l->Kr[i + l->nfree * j] - l->Kr[j + l->nfree * i]));
-            largest = fmax(largest, fabs(l->Kr[i + l->nfree * j]));
-        }
-    return odd > roundoff * largest;
-}
-
 bool ct_equilibrium_find(struct ct_linear *l, struct ct_equilibrium_result *out)
 {
     if (l->m->e->nstate)
         return ct_equilibrium_find_with_states(l, out);
     if (!ct_linear_rest(l)) // also allocates the matrices
         return false;
-    struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_dense), start = s;
-    start.kept_y = CT_NEWN(l->arena, double, l->m->nq + (size_t)l->nu + 1);
-    start.kept_memory = CT_NEWN(l->arena, double, l->m->e->nmemory + 1);
-    keep(&start);
-    if (has_no_potential(l)) {
+    struct ct_equilibrium_search s = search_create(l, &ct_equilibrium_dense);
+    struct ct_kept_state start = ct_kept_state_create(l);
+    ct_linear_keep(l, &start);
+    // forces that turn with a body have no potential, for example
+    if (!ct_linear_is_symmetric(l->arena, l->Kr, l->nfree)) {
         if (ct_equilibrium_rates(l, out))
             return true;
-        go_back(&start);
+        ct_linear_go_back(l, &start);
     }
     if (ct_linear_rest(l) && descend(&s, out))
         return true;

@@ -12,13 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-// Relative to the largest eigenvalue: below it a direction has no stiffness. Derived: n eps, n
-// up to some ten thousand.
-static const double flat = 1e-11;
-// Relative to the sum of force magnitudes: below it no force acts along a direction without
-// stiffness. Chosen: far above round-off.
-static const double balanced = 1e-9;
-
 static void reserve(struct ct_equilibrium_search *s)
 {
     struct ct_arena *a = s->l->arena;
@@ -52,8 +45,9 @@ static void find_stiffness(struct ct_equilibrium_search *s)
 {
     const int n = s->l->nfree;
     // Relative to the mass matrix: added to it so that massless directions have some mass.
-    // Chosen: it changes the step of directions with mass by a millionth.
-    const double little = 1e-6;
+    // Derived: the square root of eps. The step of directions with mass changes by `little`, that
+    // of massless ones has a round-off of eps/`little`.
+    const double little = 1.5e-8;
     double *W = s->A, mean = 0;
     symmetric_part(s, W, s->l->Mr);
     for (int i = 0; i < n; i++)
@@ -103,7 +97,7 @@ static bool is_positive(struct ct_equilibrium_search *s)
     if (!ct_cholesky(L, n, n))
         return false;
     for (int i = 0; i < n; i++)
-        if (!(L[i + n * i] * L[i + n * i] > 16 * n * DBL_EPSILON * diagonal[i]))
+        if (!(L[i + n * i] * L[i + n * i] > ct_roundoff(n) * diagonal[i]))
             return false;
     return true;
 }
@@ -136,7 +130,7 @@ static bool find_step(struct ct_equilibrium_search *s)
     find_scale(s);
     find_stiffness(s);
     const double stiffest = fmax(fabs(s->value[0]), fabs(s->value[n - 1]));
-    s->is_newton = s->value[0] > flat * stiffest || is_positive(s);
+    s->is_newton = s->value[0] > ct_roundoff(n) * stiffest || is_positive(s);
     if (s->is_newton && find_newton_step(s))
         return true;
     memset(y, 0, (size_t)n * sizeof *y);
@@ -148,10 +142,10 @@ static bool find_step(struct ct_equilibrium_search *s)
             g += v[i] * l->force[i];
             size += fabs(v[i]) * s->scale[i];
         }
-        const bool is_flat = fabs(s->value[k]) <= flat * stiffest;
-        const double along = !is_flat                   ? -g / fabs(s->value[k])
-                           : fabs(g) <= balanced * size ? 0
-                                                        : copysign(far, -g);
+        const bool is_flat = fabs(s->value[k]) <= ct_roundoff(n) * stiffest;
+        const double along = !is_flat                             ? -g / fabs(s->value[k])
+                           : fabs(g) <= ct_roundoff(l->nu) * size ? 0
+                                                                  : copysign(far, -g);
         for (int i = 0; i < n; i++)
             y[i] += along * v[i];
     }

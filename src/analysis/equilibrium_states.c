@@ -4,22 +4,14 @@
 // rates of states vanish. Its step has least norm if the equations do not determine all
 // coordinates and states. A step is halved until the next step, computed with the same
 // derivatives, is shorter. Source: Deuflhard (2011), 3.2, key deuflhard2011.
-#include "analysis/equilibrium.h"
+#include "analysis/equilibrium_step.h"
 #include "formulate/build.h"
 #include "numeric/dense.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Longest rotation in one step [rad].
-// Definition: as in equilibrium.c.
-static const double longest_turn = 0.2;
-// Size of a step, relative to the coordinates, at which the search has converged.
-// Chosen: 450 eps, above the round-off of the coordinates, as in equilibrium.c.
-static const double arrived = 1e-13;
-// Relative to the sum of force magnitudes: a smaller remaining force is zero.
-// Derived: round-off of sums of some hundred forces, relative to the largest.
-static const double balanced = 1e-9;
 // Limit: with a message.
 enum { MOST_STEPS = 200, MOST_HALVINGS = 30 };
 
@@ -28,7 +20,7 @@ struct search {
     bool *turns;               // nu: is the coordinate an angle?
     double *K, *A, *x, *scale; // nfree x nfree, twice; nfree, twice
     double *dq, *part, *next;  // steps: nu
-    double *kept_y, *kept_memory;
+    struct ct_kept_state before;
 };
 
 static struct search search_create(struct ct_linear *l)
@@ -37,35 +29,14 @@ static struct search search_create(struct ct_linear *l)
     const struct ct_equations *e = l->m->e;
     const size_t n = e->nu + 1;
     struct search s = {.l = l};
-    s.turns = CT_NEWN(a, bool, n);
+    s.turns = ct_equilibrium_turns(l);
     s.K = CT_NEWN(a, double, n *n);
     s.A = CT_NEWN(a, double, n *n);
     double **const vectors[] = {&s.x, &s.scale, &s.dq, &s.part, &s.next};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
-    s.kept_y = CT_NEWN(a, double, e->nq + n);
-    s.kept_memory = CT_NEWN(a, double, e->nmemory + 1);
-    for (size_t k = 0; k < e->nmotion; k++)
-        s.turns[k] = e->u[k].q < 0;
-    for (size_t i = 0; i < e->ncoordinate; i++)
-        if (e->coordinate[i].u >= 0 && e->coordinate[i].in_rotation
-            && !e->coordinate[i].in_translation)
-            s.turns[e->coordinate[i].u] = true;
+    s.before = ct_kept_state_create(l);
     return s;
-}
-
-static void keep(struct search *s)
-{
-    const struct ct_evaluator *m = s->l->m;
-    memcpy(s->kept_y, s->l->y, (m->nq + m->nu + 1) * sizeof *s->kept_y);
-    memcpy(s->kept_memory, m->input + m->at_memory, m->e->nmemory * sizeof *s->kept_memory);
-}
-
-static void go_back(const struct search *s)
-{
-    const struct ct_evaluator *m = s->l->m;
-    memcpy(s->l->y, s->kept_y, (m->nq + m->nu + 1) * sizeof *s->kept_y);
-    memcpy(m->input + m->at_memory, s->kept_memory, m->e->nmemory * sizeof *s->kept_memory);
 }
 
 // The larger of two ratios: the largest change of a coordinate over the largest coordinate in
@@ -120,8 +91,8 @@ static double allowed(const struct search *s)
 {
     double part = 1;
     for (size_t k = 0; k < s->l->m->e->nmotion; k++)
-        if (s->turns[k] && fabs(s->dq[k]) * part > longest_turn)
-            part = longest_turn / fabs(s->dq[k]);
+        if (s->turns[k] && fabs(s->dq[k]) * part > ct_longest_turn)
+            part = ct_longest_turn / fabs(s->dq[k]);
     return part;
 }
 
@@ -130,7 +101,7 @@ static bool go(struct search *s, double size)
 {
     struct ct_linear *l = s->l;
     double part = allowed(s);
-    keep(s);
+    ct_linear_keep(l, &s->before);
     for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
         for (int k = 0; k < l->nu; k++)
             s->part[k] = part * s->dq[k];
@@ -138,12 +109,12 @@ static bool go(struct search *s, double size)
         if (ct_linear_close(l) && ct_linear_rest(l)) {
             find_step(s, s->next);
             if (size <= CT_EQUILIBRIUM_FINE
-                || step_size(l, s->kept_y, s->next) <= (1 - part / 4) * size)
+                || step_size(l, s->before.y, s->next) <= (1 - part / 4) * size)
                 return true;
         }
         if (l->ctx->nerror)
             return false;
-        go_back(s);
+        ct_linear_go_back(l, &s->before);
     }
     return false;
 }
@@ -161,44 +132,17 @@ static int find_unbalanced(const struct search *s)
                 row += fabs(l->K[j + l->nu * k]);
             meet += fabs(l->Z[j + l->nu * i]) * row;
         }
-        if (fabs(l->force[i]) > balanced * meet)
+        if (fabs(l->force[i]) > ct_roundoff(l->nu) * meet)
             return l->independent[i];
     }
     return -1;
 }
 
-static int moves_most(const struct search *s)
-{
-    int most = 0;
-    for (int k = 0; k < s->l->nu; k++)
-        if (fabs(s->dq[k]) > fabs(s->dq[most]))
-            most = k;
-    return most;
-}
-
 static bool report_missing(const struct search *s)
 {
-    const struct ct_linear *l = s->l;
-    const struct ct_equations *e = l->m->e;
-    const struct ct_model *model = l->m->model;
-    int k = find_unbalanced(s);
-    if (k < 0)
-        k = moves_most(s);
-    const struct ct_u *u = &e->u[k];
-    if (ct_speed_is_state(e, (size_t)k))
-        return ct_error(l->ctx, model->state[(size_t)k - e->nmotion].rate_mark,
-                        CT_E_EQUILIBRIUM,
-                        "no equilibrium is found: the state '%s' goes on to change; its rate, "
-                        "or what it acts on, must come to rest somewhere near the start",
-                        u->name);
-    return ct_error(l->ctx,
-                    u->joint >= 0  ? model->joint[u->joint].mark
-                    : u->body >= 0 ? model->body[u->body].instance.mark
-                                   : (struct ct_mark){.file = model->file},
-                    CT_E_EQUILIBRIUM,
-                    "no equilibrium is found: '%s' goes on to move; hold it by a stiffness, or "
-                    "start nearer to an equilibrium",
-                    ct_linear_coordinate(e, l->arena, k));
+    const int k = find_unbalanced(s);
+    return ct_equilibrium_report_missing(
+        s->l, k < 0 ? ct_linear_largest_entry(s->dq, NULL, s->l->nu) : k);
 }
 
 bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_result *out)
@@ -211,7 +155,7 @@ bool ct_equilibrium_find_with_states(struct ct_linear *l, struct ct_equilibrium_
         memcpy(s.K, l->Kr, (size_t)l->nfree * (size_t)l->nfree * sizeof *s.K);
         find_step(&s, s.dq);
         const double size = out->last_step = step_size(l, l->y, s.dq);
-        if (size <= arrived || (size <= CT_EQUILIBRIUM_FINE && size > last / 2))
+        if (size <= DBL_EPSILON || (size <= CT_EQUILIBRIUM_FINE && size > last / 2))
             break;
         last = size;
         if (out->iterations == MOST_STEPS || !go(&s, size))

@@ -6,14 +6,23 @@
 #include "analysis/equilibrium.h"
 #include "analysis/sparse_linearization.h"
 
+/// Longest rotation in one step [rad].
+/// Chosen: shorter steps are more steps; longer ones may jump to another equilibrium.
+static const double ct_longest_turn = 0.2;
+
+/// Which coordinates are angles? (nu)
+bool *ct_equilibrium_turns(const struct ct_linear *l);
+/// Reports that no equilibrium is found because speed k goes on to move. Returns false.
+bool ct_equilibrium_report_missing(const struct ct_linear *l, int k);
+
 struct ct_equilibrium_search {
     struct ct_linear *l;
     const struct ct_equilibrium_method *method;
-    double *dq, *dlam; // the step: nu, nrow
-    bool is_newton;    // no direction is unstable: the step is Newton's
-    double length;     // present limit of translation in a step [m]
-    bool *turns;       // nu: is the coordinate an angle?
-    double *kept_y, *kept_lam, *kept_memory;
+    double *dq, *dlam;           // the step: nu, nrow
+    bool is_newton;              // no direction is unstable: the step is Newton's
+    double length;               // present limit of translation in a step [m]
+    bool *turns;                 // nu: is the coordinate an angle?
+    struct ct_kept_state before; // the step
     // dense
     double *scale; // nfree: magnitude of the terms that each force sums
     double *gross; // nu: the same for each row of the full equations

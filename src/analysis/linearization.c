@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-// Chosen: 450 eps, some round-off errors of coordinates of order one.
-static const double closed = 1e-13; // [m, rad] the position constraints are met
+// Derived: second derivatives of large beams lose six digits.
+static const double symmetric = 1e-9; // relative to the largest entries: limit of asymmetry
 // Limit: with a message.
 enum { MOST_NEWTON = 30 };
 
@@ -108,7 +108,7 @@ bool ct_linear_close(struct ct_linear *l)
         // Definition: the tolerance of assembly.
         if (!isfinite(left) || (left >= before / 2 && before > 1e-9))
             return false;
-        if (left <= closed || left >= before / 2)
+        if (left == 0 || left >= before / 2) // round-off
             break;
         before = left;
         shortest(l, l->r, m->phi);
@@ -125,6 +125,30 @@ bool ct_linear_close(struct ct_linear *l)
         l->y[m->nq + (size_t)k] += l->r[k];
     enter(l);
     return true;
+}
+
+struct ct_kept_state ct_kept_state_create(const struct ct_linear *l)
+{
+    const struct ct_evaluator *m = l->m;
+    return (struct ct_kept_state){.y = CT_NEWN(l->arena, double, m->nq + m->nu + 1),
+                                  .lam = CT_NEWN(l->arena, double, m->nrow + 1),
+                                  .memory = CT_NEWN(l->arena, double, m->e->nmemory + 1)};
+}
+
+void ct_linear_keep(const struct ct_linear *l, struct ct_kept_state *out)
+{
+    const struct ct_evaluator *m = l->m;
+    memcpy(out->y, l->y, (m->nq + m->nu + 1) * sizeof *l->y);
+    memcpy(out->lam, l->lam, m->nrow * sizeof *l->lam);
+    memcpy(out->memory, m->input + m->at_memory, m->e->nmemory * sizeof *out->memory);
+}
+
+void ct_linear_go_back(struct ct_linear *l, const struct ct_kept_state *to)
+{
+    const struct ct_evaluator *m = l->m;
+    memcpy(l->y, to->y, (m->nq + m->nu + 1) * sizeof *l->y);
+    memcpy(l->lam, to->lam, m->nrow * sizeof *l->lam);
+    memcpy(m->input + m->at_memory, to->memory, m->e->nmemory * sizeof *to->memory);
 }
 
 void ct_linear_retract(struct ct_linear *l, const double *dq)
@@ -431,8 +455,6 @@ bool ct_linear_rest(struct ct_linear *l)
 static void accelerate(struct ct_linear *l, double *w, const double *v)
 {
     const int f = l->nfree;
-    // Derived: n eps, n up to some thousand.
-    const double massless = 1e-12; // relative to the largest eigenvalue
     double *M = l->Mr, *scale = l->d, *value = l->r;
     memset(M, 0, (size_t)f * (size_t)f * sizeof *M);
     add_reduced(l, M, l->m->M, l->Z);
@@ -447,7 +469,7 @@ static void accelerate(struct ct_linear *l, double *w, const double *v)
         double along = 0;
         for (int i = 0; i < f; i++)
             along -= M[i + f * k] * scale[i] * v[i];
-        for (int i = 0; i < f && value[k] > massless * value[f - 1]; i++)
+        for (int i = 0; i < f && value[k] > ct_roundoff(f) * value[f - 1]; i++)
             w[i] += scale[i] * M[i + f * k] * along / value[k];
     }
 }
@@ -469,6 +491,35 @@ bool ct_linear_move(struct ct_linear *l)
             l->a[i] += l->a0[i];
     }
     return finish(l);
+}
+
+bool ct_linear_is_symmetric(struct ct_arena *a, const double *A, int n)
+{
+    double *size = CT_NEWN(a, double, n + 1), most = 0;
+    for (int j = 0; j < n; j++) {
+        size[j] = sqrt(ct_vector_largest(A + (size_t)n * (size_t)j, (size_t)n));
+        most = fmax(most, size[j] * size[j]);
+    }
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < j; i++)
+            if (fabs(A[i + n * j] - A[j + n * i])
+                > symmetric * size[i] * size[j] + ct_roundoff(n) * most)
+                return false;
+    return true;
+}
+
+int ct_linear_largest_entry(const double *v, const double *w, int n)
+{
+    int most = 0;
+    double size = 0;
+    for (int i = 0; i < n; i++) {
+        const double here = w ? hypot(v[i], w[i]) : fabs(v[i]);
+        if (here > size * (1 + sqrt(DBL_EPSILON))) {
+            size = here;
+            most = i;
+        }
+    }
+    return most;
 }
 
 const char *ct_linear_coordinate(const struct ct_equations *e, struct ct_arena *a, int k)

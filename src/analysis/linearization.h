@@ -20,6 +20,16 @@
 #include "base/ctx.h"
 #include "solve/evaluator/evaluator.h"
 
+#include <float.h>
+
+/// Round-off of eigenvalues, forces and products of matrices with n rows, relative to the largest
+/// terms: what is below counts as zero. Definition: 20 n eps, the threshold of LAPACK's own tests
+/// of symmetric eigenvalue problems (sep.in).
+static inline double ct_roundoff(int n)
+{
+    return 20 * n * DBL_EPSILON;
+}
+
 struct ct_linear {
     struct ct_evaluator *m;
     struct ct_ctx *ctx;
@@ -65,6 +75,14 @@ bool ct_linear_rest(struct ct_linear *l);
 /// The same with the accelerations of the motion.
 bool ct_linear_move(struct ct_linear *l);
 
+/// A state to come back to.
+struct ct_kept_state {
+    double *y, *lam, *memory;
+};
+struct ct_kept_state ct_kept_state_create(const struct ct_linear *l);
+void ct_linear_keep(const struct ct_linear *l, struct ct_kept_state *out);
+void ct_linear_go_back(struct ct_linear *l, const struct ct_kept_state *to);
+
 /// Moves l->y by dq (nu), states of the model included.
 void ct_linear_retract(struct ct_linear *l, const double *dq);
 /// For arrays of derivatives (n each) with respect to position, speed and acceleration: the
@@ -84,6 +102,12 @@ static inline void ct_state_take_as_place(double *by_place, double *by_speed,
 void ct_linear_expand(const struct ct_linear *l, double *dq, const double *y);
 /// v (nfree, out) = Z' f.
 void ct_linear_project(const struct ct_linear *l, double *v, const double *f);
+/// Is A (n x n) symmetric but for round-off? A load without potential may be small compared with
+/// stiff elements elsewhere, so each pair of entries is compared with the largest of their columns.
+bool ct_linear_is_symmetric(struct ct_arena *a, const double *A, int n);
+/// The first of the largest entries |v_i + i w_i| (n; w may be NULL). Eigenvectors have half of all
+/// digits at least, so that entries are equal if they differ by less.
+int ct_linear_largest_entry(const double *v, const double *w, int n);
 /// Returns the name of the coordinate that varies with speed k: "pin.q", "ball.turn2".
 const char *ct_linear_coordinate(const struct ct_equations *e, struct ct_arena *a, int k);
 

@@ -8,6 +8,7 @@
 #include "sim/summary.h"
 #include "solve/run/run_internal.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -303,16 +304,15 @@ static void make_comparable(struct releases *r)
 // Derived: null vectors have errors of 1e-12, and some hundred to a thousand terms are added.
 static const double nothing = 1e-9;
 
-// Returns the first candidate whose share is not much less than the largest, so that round-off
-// does not choose between equal ones.
+// Returns the first candidate with the largest share. Shares that agree in half of all digits are
+// equal, so that round-off does not choose between them.
 static struct candidate *next(struct releases *r, double least)
 {
-    const double much = 0.5; // Chosen: far above round-off.
     double most = 0;
     for (size_t i = 0; i < r->n; i++)
         most = fmax(most, norm(r->candidate[i].share, r->nz));
     for (size_t i = 0; i < r->n && most > least; i++)
-        if (norm(r->candidate[i].share, r->nz) >= much * most)
+        if (norm(r->candidate[i].share, r->nz) >= (1 - sqrt(DBL_EPSILON)) * most)
             return &r->candidate[i];
     return NULL;
 }

@@ -22,17 +22,11 @@
 // [m/s^2, rad/s^2] Below it accelerations are round-off, and the state is an equilibrium.
 // Derived: n eps of accelerations of order 10, some hundred terms.
 static const double still = 1e-9;
-// Relative to sqrt(largest K * largest M): below it there is no damping.
-// Chosen: 4500 eps, far above round-off of the entries.
-static const double absent = 1e-12;
 // If K is singular, the shift is this far below zero, relative to the largest K over the
 // largest M. Round-off of K, eps times that ratio, is small compared with the shift. An
 // eigenvalue below `zero` times the shift is zero: this is what round-off of 1/theta leaves.
 // Derived: eps / 1e-9 = 2e-7 is the relative error of 1/theta, and 1e-6 is a few times that.
 static const double small_shift = 1e-9, zero = 1e-6;
-// Limit of asymmetry |K x - K' x| relative to the largest entries.
-// Chosen: 4500 eps, far above round-off of the entries.
-static const double symmetric = 1e-12;
 
 struct large {
     struct ct_ctx *ctx;
@@ -142,7 +136,7 @@ static bool is_symmetric(struct large *g, const struct ct_point *p)
     for (size_t i = 0; i < p->nK; i++)
         transposed[p->K[i].direction] += p->K[i].value * x[p->K[i].row];
     for (size_t i = 0; i < g->nu; i++)
-        if (!(fabs(Kx[i] - transposed[i]) <= symmetric * size[i]))
+        if (!(fabs(Kx[i] - transposed[i]) <= ct_roundoff((int)g->nu) * size[i]))
             return false;
     return true;
 }
@@ -158,7 +152,8 @@ static bool is_of_this_kind(struct large *g)
         return false; // the rows depend on the acceleration
     const double rate
         = sqrt(ct_point_largest(g->p->K, g->p->nK) * ct_point_largest(g->p->M, g->p->nM));
-    return ct_point_largest(g->p->C, g->p->nC) <= absent * rate && is_symmetric(g, g->p);
+    return ct_point_largest(g->p->C, g->p->nC) <= ct_roundoff((int)g->nu) * rate
+        && is_symmetric(g, g->p);
 }
 
 // ---- eigenvalues ----------------------------------------------------------------------------
@@ -327,8 +322,6 @@ bool ct_sparse_modes_stiffness(struct ct_linear *l, size_t count, double *w2)
 size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loaded,
                                double factor, size_t count, double *c, double *shape)
 {
-    // Chosen: factors above a thousand million times the first do not count.
-    const double none = 1e-9; // relative to the largest 1/c
     struct ct_arena *a = ct_arena_create_under(l->arena);
     struct large g = large_create(l->ctx, a, l);
     size_t n = 0;
@@ -338,7 +331,7 @@ size_t ct_sparse_modes_factors(struct ct_linear *l, const struct ct_point *loade
         const struct pairs z
             = find_pairs(&g, 2 * count); // twice as many: half of them may be negative factors
         for (size_t i = 0; i < z.n && n < count; i++)
-            if (z.theta[i] > none * fabs(z.theta[0])) {
+            if (z.theta[i] > ct_roundoff((int)g.nu) * fabs(z.theta[0])) {
                 c[n] = 1 / z.theta[i];
                 memcpy(shape + g.nu * n++, z.vector + g.nu * i, g.nu * sizeof *shape);
             }

@@ -14,13 +14,6 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: n eps, n up to some thousand.
-static const double massless
-    = 1e-12; // relative to the largest eigenvalue, in coordinates of unit mass each
-// Derived: as for symmetric matrices in eigenvalues.c.
-// relative to the largest entry: below it there is no damping
-static const double uncoupled = 1e-9;
-
 static double *matrix(struct ct_arena *a, int n, int m)
 {
     return CT_NEWN(a, double, (size_t)n *(size_t)m + 1);
@@ -56,7 +49,7 @@ static void find_massless(struct split *s)
             M[i + f * j]
                 = (s->l->Mr[i + f * j] + s->l->Mr[j + f * i]) / 2 * scale[i] * scale[j];
     ct_symmetric_eigen(value, M, f, f, work);
-    while (s->n0 < f && !(value[s->n0] > massless * value[f - 1]))
+    while (s->n0 < f && !(value[s->n0] > ct_roundoff(f) * value[f - 1]))
         s->n0++;
     s->k = f - s->n0;
     s->N = matrix(s->a, f, s->n0);
@@ -66,7 +59,7 @@ static void find_massless(struct split *s)
     s->error = scale;
     // error of an eigenvector: round-off over the gap to other eigenvalues
     for (int i = 0; i < f && s->n0 < f; i++)
-        s->error[i] *= fmax(massless, DBL_EPSILON * f * value[f - 1] / value[s->n0]);
+        s->error[i] *= ct_roundoff(f) * value[f - 1] / value[s->n0];
 }
 
 // Chooses one coordinate for each massless direction and makes the rows of N at these
@@ -162,7 +155,7 @@ static void split_by_damping(struct split *s)
     ct_matrix_multiply_transposed(Cnn, N, CN, n, f, n);
     if (n)
         ct_symmetric_eigen(value, Cnn, n, n, work);
-    const double least = uncoupled * largest_of_motion(s, s->l->Cr, f);
+    const double least = ct_roundoff(f) * largest_of_motion(s, s->l->Cr, f);
     int damped = 0;
     for (int j = 0; j < n; j++)
         damped += fabs(value[j]) > least;
@@ -212,7 +205,7 @@ static bool follow(struct split *s, struct reduced *r)
     if (!n2)
         return true;
     ct_matrix_multiply(CN, C, N2, f, f, n2);
-    if (largest_of_motion(s, CN, n2) > uncoupled * largest_of_motion(s, C, f))
+    if (largest_of_motion(s, CN, n2) > ct_roundoff(f) * largest_of_motion(s, C, f))
         return not_held(s);
     ct_matrix_multiply(KN, K, N2, f, f, n2);
     ct_matrix_multiply_transposed(K22, N2, KN, n2, f, n2);
@@ -225,7 +218,7 @@ static bool follow(struct split *s, struct reduced *r)
     if (!ct_lu(K22, pivot, n2, n2))
         return not_held(s);
     for (int i = 0; i < n2; i++)
-        if (!(fabs(K22[i + n2 * i]) > massless * size))
+        if (!(fabs(K22[i + n2 * i]) > ct_roundoff(n2) * size))
             return not_held(s);
     ct_lu_solve(W, K22, pivot, n2, n2, m, n2, false);
     ct_lu_solve(Y, K22, pivot, n2, n2, f, n2, false);
