@@ -2,6 +2,7 @@
 #include "formulate/closed_form/block_elimination.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct ct_blocks ct_blocks_create(struct ct_arena *a, struct ct_exs *x, size_t rank, size_t nu)
@@ -11,7 +12,9 @@ struct ct_blocks ct_blocks_create(struct ct_arena *a, struct ct_exs *x, size_t r
     s.left = CT_NEWN(a, struct ct_probed_row, rank + 1);
     s.is_done = CT_NEWN(a, bool, rank + 1);
     s.level = CT_NEWN(a, int, rank + 1);
-    s.count = CT_NEWN(a, int, nu + 1);
+    s.in = CT_NEWN(a, struct ct_block_rows, nu + 1);
+    s.best = CT_NEWN(a, struct ct_block_choice, rank + 1);
+    s.is_stale = CT_NEWN(a, bool, rank + 1);
     s.block = CT_NEWN(a, struct ct_block, rank + 1);
     s.block_of = CT_NEWN(a, int, nu + 1);
     return s;
@@ -23,14 +26,6 @@ bool ct_blocks_moves(const struct ct_blocks *s, ct_ex v)
 }
 
 // ---- choice of pivots ---------------------------------------------------------------------------
-
-struct choice {
-    int size, row[2], column[2];
-    bool is_loose; // a single variable entry: it may vanish in some configuration
-    double cost;   // number of products per row
-    int level;
-    double strength;
-};
 
 static bool is_open(const struct ct_blocks *s, const struct ct_probed_entry *e)
 {
@@ -47,7 +42,7 @@ static double row_size(const struct ct_blocks *s, int row)
     return most;
 }
 
-static bool is_better(const struct choice *a, const struct choice *b)
+static bool is_better(const struct ct_block_choice *a, const struct ct_block_choice *b)
 {
     if (b->size == 0 || a->is_loose != b->is_loose)
         return b->size == 0 || b->is_loose;
@@ -56,7 +51,8 @@ static bool is_better(const struct choice *a, const struct choice *b)
     return a->level < b->level;
 }
 
-static void try_single(const struct ct_blocks *s, int row, double size, struct choice *best)
+static void try_single(const struct ct_blocks *s, int row, double size,
+                       struct ct_block_choice *best)
 {
     const struct ct_probed_row *l = &s->left[row];
     for (size_t i = 0; i < l->n; i++) {
@@ -64,13 +60,14 @@ static void try_single(const struct ct_blocks *s, int row, double size, struct c
         const double strength = fabs(e->number) / size;
         if (!is_open(s, e) || !(strength >= CT_TIGHT_PIVOT))
             continue;
-        const struct choice c = {.size = 1,
-                                 .row = {row},
-                                 .column = {e->column},
-                                 .is_loose = ct_blocks_moves(s, e->value),
-                                 .cost = (s->count[e->column] - 1) * ((double)l->n - 1),
-                                 .level = s->level[row],
-                                 .strength = strength};
+        const struct ct_block_choice c
+            = {.size = 1,
+               .row = {row},
+               .column = {e->column},
+               .is_loose = ct_blocks_moves(s, e->value),
+               .cost = (s->in[e->column].nopen - 1) * ((double)l->n - 1),
+               .level = s->level[row],
+               .strength = strength};
         if (is_better(&c, best))
             *best = c;
     }
@@ -82,8 +79,8 @@ static double number_at(const struct ct_probed_row *l, int column)
     return e ? e->number : 0;
 }
 
-static void try_columns(const struct ct_blocks *s, struct choice c, double size, double width,
-                        struct choice *best)
+static void try_columns(const struct ct_blocks *s, struct ct_block_choice c, double size,
+                        double width, struct ct_block_choice *best)
 {
     const struct ct_probed_row *l = &s->left[c.row[0]], *k = &s->left[c.row[1]];
     double a[2], b[2];
@@ -95,15 +92,16 @@ static void try_columns(const struct ct_blocks *s, struct choice c, double size,
                 + (ct_probed_row_find(k, c.column[i]) != NULL);
     }
     c.strength = fabs(a[0] * b[1] - a[1] * b[0]) / size;
-    c.cost = (s->count[c.column[0]] + s->count[c.column[1]] - inside) * (width - 1) / 2;
+    c.cost = (s->in[c.column[0]].nopen + s->in[c.column[1]].nopen - inside) * (width - 1) / 2;
     if (c.strength >= CT_TIGHT_PIVOT && is_better(&c, best))
         *best = c;
 }
 
-static void try_pair(const struct ct_blocks *s, int i, int k, double size, struct choice *best)
+static void try_pair(const struct ct_blocks *s, int i, int k, double size,
+                     struct ct_block_choice *best)
 {
     const struct ct_probed_row *l[2] = {&s->left[i], &s->left[k]};
-    struct choice c = {.size = 2, .row = {i, k}};
+    struct ct_block_choice c = {.size = 2, .row = {i, k}};
     c.level = s->level[i] > s->level[k] ? s->level[i] : s->level[k];
     double width = (double)l[0]->n;
     for (size_t q = 0; q < l[1]->n; q++)
@@ -119,7 +117,7 @@ static void try_pair(const struct ct_blocks *s, int i, int k, double size, struc
 }
 
 // If no pivot passes the threshold, takes the largest.
-static void try_largest(const struct ct_blocks *s, struct choice *best)
+static void try_largest(const struct ct_blocks *s, struct ct_block_choice *best)
 {
     for (int i = 0; i < (int)s->rank; i++) {
         const double size = s->is_done[i] ? 0 : row_size(s, i);
@@ -127,33 +125,91 @@ static void try_largest(const struct ct_blocks *s, struct choice *best)
             const struct ct_probed_entry *e = &s->left[i].e[k];
             const double strength = fabs(e->number) / size;
             if (is_open(s, e) && strength > best->strength)
-                *best = (struct choice){
+                *best = (struct ct_block_choice){
                     .size = 1, .row = {i}, .column = {e->column}, .strength = strength};
         }
     }
 }
 
-static struct choice choose(struct ct_blocks *s)
+// The best pivot with row i alone or as its first row.
+static struct ct_block_choice best_of_row(const struct ct_blocks *s, int i)
 {
-    struct choice best = {0};
-    const int n = (int)s->rank;
-    memset(s->count, 0, s->nu * sizeof *s->count);
-    for (int i = 0; i < n; i++)
-        for (size_t k = 0; k < s->left[i].n && !s->is_done[i]; k++)
-            s->count[s->left[i].e[k].column]++;
-    for (int i = 0; i < n; i++) {
-        const double size = s->is_done[i] ? 0 : row_size(s, i);
-        if (!(size > 0))
+    struct ct_block_choice best = {0};
+    const double size = row_size(s, i);
+    if (!(size > 0))
+        return best;
+    try_single(s, i, size, &best);
+    const int group = s->group[i];
+    for (int k = i + 1; k < (int)s->rank && group >= 0 && s->group[k] == group; k++)
+        if (!s->is_done[k])
+            try_pair(s, i, k, size * row_size(s, k), &best);
+    return best;
+}
+
+static struct ct_block_choice choose(struct ct_blocks *s)
+{
+    struct ct_block_choice best = {0};
+    for (int i = 0; i < (int)s->rank; i++) {
+        if (s->is_done[i])
             continue;
-        try_single(s, i, size, &best);
-        const int group = s->group[i];
-        for (int k = i + 1; k < n && group >= 0 && s->group[k] == group; k++)
-            if (!s->is_done[k])
-                try_pair(s, i, k, size * row_size(s, k), &best);
+        if (s->is_stale[i])
+            s->best[i] = best_of_row(s, i);
+        s->is_stale[i] = false;
+        if (s->best[i].size && is_better(&s->best[i], &best))
+            best = s->best[i];
     }
     if (!best.size)
         try_largest(s, &best);
     return best;
+}
+
+// ---- rows of the columns ------------------------------------------------------------------------
+
+// Row r or the number of rows in one of its columns has changed: so has its pivot, and those of the
+// rows that it may form a block with.
+static void mark_stale(struct ct_blocks *s, int r)
+{
+    int first = r;
+    while (first > 0 && s->group[r] >= 0 && s->group[first - 1] == s->group[r])
+        first--;
+    for (; first <= r; first++)
+        s->is_stale[first] = true;
+}
+
+// Adds `by` to the number of open rows in each column of row r.
+static void count_row(struct ct_blocks *s, int r, int by)
+{
+    for (size_t i = 0; i < s->left[r].n; i++) {
+        struct ct_block_rows *in = &s->in[s->left[r].e[i].column];
+        in->nopen += by;
+        for (size_t k = 0; k < in->n; k++)
+            mark_stale(s, in->row[k]);
+    }
+}
+
+static void list_row(struct ct_blocks *s, int column, int r)
+{
+    struct ct_block_rows *in = &s->in[column];
+    CT_PUSH(s->a, in->row, in->n, in->cap, r);
+}
+
+static int by_index(const void *a, const void *b)
+{
+    return *(const int *)a - *(const int *)b;
+}
+
+// Open rows (n, out) that have or had an entry in a column of block b, ascending.
+static int *rows_of(struct ct_blocks *s, const struct ct_block *b, size_t *n)
+{
+    const struct ct_block_rows *p = &s->in[b->column[0]], *q = &s->in[b->column[b->size - 1]];
+    int *row = CT_NEWN(s->a, int, p->n + q->n + 1);
+    *n = 0;
+    for (size_t i = 0; i < p->n + (b->size == 2 ? q->n : 0); i++) {
+        row[*n] = i < p->n ? p->row[i] : q->row[i - p->n];
+        *n += !s->is_done[row[*n]];
+    }
+    qsort(row, *n, sizeof *row, by_index);
+    return row;
 }
 
 // ---- elimination --------------------------------------------------------------------------------
@@ -217,10 +273,15 @@ static void subtract_rows(struct ct_blocks *s, int row, const struct ct_block *b
             v = i ? ct_ex_sub_product(s->x, v, factor[i - 1], e->value) : e->value;
             v_number = i ? v_number - number[i - 1] * e->number : e->number;
         }
-        if (c != b->column[0] && c != b->column[b->size - 1] && !ct_ex_is_zero(v))
-            ct_probed_row_append(s->a, &sum, c, v, v_number);
+        if (c == b->column[0] || c == b->column[b->size - 1] || ct_ex_is_zero(v))
+            continue;
+        ct_probed_row_append(s->a, &sum, c, v, v_number);
+        if (!ct_probed_row_find(l[0], c))
+            list_row(s, c, row);
     }
+    count_row(s, row, -1);
     s->left[row] = sum;
+    count_row(s, row, 1);
 }
 
 static void eliminate_row(struct ct_blocks *s, int row, int k)
@@ -252,8 +313,14 @@ static void eliminate_row(struct ct_blocks *s, int row, int k)
 
 bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes)
 {
+    for (int i = 0; i < (int)s->rank; i++) {
+        for (size_t k = 0; k < s->left[i].n; k++)
+            list_row(s, s->left[i].e[k].column, i);
+        count_row(s, i, 1);
+        s->is_stale[i] = true;
+    }
     for (size_t done = 0; done < s->rank;) {
-        const struct choice c = choose(s);
+        const struct ct_block_choice c = choose(s);
         if (!c.size || s->x->nnode > most_nodes)
             return false;
         const int k = (int)s->nblock++;
@@ -264,11 +331,13 @@ bool ct_blocks_factor(struct ct_blocks *s, size_t most_nodes)
             b->column[i] = c.column[i];
             s->is_done[c.row[i]] = true;
             s->block_of[c.column[i]] = k;
+            count_row(s, c.row[i], -1);
         }
         invert(s, b);
-        for (int i = 0; i < (int)s->rank; i++)
-            if (!s->is_done[i])
-                eliminate_row(s, i, k);
+        size_t n;
+        const int *row = rows_of(s, b, &n);
+        for (size_t i = 0; i < n; i++)
+            eliminate_row(s, row[i], k);
         done += (size_t)c.size;
     }
     return true;

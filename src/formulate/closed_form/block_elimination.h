@@ -36,6 +36,15 @@ struct ct_block_step {
 
 enum { CT_BLOCK_NEVER = -1, CT_BLOCK_OPEN = -2 }; // Definition: no index of a block
 
+/// A pivot that may come next.
+struct ct_block_choice {
+    int size, row[2], column[2];
+    bool is_loose; // a single variable entry: it may vanish in some configuration
+    double cost;   // number of products per row
+    int level;
+    double strength;
+};
+
 struct ct_blocks {
     struct ct_arena *a;
     struct ct_exs *x;
@@ -44,9 +53,14 @@ struct ct_blocks {
     struct ct_probed_row *left; // (rank)
     bool *is_done;              // (rank)
     int *block_of;              // (nu)
-    // (rank) (rank) number of steps that must come before; (nu) number of open rows with an entry
-    // in the column
-    int *level, *count;
+    int *level;                 // (rank) number of steps that must come before
+    struct ct_block_rows {
+        int nopen; // open rows with an entry in the column
+        int *row;  // rows that have or had one
+        size_t n, cap;
+    } * in;                       // (nu)
+    struct ct_block_choice *best; // (rank) the best pivot of each row
+    bool *is_stale;               // (rank) it must be sought anew
     struct ct_block *block;
     size_t nblock;
     struct ct_block_step *step;
