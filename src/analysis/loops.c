@@ -10,71 +10,70 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // ---- the joint that closes a loop ----------------------------------------------------------
 
-static bool closes(const struct ct_build *b, size_t edge, int joint)
+static bool closes(const struct ct_build *b, size_t edge)
 {
     const struct ct_edge_info *e = &b->topology->edge[edge];
-    return (e->kind == CT_EDGE_JOINT || e->kind == CT_EDGE_CLOSURE) && e->index == joint
-        && (!b->T.is_branch[edge] || (e->has_rotation && !b->R.is_branch[edge]));
+    return (!b->T.is_branch[edge] || (e->has_rotation && !b->R.is_branch[edge]));
 }
 
-static void add_member(struct ct_arena *a, const char ***list, size_t *n, size_t *cap,
-                       const char *name)
+static void add_member(struct ct_arena *a, struct ct_loop *l, const char *name)
 {
-    for (size_t i = 0; i < *n; i++)
-        if (!strcmp((*list)[i], name))
+    for (size_t i = 0; i < l->nmember; i++)
+        if (!strcmp(l->member[i], name))
             return;
-    CT_PUSH(a, *list, *n, *cap, name);
+    CT_PUSH(a, l->member, l->nmember, l->member_cap, name);
 }
 
-// Lists the branches of the circuits of a joint, in the order of the circuits.
-static void find_members(struct ct_arena *a, const struct ct_build *b, struct ct_loop *l)
+// Lists the branches of the circuits that edge i closes, in the order of the circuits. branch,
+// sign (nnode): workspace
+static void add_members(struct ct_arena *a, const struct ct_build *b, size_t i, int *branch,
+                        signed char *sign, struct ct_loop *l)
 {
-    const char **list = NULL;
-    size_t n = 0, cap = 0;
-    int *branch = CT_NEWN(a, int, b->topology->nnode);
-    signed char *sign = CT_NEWN(a, signed char, b->topology->nnode);
-    add_member(a, &list, &n, &cap, l->name);
-    for (size_t i = 0; i < b->topology->nedge && l->joint >= 0; i++)
-        for (int k = 0; k < 2 && closes(b, i, l->joint); k++) {
-            const struct ct_tree *t = k ? &b->R : &b->T;
-            if (t->is_branch[i] || (k && !b->topology->edge[i].has_rotation))
-                continue;
-            const int m = ct_tree_circuit(&b->topology->graph, t, (int)i, branch, sign);
-            for (int j = 0; j < m; j++)
-                if (b->topology->edge[branch[j]].kind != CT_EDGE_ARM)
-                    add_member(a, &list, &n, &cap, b->topology->edge[branch[j]].name);
-        }
-    l->member = list;
-    l->nmember = n;
+    for (int k = 0; k < 2 && closes(b, i); k++) {
+        const struct ct_tree *t = k ? &b->R : &b->T;
+        if (t->is_branch[i] || (k && !b->topology->edge[i].has_rotation))
+            continue;
+        const int m = ct_tree_circuit(&b->topology->graph, t, (int)i, branch, sign);
+        for (int j = 0; j < m; j++)
+            if (b->topology->edge[branch[j]].kind != CT_EDGE_ARM)
+                add_member(a, l, b->topology->edge[branch[j]].name);
+    }
 }
 
 // Groups the rows into loops: the rows of one joint form a loop, and a row without a joint is a
-// loop of its own.
+// loop of its own. loop_of (by joint): its loop plus one
 static void list_loops(struct ct_arena *a, struct ct_loops *out)
 {
     const struct ct_equations *e = &out->sim->system->equations;
     const struct ct_model *m = &out->sim->system->model;
-    size_t cap = 0;
-    bool *is_listed = CT_NEWN(a, bool, e->nrow + 1);
+    const struct ct_topology *t = e->build->topology;
+    size_t cap = 0, *loop_of = CT_NEWN(a, size_t, m->njoint + 1);
     for (size_t i = 0; i < e->nrow; i++) {
         const int joint = e->row[i].joint;
         struct ct_loop l
             = {.name = joint >= 0 ? m->joint[joint].name : e->row[i].name, .joint = joint};
-        if (is_listed[i])
-            continue;
-        size_t *row = CT_NEWN(a, size_t, e->nrow);
-        for (size_t k = i; k < e->nrow; k++)
-            if (k == i || (joint >= 0 && e->row[k].joint == joint)) {
-                is_listed[k] = true;
-                row[l.nrow++] = k;
-            }
-        l.row = row;
-        find_members(a, e->build, &l);
-        CT_PUSH(a, out->loop, out->nloop, cap, l);
+        if (joint < 0 || !loop_of[joint]) {
+            add_member(a, &l, l.name);
+            CT_PUSH(a, out->loop, out->nloop, cap, l);
+        }
+        struct ct_loop *of
+            = &out->loop[joint < 0 || !loop_of[joint] ? out->nloop - 1 : loop_of[joint] - 1];
+        CT_PUSH(a, of->row, of->nrow, of->row_cap, i);
+        if (joint >= 0)
+            loop_of[joint] = (size_t)(of - out->loop) + 1;
+    }
+    int *branch = CT_NEWN(a, int, t->nnode);
+    signed char *sign = CT_NEWN(a, signed char, t->nnode);
+    for (size_t i = 0; i < t->nedge; i++) {
+        const struct ct_edge_info *edge = &t->edge[i];
+        if ((edge->kind == CT_EDGE_JOINT || edge->kind == CT_EDGE_CLOSURE)
+            && loop_of[edge->index])
+            add_members(a, e->build, i, branch, sign, &out->loop[loop_of[edge->index] - 1]);
     }
 }
 
@@ -86,27 +85,42 @@ static double entry(const struct ct_loops *l, size_t k)
     return l->J.out[k] * l->speed_size[J->column] / l->row_size[J->row];
 }
 
-// A (nu x n, out): the listed rows of K as columns.
-static void gather(const struct ct_loops *l, const size_t *row, size_t n, double *A)
+static int by_index(const void *a, const void *b)
 {
-    const struct ct_equations *e = &l->sim->system->equations;
-    memset(A, 0, e->nu * n * sizeof *A);
-    for (size_t k = 0; k < e->nJ; k++)
-        for (size_t i = 0; i < n; i++)
-            if ((size_t)e->J[k].row == row[i])
-                A[(size_t)e->J[k].column + e->nu * i] = entry(l, k);
+    return *(const int *)a - *(const int *)b;
+}
+
+// The listed rows of K as columns of l->A (m x n), for the m speeds that have an entry in them.
+// Returns m.
+static size_t gather(const struct ct_loops *l, const size_t *row, size_t n)
+{
+    const struct ct_entry *J = l->sim->system->equations.J;
+    size_t m = 0;
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = l->first[row[i]]; k < l->first[row[i] + 1]; k++)
+            if (!l->place[J[k].column]++)
+                l->speed[m++] = J[k].column;
+    qsort(l->speed, m, sizeof *l->speed, by_index);
+    for (size_t j = 0; j < m; j++)
+        l->place[l->speed[j]] = j;
+    memset(l->A, 0, m * n * sizeof *l->A);
+    for (size_t i = 0; i < n; i++)
+        for (size_t k = l->first[row[i]]; k < l->first[row[i] + 1]; k++)
+            l->A[l->place[J[k].column] + m * i] = entry(l, k);
+    for (size_t j = 0; j < m; j++)
+        l->place[l->speed[j]] = 0;
+    return m;
 }
 
 // The smallest of the first `rank` singular values of the listed rows, from the eigenvalues of
 // K K'. This has half the digits.
 static double smallest(const struct ct_loops *l, const size_t *row, size_t n, int rank)
 {
-    const size_t nu = l->sim->system->equations.nu;
-    double *K = l->A, *S = l->A + nu * n;
     if (rank < 1 || n > CT_MOST_MEASURED_ROWS)
         return rank < 1 ? 0 : NAN;
-    gather(l, row, n, K);
-    ct_matrix_multiply_transposed(S, K, K, (int)n, (int)nu, (int)n);
+    const size_t m = gather(l, row, n);
+    double *K = l->A, *S = l->A + m * n;
+    ct_matrix_multiply_transposed(S, K, K, (int)n, (int)m, (int)n);
     if (!ct_symmetric_eigenvalues(l->w, S, (int)n, (int)n, l->work))
         return NAN;
     return sqrt(fmax(0, l->w[n - (size_t)rank]));
@@ -114,15 +128,14 @@ static double smallest(const struct ct_loops *l, const size_t *row, size_t n, in
 
 static int rank_of(struct ct_arena *a, const struct ct_loops *l, const size_t *row, size_t n)
 {
-    const struct ct_evaluator *m = ct_run_evaluator(l->sim->run);
-    const size_t nu = m->nu, most = nu < n ? nu : n;
-    double *A = CT_NEWN(a, double, nu *n + 1), *tau = CT_NEWN(a, double, most + 1);
+    const size_t m = gather(l, row, n), most = m < n ? m : n;
+    const double least = ct_run_evaluator(l->sim->run)->rank_tolerance;
+    double *tau = CT_NEWN(a, double, most + 1);
     int *column = CT_NEWN(a, int, n + 1), rank = 0;
-    double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)nu, (int)n) + 1);
-    gather(l, row, n, A);
+    double *work = CT_NEWN(a, double, ct_qr_pivot_work((int)m, (int)n) + 1);
     if (most)
-        ct_qr_pivot(A, column, tau, (int)nu, (int)n, (int)nu, 0, work);
-    while (rank < (int)most && fabs(A[(size_t)rank + nu * (size_t)rank]) > m->rank_tolerance)
+        ct_qr_pivot(l->A, column, tau, (int)m, (int)n, (int)m, 0, work);
+    while (rank < (int)most && fabs(l->A[(size_t)rank + m * (size_t)rank]) > least)
         rank++;
     return rank;
 }
@@ -145,6 +158,9 @@ static void prepare_measure(struct ct_arena *a, struct ct_loops *l)
     struct ct_evaluator *m = ct_run_evaluator(l->sim->run);
     const struct ct_equations *e = m->e;
     const size_t n = e->nrow < CT_MOST_MEASURED_ROWS ? e->nrow : CT_MOST_MEASURED_ROWS;
+    size_t most = n; // rows that are gathered at once
+    for (size_t i = 0; i < l->nloop; i++)
+        most = l->loop[i].nrow > most ? l->loop[i].nrow : most;
     ct_ex *J = CT_NEWN(a, ct_ex, e->nJ + 1);
     for (size_t k = 0; k < e->nJ; k++)
         J[k] = e->J[k].value;
@@ -153,7 +169,15 @@ static void prepare_measure(struct ct_arena *a, struct ct_loops *l)
     l->speed_size = CT_NEWN(a, double, e->nu + 1);
     memcpy(l->row_size, m->row_size, e->nrow * sizeof *l->row_size);
     memcpy(l->speed_size, m->speed_size, e->nu * sizeof *l->speed_size);
-    l->A = CT_NEWN(a, double, e->nu *n + n * n + 1);
+    l->first = CT_NEWN(a, size_t, e->nrow + 1);
+    for (size_t k = 0; k < e->nJ; k++)
+        l->first[e->J[k].row + 1] = k + 1;
+    for (size_t i = 0; i < e->nrow;
+         i++) // a row without entries begins where the one before ends
+        l->first[i + 1] = l->first[i + 1] ? l->first[i + 1] : l->first[i];
+    l->speed = CT_NEWN(a, int, e->nu + 1);
+    l->place = CT_NEWN(a, size_t, e->nu + 1);
+    l->A = CT_NEWN(a, double, e->nu *most + n * n + 1);
     l->w = CT_NEWN(a, double, n + 1);
     l->work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n) + 1);
 }
@@ -243,7 +267,6 @@ static void find_null_vectors(struct releases *r)
 {
     struct ct_partition *s = ct_run_partition(r->l->sim->run);
     const size_t nrow = s->m->nrow;
-    r->nz = nrow - (size_t)s->rank;
     r->z = CT_NEWN(r->a, double, nrow * r->nz + 1);
     struct ct_null_space *null_space = ct_null_space_create(r->a, s);
     for (size_t k = 0; k < r->nz; k++)
@@ -340,11 +363,12 @@ static void choose(struct releases *r, double least)
 
 static void find_releases(struct ct_arena *a, struct ct_loops *l)
 {
-    struct releases r = {.a = a, .l = l};
+    struct releases r
+        = {.a = a, .l = l, .nz = l->sim->system->equations.nrow - (size_t)l->rank};
     double most = 0;
-    find_null_vectors(&r);
     if (!r.nz || ct_run_singular_joints(l->sim->run))
         return;
+    find_null_vectors(&r);
     list_candidates(&r);
     find_shares(&r);
     make_comparable(&r);

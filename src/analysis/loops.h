@@ -22,13 +22,13 @@
 enum { CT_MOST_MEASURED_ROWS = 100 };
 
 struct ct_loop {
-    const char *name;  // of the joint, or of the row if it belongs to no joint
-    int joint;         // -1: none
-    const size_t *row; // of the equations (nrow)
-    size_t nrow;
+    const char *name; // of the joint, or of the row if it belongs to no joint
+    int joint;        // -1: none
+    size_t *row;      // of the equations (nrow)
+    size_t nrow, row_cap;
     // names of the edges of its circuits except arms, the closing joint first (nmember)
-    const char *const *member;
-    size_t nmember;
+    const char **member;
+    size_t nmember, member_cap;
     int rank;    // rank of its own rows at the start
     double near; // at the start; NAN if it is not measured
 };
@@ -60,6 +60,9 @@ struct ct_loops {
     // workspace of ct_loops_measure
     struct ct_program J;
     double *row_size, *speed_size; // scales N and S of (6.5a) at the start
+    size_t *first;                 // (nrow + 1) the first entry of each row among those of J
+    int *speed;                    // (nu) those with an entry in the rows that are measured
+    size_t *place;                 // (nu) their places among these; else 0
     double *A, *w, *work;
 };
 
