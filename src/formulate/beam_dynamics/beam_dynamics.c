@@ -319,7 +319,7 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
                     = ct_ex_add(x, s[e].M[j][k], ct_ex_mul(x, ct_ex_mul(x, g, gk), m));
                 ct_dof_push_pair(b, f, e, j, e, k, v, M);
             }
-            for (int inner = 0; inner < e && chain; inner++)
+            for (int inner = 0; inner < e && chain && !ct_ex_is_zero(moved.e[0]); inner++)
                 for (int k = 2; k < CT_BENT_DOF; k++) {
                     const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
                     ct_dof_push_pair(b, f, e, j, inner, k, v, M);
