@@ -65,6 +65,11 @@ static void allocate(struct ct_driver *r)
         r->sample_end = CT_NEWN(a, double, r->p->ny);
         r->dsample_end = CT_NEWN(a, double, r->p->ny);
     }
+    if (r->method->lower && r->o->step == 0) {
+        r->lower_work = r->method->lower->create(a, r->method->lower, r->p);
+        r->lower_control = ct_step_control_start();
+        r->lower_control.h = INFINITY; // until a step is refused
+    }
     if (r->method->leaves_speeds) {
         r->put_y = CT_NEWN(a, double, r->p->ny);
         r->put_dy = CT_NEWN(a, double, r->p->ny);
@@ -86,6 +91,8 @@ static void start_anew(struct ct_driver *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
+    if (r->lower_work)
+        r->method->lower->restart(r->lower_work);
     r->control.is_starting = true;
 }
 
@@ -530,7 +537,10 @@ static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned
     const bool had_rest = ct_driver_has_remainder(r);
     if (s->method == &ct_crossing)
         ct_driver_adapt_after_failed_crossing(r, error);
-    else
+    else if (s->work == r->lower_work) {
+        r->stats->rejected_steps++;
+        ct_step_control_refuse(&r->lower_control, s->method, h, error);
+    } else
         ct_driver_adapt_after_refusal(r, h, error);
     return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
 }
@@ -601,7 +611,9 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             if (is_crossing)
                 ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
-                ct_step_control_accept(&r->control, r->method, h, error);
+                ct_step_control_accept(s->work == r->lower_work ? &r->lower_control
+                                                                : &r->control,
+                                       s->method, h, error);
             ct_driver_look_ahead(r, s->t1);
             return true;
         }
@@ -643,7 +655,7 @@ static void commit(struct ct_driver *r, const struct ct_planned_step *s)
     if (s->method != r->method && r->method->is_implicit)
         r->method->restart(r->work);
     else if (r->method->accept)
-        r->method->accept(r->work);
+        r->method->accept(s->work == r->lower_work ? s->work : r->work);
 }
 
 // Is the remainder of a crossing to come?
