@@ -14,7 +14,7 @@ const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 // ---- the store ------------------------------------------------------------------------------
 
 // Limit: initial memory of an empty store, and of a copy, which is made in order to grow.
-enum { LEAST_NODES = 256, CLONE_NODES = 4096 };
+enum { LEAST_NODES = 256 };
 // Limit: length of the list of nodes with one newest operand, which bounds the time to search it.
 // Further nodes go to the hash table, of this initial size.
 enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
@@ -51,6 +51,7 @@ static void rehash(struct ct_exs *x)
     for (size_t i = 0; i < nold; i++)
         if (old[i])
             *slot_of(x, &x->node[old[i] - 1]) = old[i];
+    x->shares_hash = false;
 }
 
 static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
@@ -67,8 +68,9 @@ static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
 }
 
 // The arrays node, kinds and link grow together.
-static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
+static void reserve_nodes(struct ct_exs *x, size_t cap)
 {
+    struct ct_arena *a = x->arena;
     const struct ct_exnode *node = x->node;
     const uint16_t *kinds = x->kinds;
     const struct ct_exlink *link = x->link;
@@ -81,6 +83,12 @@ static void reserve_nodes(struct ct_exs *x, size_t cap, struct ct_arena *a)
     memcpy(x->node, node, x->nnode * sizeof *node);
     memcpy(x->kinds, kinds, x->nnode * sizeof *kinds);
     memcpy(x->link, link, x->nnode * sizeof *link);
+    if (x->shares_hash) {
+        const uint32_t *hash = x->hash;
+        x->hash = CT_NEWN(a, uint32_t, x->hash_size);
+        memcpy(x->hash, hash, x->hash_size * sizeof *hash);
+        x->shares_hash = false;
+    }
 }
 
 // Large stores grow eightfold. Arrays left behind cost memory, but reserved pages that are never
@@ -94,7 +102,7 @@ static size_t next_cap(size_t cap)
 static ct_ex append(struct ct_exs *x, const struct ct_exnode *n)
 {
     if (x->nnode == x->node_cap)
-        reserve_nodes(x, next_cap(x->node_cap), x->arena);
+        reserve_nodes(x, next_cap(x->node_cap));
     x->node[x->nnode] = *n;
     x->kinds[x->nnode] = (uint16_t)kinds_of(x, n);
     return (ct_ex){(uint32_t)x->nnode++};
@@ -107,7 +115,10 @@ static ct_ex intern_in_table(struct ct_exs *x, const struct ct_exnode *n)
     uint32_t *slot = slot_of(x, n);
     if (*slot)
         return (ct_ex){*slot - 1};
+    const uint32_t *hash = x->hash;
     const ct_ex e = append(x, n);
+    if (x->hash != hash)
+        slot = slot_of(x, n);
     *slot = e.id + 1;
     x->nhash++;
     return e;
@@ -144,11 +155,9 @@ struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from)
     struct ct_exs *x = CT_NEW(a, struct ct_exs);
     *x = *from;
     x->arena = a;
-    reserve_nodes(x, from->node_cap < CLONE_NODES ? CLONE_NODES : from->node_cap, a);
-    x->sym = CT_NEWN(a, struct ct_sym, from->sym_cap);
-    memcpy(x->sym, from->sym, from->nsym * sizeof *x->sym);
-    x->hash = CT_NEWN(a, uint32_t, from->hash_size);
-    memcpy(x->hash, from->hash, from->hash_size * sizeof *x->hash);
+    x->node_cap = x->nnode; // the first new node, or symbol, copies
+    x->sym_cap = x->nsym;
+    x->shares_hash = true;
     x->label = NULL;
     x->label_cap = x->walk_cap = 0;
     x->generation = 0;

@@ -115,6 +115,7 @@ struct ct_exs {
     // constants, and nodes in no list; open addressing: 0 free, else id + 1
     uint32_t *hash;
     size_t hash_size, nhash;
+    bool shares_hash;   // with the store that it was cloned from
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
     unsigned char
@@ -128,7 +129,8 @@ struct ct_exs {
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
-/// A copy of the store, allocated in a; it can grow, and ids are the same. Labels are not copied.
+/// A copy of the store in a; it can grow, and ids are the same. Labels are not copied. Until it has a
+/// node of its own it shares the nodes of `from`, which must live as long and get none before.
 struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from);
 
 // ---- leaves ---------------------------------------------------------------------------------
