@@ -82,8 +82,7 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 // largest value so far and goes on falling. Below the second part pivots are chosen at every
 // evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
 // their rows avoid it below the second part.
-// Default: shorter steps near small pivots against the accuracy of accelerations. Test:
-// singular_approach.
+// Chosen: shorter steps near small pivots against the accuracy of accelerations.
 static const double foreseen_pivot = 0.8, near_pivot = 0.5;
 // No step ends where the pivot is less than this part. Derived: round-off is divided by its square,
 // and eps / 1e-14 leaves one digit to tell which motion goes on.
