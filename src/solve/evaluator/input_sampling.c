@@ -8,10 +8,13 @@
 // Times in a step near which methods have stages, those of order 2 the first one only: dop853,
 // dopri5 and radau5 leave no wider gaps.
 static const double seen_at[] = {1, 0.25, 0.65, 0.85};
-// Between these a polynomial of degree four is at most this times as far from its start as at them,
-// which is as far as methods follow; a pulse that they miss is farther.
-// Derived: 2.36, the Lebesgue constant of these points and the start.
-static const double missed = 2.4;
+// Between these a smooth change that they follow is hardly larger than at one of them; a pulse that
+// they miss is.
+// Chosen: pulses that are seen against steps that are shortened in vain.
+static const double missed = 2;
+// Steps of fewer pieces are as fine as what is known.
+// Chosen: four
+static const double fine = 4;
 
 static void find_range(struct ct_input_sampling *c, size_t i)
 {
@@ -82,8 +85,7 @@ double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
     const size_t nseen = method->order > 2 ? COUNT(seen_at) : 1;
     for (size_t i = 0; i < c->n; i++) {
         const double *value = c->value + i * (CT_INPUT_SAMPLES + 1);
-        // shorter steps have as many stages as there are values
-        while (h > COUNT(seen_at) * c->piece
+        while (h > fine * c->piece
                && passes_over(value, t / c->piece, fmin((t + h) / c->piece, CT_INPUT_SAMPLES),
                               nseen, unfelt * c->range[i]))
             h /= 2;

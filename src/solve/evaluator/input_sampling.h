@@ -23,7 +23,7 @@ void ct_input_sampling_sample(struct ct_arena *a, struct ct_evaluator *m, double
                               struct ct_input_sampling *c);
 
 /// The longest of h, h/2, h/4 ... such that of no function the largest change within a step from t
-/// is more than 2.4 times the largest at times where the method evaluates, and more than the part
+/// is more than twice the largest at times where the method evaluates, and more than the part
 /// `unfelt` of its range. Changes that come and go within end/CT_INPUT_SAMPLES may be missed, and
 /// steps of up to four such pieces are not looked at.
 double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
