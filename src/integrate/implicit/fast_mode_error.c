@@ -12,8 +12,7 @@
 #include <string.h>
 
 // The cutoff frequency of the filter, over the rate of the motion (8.10).
-// Default: vibrations that are resolved without need against a slow motion that is filtered out.
-// Test: vibration_error
+// Chosen: vibrations that are resolved without need against a slow motion that is filtered out.
 static const double much_faster = 10;
 
 // The rate of the motion: the largest |u|/min(|q|, 1), where coordinates below the absolute

@@ -360,13 +360,15 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     return CT_EVAL_RETRY;
 }
 
-// Further corrections after convergence, down to round-off.
+// Further corrections after convergence, down to round-off if necessary.
 static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
                                struct ct_integrate_stats *stats)
 {
     enum ct_convergence verdict = CT_ITERATING;
+    enum ct_eval e = CT_EVAL_OK;
     ct_newton_iteration_continue(s->it);
-    return correct_until(s, t, y, CT_EVAL_OK, &verdict, stats);
+    e = correct_until(s, t, y, e, &verdict, stats);
+    return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
 }
 
 // ---- a step -------------------------------------------------------------------------------------
