@@ -24,8 +24,7 @@ enum ct_backend {
 };
 
 /// What is left of a row against its natural size (6.5a). Round-off of sums of some hundred terms,
-/// of places known to 1e-13, is below 1e-12: a row with less than the first left is dependent, and
-/// one that is met to that is met.
+/// of places known to 1e-13, is below 1e-12: a row with less than the first left is dependent.
 // Derived: between both, three digits from either.
 static const double ct_rank_tolerance = 1e-9;
 /// Places and angles given to six digits err by 5e-6 of their size at most; a row adds up a few of
