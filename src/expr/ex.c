@@ -480,7 +480,5 @@ ct_ex ct_ex_if(struct ct_exs *x, ct_ex c, ct_ex a, ct_ex b)
 
 ct_ex ct_ex_table(struct ct_exs *x, uint32_t table, uint32_t order, ct_ex a)
 {
-    if (order > 1 && !x->table[table].m) // linear or constant between points
-        return CT_EX_ZERO;
     return intern(x, CT_OP_TABLE, a.id, table, order);
 }

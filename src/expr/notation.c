@@ -1,24 +1,25 @@
 // Numbers, names and single operators as text, LaTeX and C; see print.h.
 #include "expr/print.h"
 
-#include "base/decimal.h"
-
 #include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // ---- numbers ----------------------------------------------------------------------------------
 
 const char *ct_number_text(struct ct_arena *a, double v)
 {
+    char s[40];
     // Layout: whole numbers of up to seven digits are written out: 60, not 6e+01
     if (v == floor(v) && fabs(v) < 1e7)
         return ct_arena_printf(a, "%.0f", v);
-    int digits = 1;
-    for (uint64_t rest = ct_decimal_shortest(fabs(v)).digits / 10; rest; rest /= 10)
-        digits++;
-    // Layout: numbers of 2 to 14 digits have an exponent where one of 15 has
-    return ct_arena_printf(a, "%.*g", digits == 1 || digits > 15 ? digits : 15, v);
+    for (int digits = 1; digits <= 17; digits += digits < 15 ? 14 : 1) {
+        snprintf(s, sizeof s, "%.*g", digits, v);
+        if (strtod(s, NULL) == v)
+            break;
+    }
+    return ct_arena_strdup(a, s);
 }
 
 const char *ct_number_c(struct ct_arena *a, double v)

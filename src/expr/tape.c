@@ -167,7 +167,7 @@ struct queue {
 };
 
 struct compiler {
-    struct ct_arena *arena, *scratch; // of the tape; of workspace
+    struct ct_arena *arena;
     const struct ct_listing *l;
     struct ct_uses uses;
     uint32_t *waits; // by instruction: arguments not yet computed
@@ -252,7 +252,7 @@ static void give_up_slot(struct compiler *c, uint32_t v)
 static void mark_kept(struct compiler *c)
 {
     const struct ct_listing *l = c->l;
-    c->keep = CT_NEWN(c->scratch, unsigned char, l->nvalue);
+    c->keep = CT_NEWN(c->arena, unsigned char, l->nvalue);
     for (size_t k = 0; k < l->nout; k++)
         c->keep[l->out[k]] = 1;
     for (size_t v = 0; v < l->nvalue; v++)
@@ -302,9 +302,9 @@ static void give_slots(struct compiler *c, size_t from, size_t to)
 static void allocate_slots(struct compiler *c, struct ct_tape *t)
 {
     const size_t nvalue = c->l->nvalue;
-    c->slot = CT_NEWN(c->scratch, uint32_t, nvalue);
-    c->free = CT_NEWN(c->scratch, uint32_t, nvalue);
-    c->nuse = CT_NEWN(c->scratch, uint32_t, nvalue);
+    c->slot = CT_NEWN(c->arena, uint32_t, nvalue);
+    c->free = CT_NEWN(c->arena, uint32_t, nvalue);
+    c->nuse = CT_NEWN(c->arena, uint32_t, nvalue);
     for (size_t v = 0; v < nvalue; v++) {
         c->slot[v] = none;
         c->nuse[v] = c->uses.start[v + 1] - c->uses.start[v];
@@ -371,13 +371,11 @@ static struct code write_code(const struct compiler *c, size_t from, size_t to)
 struct ct_tape *ct_tape_create(struct ct_arena *a, const struct ct_listing *l)
 {
     struct ct_tape *t = CT_NEW(a, struct ct_tape);
-    struct ct_arena *scratch = ct_arena_create_under(a);
-    struct compiler c
-        = {.arena = a, .scratch = scratch, .l = l, .uses = ct_listing_uses(scratch, l)};
+    struct compiler c = {.arena = a, .l = l, .uses = ct_listing_uses(a, l)};
 
-    c.order = CT_NEWN(scratch, uint32_t, l->nins);
-    c.waits = CT_NEWN(scratch, uint32_t, l->nins);
-    c.next = CT_NEWN(scratch, uint32_t, l->nins);
+    c.order = CT_NEWN(a, uint32_t, l->nins);
+    c.waits = CT_NEWN(a, uint32_t, l->nins);
+    c.next = CT_NEWN(a, uint32_t, l->nins);
     schedule(&c, 0, l->nprologue, CT_RATE_PARAM);
     schedule(&c, l->nprologue, l->nins, CT_RATE_CALL);
     assert(c.norder == l->nins);
@@ -392,7 +390,6 @@ struct ct_tape *ct_tape_create(struct ct_arena *a, const struct ct_listing *l)
     t->out = CT_NEWN(a, uint32_t, l->nout);
     for (size_t k = 0; k < l->nout; k++)
         t->out[k] = c.slot[l->out[k]];
-    ct_arena_destroy(scratch);
     return t;
 }
 

@@ -272,15 +272,12 @@ static const struct ct_dense_tableau dense_tableau = {.stages = ALL_STAGES,
                                                       .A = &A[STAGES][0],
                                                       .D = &D[0][0]};
 
-extern const struct ct_method ct_method_dopri5;
-
 const struct ct_method ct_method_dop853 = {
     .name = "dop853",
     .summary = "Dormand-Prince 8(5,3), explicit, for smooth motions and tight tolerances",
     .source = "hairer1993",
     .tableau = &tableau,
     .dense_tableau = &dense_tableau,
-    .lower = &ct_method_dopri5,
     .order = 8,
     .error_order = 7,
     // the two embedded solutions may agree by chance, so steps grow by this factor at most

@@ -65,11 +65,6 @@ static void allocate(struct ct_driver *r)
         r->sample_end = CT_NEWN(a, double, r->p->ny);
         r->dsample_end = CT_NEWN(a, double, r->p->ny);
     }
-    if (r->method->lower && r->o->step == 0) {
-        r->lower_work = r->method->lower->create(a, r->method->lower, r->p);
-        r->lower_control = ct_step_control_start();
-        r->lower_control.h = INFINITY; // until a step is refused
-    }
     if (r->method->leaves_speeds) {
         r->put_y = CT_NEWN(a, double, r->p->ny);
         r->put_dy = CT_NEWN(a, double, r->p->ny);
@@ -91,8 +86,6 @@ static void start_anew(struct ct_driver *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
-    if (r->lower_work)
-        r->method->lower->restart(r->lower_work);
     r->control.is_starting = true;
 }
 
@@ -537,10 +530,7 @@ static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned
     const bool had_rest = ct_driver_has_remainder(r);
     if (s->method == &ct_crossing)
         ct_driver_adapt_after_failed_crossing(r, error);
-    else if (s->work == r->lower_work) {
-        r->stats->rejected_steps++;
-        ct_step_control_refuse(&r->lower_control, s->method, h, error);
-    } else
+    else
         ct_driver_adapt_after_refusal(r, h, error);
     return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
 }
@@ -611,9 +601,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             if (is_crossing)
                 ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
-                ct_step_control_accept(s->work == r->lower_work ? &r->lower_control
-                                                                : &r->control,
-                                       s->method, h, error);
+                ct_step_control_accept(&r->control, r->method, h, error);
             ct_driver_look_ahead(r, s->t1);
             return true;
         }
@@ -655,7 +643,7 @@ static void commit(struct ct_driver *r, const struct ct_planned_step *s)
     if (s->method != r->method && r->method->is_implicit)
         r->method->restart(r->work);
     else if (r->method->accept)
-        r->method->accept(s->work == r->lower_work ? s->work : r->work);
+        r->method->accept(r->work);
 }
 
 // Is the remainder of a crossing to come?

@@ -43,8 +43,6 @@ struct ct_driver {
     double *moved, *dmoved; // storage of end, dend where they differ from y1, dy1
     double *point;          // workspace
     void *work;             // workspace of the method
-    void *lower_work;       // of the method of lower order for steps to time events; NULL: none
-    struct ct_step_control lower_control; // steps up to its length are steps of that method
     void *sample_work; // for separate steps to samples; NULL: dense output is always accurate
     double *sample_end, *dsample_end; // ends of those steps  (ny)
     int unchecked;  // steps to come whose dense output is not compared with such a step

@@ -143,10 +143,6 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
     s->h = r->o->step > 0 ? fit_fixed(r, stop) : ct_step_control_fit(rest, wanted);
     s->reaches_stop = s->h >= rest;
     s->t1 = s->reaches_stop ? stop : r->t + s->h;
-    if (r->lower_work && is_time && s->reaches_stop && s->h <= r->lower_control.h) {
-        s->method = r->method->lower;
-        s->work = r->lower_work;
-    }
 }
 
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_step *s)

@@ -298,9 +298,6 @@ struct ct_method {
     const struct ct_dense_tableau *dense_tableau; // of those that have a tableau
     int order;
     int error_order; // the error of a step behaves as h^(error_order + 1), for step control
-    /// A method of lower order with fewer evaluations a step, for short steps to time events. Its
-    /// `restart` and `accept` are those of this method. NULL: none.
-    const struct ct_method *lower;
     /// Needs problem.dae, and solves the constraints itself: its steps are not projected.
     bool is_implicit;
     /// Its speeds meet the velocity constraints only to the order of the method.

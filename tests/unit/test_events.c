@@ -44,34 +44,6 @@ static void steps_end_exactly_on_time_events(void **unused)
         }
 }
 
-// Points of a linear table, close together: dop853 takes steps of dopri5 from one to the next, of
-// six evaluations, and one for the derivative after the event. Far apart its own steps follow after a
-// trial, with 85 evaluations from event to event as without it.
-static void short_steps_to_time_events_are_of_lower_order(void **unused)
-{
-    (void)unused;
-    enum { EVENTS = 64 };
-    static const double gaps[] = {1e-3, 1}, most[] = {7.5, 86};
-    for (size_t i = 0; i < COUNT(gaps); i++) {
-        double due[EVENTS + 1];
-        for (int k = 0; k < EVENTS; k++)
-            due[k] = gaps[i] * (k + 1);
-        due[EVENTS] = INFINITY;
-        struct record *r = begin();
-        r->due = due;
-        double y[NY] = {1};
-        check_fine(r,
-                   run(r, ct_method_find("dop853"),
-                       (struct ct_problem){
-                           .ny = 1, .rhs = zigzag, .next_time_event = next_due, .event = turn},
-                       (struct ct_integrate_options){.t1 = due[EVENTS - 1], .atol = 1e-12}, y));
-        check_close("y", y[0], 1, 1e-10); // as many ways up as down
-        check_below("evaluations from event to event", (double)r->stats.evaluations / EVENTS,
-                    most[i]);
-        end(r);
-    }
-}
-
 // --- state events ----------------------------------------------------------------------------
 
 static void a_bouncing_ball_hits_when_it_should(void **unused)
@@ -404,7 +376,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_end_exactly_on_time_events),
-        cmocka_unit_test(short_steps_to_time_events_are_of_lower_order),
         cmocka_unit_test(a_bouncing_ball_hits_when_it_should),
         cmocka_unit_test(a_state_event_on_a_time_event_loses_neither),
         cmocka_unit_test(infinitely_many_bounces_are_an_error),

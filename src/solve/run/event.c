@@ -111,8 +111,6 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
 // After an impulse: speeds have jumped, and may have passed roots of switches.
 static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
 {
-    if (!r->e->nswitch)
-        return CT_EVAL_OK;
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
     memset(r->crossed, 0, r->e->nswitch * sizeof *r->crossed);
     if (e == CT_EVAL_OK)
@@ -246,7 +244,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
 
     if (!ct_run_tables_reach(r, t))
         return CT_EVAL_FATAL;
-    enum ct_eval e = r->e->nswitch ? ct_run_rhs(r, t, y, r->dy) : CT_EVAL_OK;
+    enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
     if (e != CT_EVAL_OK)
         return e;
     set_sides(r, t, y, r->dy, crossed);
