@@ -449,6 +449,9 @@ static bool integrate(struct ct_sim *sim)
 static void warn_of_positions(struct ct_sim *sim)
 {
     const struct ct_rank_monitor *w = sim->report.singular;
+    // Default: warnings that are missing against warnings of motions that are right.
+    // Test: nearly_stopping_guide.
+    const double roundoff = 0.1 * DBL_EPSILON;
     const struct ct_mark mark = {.file = sim->system->model.file};
     if (!w)
         return;
@@ -461,7 +464,7 @@ static void warn_of_positions(struct ct_sim *sim)
                    "it is crossed",
                    w->over, w->nover > 1 ? " and more often later" : "");
     // two divisions by a pivot, which is as small as the distance, amplify round-off
-    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < DBL_EPSILON)
+    if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < roundoff)
         ct_warning(
             &sim->own, mark, 0,
             "the motion has come near to a singular configuration at t = %.9g without crossing "
