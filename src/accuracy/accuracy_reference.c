@@ -84,7 +84,8 @@ static void choose_single(struct ct_accuracy *a, const struct candidate *c, int 
 }
 // ---- in quadruple precision --------------------------------------------------------------
 
-// Derived: at least the time of an evaluation in quadruple precision against double precision.
+// Time of an evaluation in quadruple precision, over that in double precision. Limit: of the time
+// of a study; a run that takes longer is given up in any case (is_in_time).
 static const double quad_slowdown = 50;
 
 // Is there time for two runs in quadruple precision, with at least as many steps?
