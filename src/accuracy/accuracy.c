@@ -16,7 +16,7 @@
 #include <string.h>
 
 // Chosen: the default of the wanted error, as documented in docs/cli.md.
-static const double standard_error = 1e-6;
+static const double default_error = 1e-6;
 // Limit: six methods in about a minute; more if the reference alone takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;
 // Limit: of the time spent on repetitions, which only make measured times less noisy.
@@ -31,7 +31,7 @@ static const double least_fixed_steps = 100;
 enum { DECADES_OF_STEPS = 2 }; // Limit: rows of a table
 // Errors that differ by less than this part of themselves are equal. Derived: the table shows two
 // digits.
-static const double same_error = 0.01;
+static const double same_error_change = 0.01;
 
 // ---- ladders ------------------------------------------------------------------------------------
 
@@ -104,7 +104,8 @@ static bool shows_mesh(const struct ct_accuracy *a, size_t start)
     const struct ct_work_precision_point *last = &a->point[a->npoint - 1];
     bool is_same = true;
     for (int i = 1; i < SETTINGS; i++)
-        is_same = is_same && fabs(last[-i].error - last->error) <= same_error * last->error;
+        is_same
+            = is_same && fabs(last[-i].error - last->error) <= same_error_change * last->error;
     return is_same;
 }
 
@@ -329,7 +330,7 @@ struct ct_accuracy *ct_accuracy_create(struct ct_ctx *ctx, struct ct_system *sys
     }
     c.a->system = sys;
     c.a->o = &o;
-    c.a->wanted = c.a->o->error != 0 ? c.a->o->error : standard_error;
+    c.a->wanted = c.a->o->error != 0 ? c.a->o->error : default_error;
     const bool ok = ct_enter(ctx, create, &c);
     c.a->o = NULL;
     if (ok)
@@ -429,7 +430,7 @@ static const struct ct_work_precision_point *find_nearest(const struct ct_accura
     for (size_t i = 0; i < a->npoint; i++)
         least = fmin(least, a->point[i].error);
     for (size_t i = 0; i < a->npoint; i++)
-        if (a->point[i].error <= (1 + same_error) * least
+        if (a->point[i].error <= (1 + same_error_change) * least
             && (!nearest || a->point[i].seconds < nearest->seconds))
             nearest = &a->point[i];
     return nearest;

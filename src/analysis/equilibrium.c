@@ -49,7 +49,7 @@ static double allowed(const struct ct_equilibrium_search *s)
 {
     double part = 1;
     for (int k = 0; k < s->l->nu; k++) {
-        const double most = s->turns[k] ? ct_longest_turn : s->length;
+        const double most = s->turns[k] ? ct_largest_rotation_step : s->length;
         if (fabs(s->dq[k]) * part > most)
             part = most / fabs(s->dq[k]);
     }

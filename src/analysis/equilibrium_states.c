@@ -91,8 +91,8 @@ static double allowed(const struct search *s)
 {
     double part = 1;
     for (size_t k = 0; k < s->l->m->e->nmotion; k++)
-        if (s->turns[k] && fabs(s->dq[k]) * part > ct_longest_turn)
-            part = ct_longest_turn / fabs(s->dq[k]);
+        if (s->turns[k] && fabs(s->dq[k]) * part > ct_largest_rotation_step)
+            part = ct_largest_rotation_step / fabs(s->dq[k]);
     return part;
 }
 

@@ -8,7 +8,7 @@
 
 /// Longest rotation in one step [rad].
 /// Chosen: shorter steps are more steps; longer ones may jump to another equilibrium.
-static const double ct_longest_turn = 0.2;
+static const double ct_largest_rotation_step = 0.2;
 
 /// Which coordinates are angles? (nu)
 bool *ct_equilibrium_turns(const struct ct_linear *l);

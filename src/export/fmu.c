@@ -8,7 +8,7 @@
 // Tolerance of steps relative to the tolerance of co-simulation, because local errors
 // accumulate over a run.
 // Chosen: accuracy of co-simulation against number of steps.
-static const double share_of_steps = 1e-2;
+static const double step_tolerance_ratio = 1e-2;
 
 #if defined(__linux__) && defined(__x86_64__)
 static const char *const platform[] = {"linux64", "x86_64-linux"}; // of FMI 2.0, of 3.0
@@ -57,7 +57,7 @@ bool ct_fmu_write(struct ct_exported *w, int version, const char *path)
     struct ct_arena *a = w->ctx->model;
     struct ct_fmu f = {.w = w, .version = version};
     f.source = (struct ct_export_fmu){
-        .version = version, .tolerance = w->sim->tolerance, .share = share_of_steps};
+        .version = version, .tolerance = w->sim->tolerance, .share = step_tolerance_ratio};
     ct_fmu_list_variables(&f);
     ct_fmu_find_dependencies(&f);
     ct_fmu_list_directions(&f);

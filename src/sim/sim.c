@@ -18,7 +18,7 @@
 // Over the reference cases the output error is up to 3000 times the tolerance of the steps with
 // dopri5 and past singular configurations, and up to 1300 times with dop853 without loops.
 // Derived: from those measurements; a few cases are left to output error control.
-static const double usual_share = 2e-3, share_of_high_order = 5e-3;
+static const double step_tolerance_part = 2e-3, high_order_tolerance_part = 5e-3;
 // A step of order p has an error of order h^(p+1), the solution one of order h^p: T = c
 // tol^(p/(p+1)). For order 2, c is 10 to 50 in most cases.
 // Derived: from those measurements.
@@ -28,7 +28,7 @@ static const double order2_factor = 30;
 // Derived: (T^1.5)^(2/3) = T.
 static const double radau_power = 1.5;
 // Derived: the square root of 1e-4; for T above 1e-4 the power would be the looser one.
-static const double radau_share = 1e-2; // for loose tolerances
+static const double radau_tolerance_part = 1e-2; // for loose tolerances
 // Smallest relative tolerance of steps without loops, some ninety round-off errors. With loops
 // it is ct_position_tolerance, to which projection satisfies the constraints. Steps with
 // smaller tolerances, down to 1e-14, do not improve outputs past singular configurations.
@@ -40,7 +40,7 @@ static const double least_rtol = 2e-14;
 // Derived: from those measurements.
 static const double high_order_up_to = 1e-2;
 // Limit: of the time to read the clock.
-static const long steps_between_looks = 32; // reading the clock, for runs with a deadline
+static const long steps_between_clock_reads = 32; // reading the clock, for runs with a deadline
 
 // ---- options -------------------------------------------------------------------------------
 
@@ -86,9 +86,9 @@ static double tolerance_of_steps(const struct ct_sim *sim, const struct ct_metho
     const double t = sim->tolerance;
     if (m->is_implicit)
         return m->order < 3 ? pow(t / order2_factor, 1.5)
-                            : fmin(radau_share * t, pow(t, radau_power));
+                            : fmin(radau_tolerance_part * t, pow(t, radau_power));
     const bool is_open = sim->system->equations.nrow == 0;
-    return t * (m->order > 5 && is_open ? share_of_high_order : usual_share);
+    return t * (m->order > 5 && is_open ? high_order_tolerance_part : step_tolerance_part);
 }
 
 static void set_tolerances(const struct ct_sim *sim, const struct ct_method *m, double absolute,
@@ -367,7 +367,7 @@ static bool at_progress(void *user, double t, double end)
     if (ct_guard_is_interrupted())
         sim->is_interrupted = true;
     // reading the clock costs as much as a step of a small system
-    if (sim->deadline > 0 && sim->nstep++ % steps_between_looks == 0)
+    if (sim->deadline > 0 && sim->nstep++ % steps_between_clock_reads == 0)
         sim->is_late = is_hopeless(sim, t, end);
     return !sim->is_late && !sim->is_interrupted;
 }

@@ -25,11 +25,11 @@
 // Tolerance of the second run relative to the first. With a tenth, the error often does not
 // decrease enough; a hundredth costs more and is not better.
 // Chosen: between those.
-static const double tightening = 1. / 30;
+static const double tolerance_reduction = 1. / 30;
 // If the tolerance can be tightened by less than this factor, the second run is looser by this
 // factor. Then it has the larger error.
 // Chosen: errors that differ by less are hard to tell apart by a difference.
-static const double least_gain = 5;
+static const double least_tolerance_ratio = 5;
 // A second run may have a tolerance this much below the smallest one of an ordinary run. In
 // motions with many turns truncation errors decrease until there. An explicit step has
 // round-off of h f only, since that of y is carried over, and a shorter step has proportionally
@@ -38,14 +38,14 @@ static const double least_gain = 5;
 static const double beyond = 0.1;
 // Limit: one more try, and a message then.
 // factor by which the tolerance is looser if the second run failed
-static const double second_try = 3;
+static const double retry_tolerance_ratio = 3;
 // Errors follow tolerances only roughly, and not at all if they are round-off: two runs with
 // independent errors of equal size differ by sqrt(2) times the error.
 // Derived: sqrt(2), and a little for rough estimates.
 static const double tolerance_margin = 1.5;
 // An output is accurate as long as its error is within this many tolerances.
 // Definition: the promise of docs/accuracy.md.
-static const double held_tolerances = 10;
+static const double promised_tolerances = 10;
 
 struct companion {
     const char *method;
@@ -73,9 +73,9 @@ static const char *name_method(const struct ct_sim *sim)
 static struct companion choose_looser(const struct ct_sim *sim)
 {
     return (struct companion){.method = name_method(sim),
-                              .rtol = least_gain * sim->run_options.rtol,
-                              .least_rtol
-                              = least_gain * fmax(sim->report.stats.last_rtol, sim->least_rtol),
+                              .rtol = least_tolerance_ratio * sim->run_options.rtol,
+                              .least_rtol = least_tolerance_ratio
+                                          * fmax(sim->report.stats.last_rtol, sim->least_rtol),
                               .margin = tolerance_margin};
 }
 
@@ -83,7 +83,7 @@ static struct companion choose_tighter(const struct ct_sim *sim, double least)
 {
     const double rtol = sim->run_options.rtol;
     return (struct companion){.method = name_method(sim),
-                              .rtol = fmax(rtol * tightening, least),
+                              .rtol = fmax(rtol * tolerance_reduction, least),
                               .least_rtol = least,
                               .margin = tolerance_margin};
 }
@@ -104,7 +104,8 @@ static struct companion choose(const struct ct_sim *sim)
         return choose_tighter(sim, sim->least_rtol);
     const double least = (w && w->npassed > 0 ? 1 : beyond) * sim->least_rtol;
     const double held = fmin(o->rtol, sim->report.stats.last_rtol);
-    return held < least_gain * least ? choose_looser(sim) : choose_tighter(sim, least);
+    return held < least_tolerance_ratio * least ? choose_looser(sim)
+                                                : choose_tighter(sim, least);
 }
 
 // ---- comparing -----------------------------------------------------------------------------
@@ -159,7 +160,7 @@ static void judge(const struct ct_sim *sim, const struct comparison *c, double m
                   struct ct_estimate *e)
 {
     const size_t n = sim->system->equations.nresult;
-    const double wanted = held_tolerances * sim->tolerance;
+    const double wanted = promised_tolerances * sim->tolerance;
     // round-off of the steps has random signs; a run with the same round-off does not show it
     const double roundoff = DBL_EPSILON * sqrt(fmax(1, (double)sim->report.stats.steps));
     const struct ct_equations *q = &sim->system->equations;
@@ -268,11 +269,11 @@ static struct companion choose_third(const struct ct_sim *sim, const struct comp
     struct companion c = *second;
     c.method = name_method(sim);
     if (second->rtol >= sim->run_options.rtol) {
-        c.rtol *= least_gain;
-        c.least_rtol *= least_gain;
+        c.rtol *= least_tolerance_ratio;
+        c.least_rtol *= least_tolerance_ratio;
         return c;
     }
-    c.rtol *= tightening;
+    c.rtol *= tolerance_reduction;
     return c.rtol >= c.least_rtol ? c : choose_looser(sim);
 }
 
@@ -314,8 +315,8 @@ static bool find_companion(const struct ct_sim *sim, struct ct_ctx *said, struct
         return true;
     if (c->step > 0)
         return false;
-    c->rtol *= second_try;
-    c->least_rtol *= second_try;
+    c->rtol *= retry_tolerance_ratio;
+    c->least_rtol *= retry_tolerance_ratio;
     c->method = name_method(sim);
     if (run_companion(sim, said, c, comparison))
         return true;

@@ -10,7 +10,7 @@
 #include <string.h>
 
 // Groups of seed directions: position, speed and u' along each speed k, then auxiliary unknowns.
-enum { PLACE, SPEED, ACCELERATION, INNER, NLEVEL = INNER };
+enum { POSITION, SPEED, ACCELERATION, INNER, NLEVEL = INNER };
 
 struct seeds {
     struct ct_arena *a; // NULL: scratch
@@ -45,7 +45,7 @@ static void plant_places(struct ct_build *b, struct seeds *s)
     const size_t nZ
         = ct_ex_jacobian(b->x, scratch, scratch, rate, e->nq, speeds.e, speeds.n, &Z);
     for (size_t i = 0; i < nZ; i++)
-        plant(b, s, e->q[Z[i].row].symbol, direction(b, PLACE, Z[i].direction), Z[i].value);
+        plant(b, s, e->q[Z[i].row].symbol, direction(b, POSITION, Z[i].direction), Z[i].value);
 }
 
 // Picks the entries of one group; their directions are then counted from 0.
@@ -105,10 +105,10 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 
 // ---- derivatives --------------------------------------------------------------------------------
 
-// expected_evaluations: predicted number of evaluations in a run. making: the cost of generating
-// one operation (nodes, listing, machine code), in executions of it. Chosen: time to make a program
-// against its use.
-static const double expected_evaluations = 300, making = 1500;
+// expected_evaluations: predicted number of evaluations in a run. generation_cost: that of
+// generating one operation (nodes, listing, machine code), in executions of it. Chosen: time to
+// make a program against its use.
+static const double expected_evaluations = 300, generation_cost = 1500;
 
 // Common input of both ways: r followed by the auxiliary unknowns, v, and the seeds.
 struct slopes {
@@ -132,7 +132,7 @@ static void plant_all(struct ct_build *b, struct slopes *s)
 static void sort_out(struct ct_build *b, struct ct_residual *f, const struct ct_slope *all,
                      size_t n)
 {
-    f->ndq = pick(b, all, n, PLACE, &f->dq);
+    f->ndq = pick(b, all, n, POSITION, &f->dq);
     f->ndu = pick(b, all, n, SPEED, &f->du);
     f->nda = pick(b, all, n, ACCELERATION, &f->da);
     f->ndk = pick(b, all, n, INNER, &f->dk);
@@ -250,7 +250,7 @@ static double cost_along(struct ct_build *b, const struct ct_directional *along,
 {
     const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, along->rate, nrate);
     return ct_counted_cost(&c)
-         * (making + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
+         * (generation_cost + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
 }
 
 // Derives along directions if that is requested or cheaper than entry by entry. True: done.
@@ -263,10 +263,10 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     const size_t ndirection = NLEVEL * s->nu + s->ninner;
     size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n,
                              (uint32_t)ndirection, &all, &operations);
-    const double entries = operations * (making + expected_evaluations);
+    const double entries = operations * (generation_cost + expected_evaluations);
     // the cost of a single colour is a bound of the gain
     const struct ct_tape_counts c = ct_ex_count(scratch, b->x, s->r, s->nu);
-    if (form == CT_SLOPES_AUTO && entries < 2 * making * ct_counted_cost(&c))
+    if (form == CT_SLOPES_AUTO && entries < 2 * generation_cost * ct_counted_cost(&c))
         return false;
     struct ct_directional *along = derive_along(b, s);
     sort_out(b, f, all, n);

@@ -197,10 +197,11 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 static bool is_allowed(const struct ct_batch *s)
 {
     // Chosen: time to compile against time to run.
-    enum { LARGE = 20000 }; // operations
+    enum { LARGE_PROGRAM = 20000 }; // operations
     return s->origin
         && (!s->nsolver
-            || (s->solver[0]->code.listing && s->solver[0]->solver->operations < LARGE));
+            || (s->solver[0]->code.listing
+                && s->solver[0]->solver->operations < LARGE_PROGRAM));
 }
 
 // Made where the file's own values start, a form is the same whoever needs it first.
@@ -365,9 +366,9 @@ void ct_lane_limit_turn(struct ct_batch *s, int l, double t, const double *y)
 {
     struct ct_lane *lane = &s->lane[l];
     // Derived: the root of the unit round-off, and more
-    const double glance = 1e-6; // of the run, or [s]
+    const double small_part = 1e-6; // of the run, or [s]
     const double turning = ct_memory_turning(s->m, ct_time_just_before(t, lane->events.pending),
-                                             y, glance * fmin(1, lane->t1));
+                                             y, small_part * fmin(1, lane->t1));
     ct_evaluator_set(s->m, t, y);
     if (turning > 0)
         lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);

@@ -100,8 +100,10 @@ static inline void check_solvers(struct ct_batch *s, set wanted)
         ct_lane_run(&f->checked, s->input);
         const vec *out = f->checked.out, *B = out + 3 * n + s->nu + s->rank;
         const set is_strong = set_of(s->strength > ct_solver_least_strength);
-        const set is_plain = set_of(weigh_left(s, f, out + n) <= ct_left_plain) & is_strong;
-        const set is_known = set_of(weigh_left(s, f, out + 2 * n) <= ct_left_most) & is_strong;
+        const set is_plain
+            = set_of(weigh_left(s, f, out + n) <= ct_refinement_residual) & is_strong;
+        const set is_known
+            = set_of(weigh_left(s, f, out + 2 * n) <= ct_largest_residual) & is_strong;
         vec kappa = {0};
         for (size_t i = 0; i < f->code.nB; i++)
             kappa = larger(kappa, B[i]);

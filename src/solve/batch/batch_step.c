@@ -102,7 +102,7 @@ static void find_multipliers(struct ct_batch *s, vec t, const vec *y, const vec 
             continue;
         ct_lane_run(&f->checked, s->input);
         const set good
-            = here & set_of(weigh_left(s, f, f->checked.out + 2 * n) <= ct_left_most);
+            = here & set_of(weigh_left(s, f, f->checked.out + 2 * n) <= ct_largest_residual);
         put(s->input + s->m->at_lam, f->checked.out + s->nu, s->rank, good);
         rest &= ~good;
     }
@@ -578,7 +578,7 @@ static void predict_singular(struct ct_batch *s, vec t, const vec *y, set wanted
         lane->pivot_last = now;
         lane->pivot_time = t[l];
         if (isfinite(before) && before > now && dt > 0
-            && dt * now / (before - now) <= CT_SINGULAR_STEPS * lane->control.h)
+            && dt * now / (before - now) <= CT_STEPS_NEAR_SINGULAR * lane->control.h)
             ct_lane_give_up(s, l);
     }
 }

@@ -21,11 +21,13 @@ static int order_rows(struct ct_partition *s)
 // preferred as independent have a small weight.
 static void weigh_columns(struct ct_partition *s, double *w)
 {
-    // apart: ratio of the largest to the smallest inertia from which weights are used. Round-off of
-    // the heavy equations is 1e6 eps = 2e-10 of the light ones, which then have ten digits.
-    // little: weight of preferred speeds; entries of B may become 1/little = 33 times larger.
+    // inertia_ratio: ratio of the largest to the smallest inertia from which weights are used.
+    // Round-off of the heavy equations is 1e6 eps = 2e-10 of the light ones, which then have ten
+    // digits.
+    // preferred_weight: weight of preferred speeds; entries of B may become 1/preferred_weight = 33
+    // times larger.
     // Chosen: the wishes for independent speeds against the conditioning of J_d.
-    const double apart = 1e6, little = 0.03;
+    const double inertia_ratio = 1e6, preferred_weight = 0.03;
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
@@ -35,10 +37,10 @@ static void weigh_columns(struct ct_partition *s, double *w)
         most = fmax(most, inertia);
         w[j] = 1;
     }
-    for (size_t j = 0; j < n && most > apart * least; j++)
+    for (size_t j = 0; j < n && most > inertia_ratio * least; j++)
         w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
     for (size_t j = 0; j < n && s->prefers_independent; j++)
-        w[j] *= s->prefers_independent[j] ? little : 1;
+        w[j] *= s->prefers_independent[j] ? preferred_weight : 1;
 }
 
 static void take_columns(struct ct_partition *s)
@@ -226,10 +228,10 @@ static size_t bare_speed(const struct ct_partition *s)
 // A pivot of M or B' M B that is at most this part of the terms it is the sum of is round-off, and
 // the motion has no inertia.
 // Chosen: round-off of a sum of several terms against small inertias that are meant.
-static const double rounding_pivot = 16 * DBL_EPSILON;
+static const double roundoff_pivot = 16 * DBL_EPSILON;
 // A pivot above this part of the terms is certainly not round-off: the slower test is left out.
 // Chosen: time of that test against the round-off of the other pivots in this one.
-static const double hidden_pivot = 1e-8;
+static const double sound_pivot = 1e-8;
 
 // The elastic coordinate that moves the same masses as speed k, if there is one; else k. A message
 // names it, as the beam whose sections have no inertia is the cause.
@@ -274,7 +276,7 @@ static bool is_elastic_motion(struct ct_partition *s, size_t k)
     double left = M[k + n * k];
     for (int i = 0; i < ne; i++)
         left -= s->b[i] * s->r[i];
-    return left <= rounding_pivot * M[k + n * k];
+    return left <= roundoff_pivot * M[k + n * k];
 }
 
 // ---- what elimination leaves of a motion that moves no mass -------------------------------------
@@ -340,7 +342,7 @@ static int lacking_speed(const struct ct_partition *s, const double *z, int k)
 {
     const size_t n = s->m->nu;
     const struct ct_u *u = s->m->e->u;
-    double most = hidden_pivot * gross_inertia(s, z, true);
+    double most = sound_pivot * gross_inertia(s, z, true);
     int named = k;
     for (size_t i = 0; i < n && !bare_beam_of(s->m->model, &u[k]); i++) {
         const double moved = z[i] * z[i] * s->m->M[i + n * i];
@@ -377,15 +379,15 @@ static int rounded_pivot(struct ct_partition *s, int f, bool of_beams)
         memset(motion, 0, s->m->nu * sizeof *motion);
         add_motion(s, i, 1, motion);
         const double turned = turned_inertia(s, (size_t)s->independent[i]);
-        if (pivot > hidden_pivot * fmax(gross_inertia(s, motion, true), turned))
+        if (pivot > sound_pivot * fmax(gross_inertia(s, motion, true), turned))
             continue;
         find_pivot_motion(s, f, i, x, motion);
         const double rigid = gross_inertia(s, motion, false),
                      gross = gross_inertia(s, motion, true);
-        if (pivot <= rounding_pivot * turned
+        if (pivot <= roundoff_pivot * turned
             && bare_beam_of(s->m->model, &s->m->e->u[s->independent[i]]))
             return s->independent[i];
-        if (pivot <= rounding_pivot * gross && !(of_beams && 2 * rigid > gross))
+        if (pivot <= roundoff_pivot * gross && !(of_beams && 2 * rigid > gross))
             return lacking_speed(s, motion, s->independent[i]);
         if (!(root > 0))
             break;
@@ -428,10 +430,10 @@ static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
     bool is_doubtful = false;
     for (size_t i = 0; i < n; i++) {
         if (bare_beam_of(s->m->model, &s->m->e->u[i])
-            && pivot[i] <= rounding_pivot * turned_inertia(s, i))
+            && pivot[i] <= roundoff_pivot * turned_inertia(s, i))
             return (int)i;
-        is_doubtful |= pivot[i] <= hidden_pivot * s->m->M[i + n * i];
-        if (pivot[i] <= rounding_pivot * s->m->M[i + n * i]
+        is_doubtful |= pivot[i] <= sound_pivot * s->m->M[i + n * i];
+        if (pivot[i] <= roundoff_pivot * s->m->M[i + n * i]
             && !(is_exact && elastic_beside(s, i) == i && !is_elastic_motion(s, i)))
             return (int)i;
     }
@@ -553,7 +555,7 @@ static bool choose_here(struct ct_partition *s)
 static bool choose_ahead(struct ct_partition *s)
 {
     // Chosen: conditioning here against a choice that lasts.
-    const double nearly = 0.5;
+    const double nearly_as_good = 0.5;
     if (!choose_here(s) || ct_partition_is_large(s) || s->rank == (int)s->m->nu
         || s->m->e->solution)
         return true;
@@ -562,7 +564,8 @@ static bool choose_ahead(struct ct_partition *s)
     if (ct_partition_accelerate(s) != CT_EVAL_OK)
         return false;
     choose_there(s);
-    return (ct_partition_factor(s) && s->sigma >= nearly * sigma && nearly * s->kappa <= kappa)
+    return (ct_partition_factor(s) && s->sigma >= nearly_as_good * sigma
+            && nearly_as_good * s->kappa <= kappa)
         || choose_here(s);
 }
 

@@ -25,7 +25,7 @@ static const double ct_redundant_degradation = 2.5;
 // Near a singular configuration every choice is poor, and one that was made there may still be poor
 // after it. There another choice is made whenever sigma has changed by this factor.
 // Chosen: a good choice soon against the cost of choices.
-static const double ct_poor_change = 1.25;
+static const double ct_sigma_change_near_singular = 1.25;
 // Projections stop at this residual [rad, m]. Derived: 450 units of round-off, which is what sums
 // of some hundred terms of order one may leave.
 static const double ct_position_tolerance = 1e-13;
@@ -43,10 +43,10 @@ enum { CT_MOST_NEWTON = 25 };
 // fixed order of pivots is used while its strength (solver.h) has changed by less than this factor
 // since sigma was computed last.
 // Chosen: a recent sigma against the time of dense factors.
-static const double ct_most_change = 1.5;
-// If strength and sigma have changed by the same factor, to ct_alike, sigma is extrapolated by the
-// strength, up to a change by ct_most_change_alike. Chosen: as above.
-static const double ct_alike = 1.02, ct_most_change_alike = 4;
+static const double ct_most_strength_change = 1.5;
+// If strength and sigma have changed by the same factor, to ct_same_change, sigma is extrapolated
+// by the strength, up to a change by ct_most_extrapolated_change. Chosen: as above.
+static const double ct_same_change = 1.02, ct_most_extrapolated_change = 4;
 // The residual check of a solver is left out while its strength is within this factor of that at
 // the last check. Chosen: the time of checks against pivots that become bad.
 static const double ct_same_strength = 1.25;
@@ -58,7 +58,7 @@ static const double ct_correction_growth = 3;
 // Residual of the equations relative to their largest terms. Above the first value the solution is
 // refined; above the second one the solver is not used.
 // Chosen: digits of accelerations against the time of a refinement.
-static const double ct_left_plain = 1e-13, ct_left_most = 1e-11;
+static const double ct_refinement_residual = 1e-13, ct_largest_residual = 1e-11;
 
 static inline bool ct_is_within(double ratio, double factor)
 {
@@ -74,7 +74,7 @@ static inline bool ct_partition_is_degraded(double kappa, double kappa_chosen, d
     const bool is_poor = is_redundant && sigma * fall < sigma_best;
     return kappa > ct_kappa_growth * kappa_chosen + 1 || kappa > ct_kappa_largest
         || sigma * fall < sigma_chosen
-        || (is_poor && !ct_is_within(sigma / sigma_chosen, ct_poor_change));
+        || (is_poor && !ct_is_within(sigma / sigma_chosen, ct_sigma_change_near_singular));
 }
 
 /// Is the residual `size` of a projection small enough? The tolerance is a few hundred units of
@@ -116,7 +116,7 @@ struct ct_strength {
 /// The solver is sound while its strength is between low and high (out).
 static inline void ct_strength_range(const struct ct_strength *s, double *low, double *high)
 {
-    const double most = s->is_alike ? ct_most_change_alike : ct_most_change;
+    const double most = s->is_alike ? ct_most_extrapolated_change : ct_most_strength_change;
     const double least = s->at_sigma / most;
     *low = least > ct_solver_least_strength ? least : ct_solver_least_strength;
     *high = s->at_sigma * most;
@@ -126,8 +126,9 @@ static inline void ct_strength_range(const struct ct_strength *s, double *low, d
 static inline void ct_strength_compare(struct ct_strength *s, double sigma)
 {
     const double change = s->now / s->at_sigma;
-    if (s->at_sigma > 0 && !ct_is_within(change, ct_alike)) // else there is nothing to learn
-        s->is_alike = ct_is_within(sigma / s->sigma_found / change, ct_alike);
+    if (s->at_sigma > 0
+        && !ct_is_within(change, ct_same_change)) // else there is nothing to learn
+        s->is_alike = ct_is_within(sigma / s->sigma_found / change, ct_same_change);
     s->at_sigma = s->now;
     s->sigma_found = sigma;
 }

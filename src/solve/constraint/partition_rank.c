@@ -53,19 +53,19 @@ void ct_partition_find_units(struct ct_partition *s)
 {
     // One unit serves all rows while their levers differ by less than this factor.
     // Chosen: rows of one size against small and large loops in one mechanism.
-    const double alike = 4;
+    const double one_unit_ratio = 4;
     // Part of the largest lever below which a row has none, as its points coincide at the start.
     // Chosen: coincidence to the digits of data against short links.
-    const double no_link = 1e-4;
+    const double zero_lever = 1e-4;
     const double most = find_levers(s, s->unit);
     double largest = 0, least = INFINITY;
     for (size_t i = 0; i < s->m->nrow; i++) {
-        if (s->unit[i] <= no_link * most)
+        if (s->unit[i] <= zero_lever * most)
             s->unit[i] = s->unit[i] > 0 ? most : 1;
         largest = fmax(largest, s->unit[i]);
         least = fmin(least, s->unit[i]);
     }
-    s->has_units = largest > alike * least;
+    s->has_units = largest > one_unit_ratio * least;
 }
 
 // A (nrow x nrow, out) = the lower triangle of J J', with rows of J divided by their units.

@@ -7,12 +7,12 @@
 
 // After so many failed checks in a row a new order of pivots is sought.
 // Chosen: single failures against evaluations by dense matrices meanwhile.
-enum { MOST_WEAK = 3 };
-// If the residual was at most this part of what is allowed, the next UNCHECKED projections are not
+enum { MOST_FAILED_CHECKS = 3 };
+// If the residual was at most this part of what is allowed, the next UNCHECKED_PROJECTIONS are not
 // checked as long as the strength of the pivots stays the same.
 // Chosen: the time of checks against pivots that become bad.
-static const double well_below = 0.1;
-enum { UNCHECKED = 7 };
+static const double small_residual_ratio = 0.1;
+enum { UNCHECKED_PROJECTIONS = 7 };
 
 static struct ct_partition_sets partition(const struct ct_partition *s)
 {
@@ -137,7 +137,7 @@ void ct_partition_update_sigma(struct ct_partition *s)
 // A solver compares each inertia with the largest that it has had, and does not know which terms
 // have cancelled in it. Dense matrices do, and take over this factor before the limit is reached.
 // Chosen: the time of dense matrices against cancellation that is missed.
-static const double wary = 10;
+static const double cancellation_margin = 10;
 
 static bool has_one_freedom(const struct ct_partition *s)
 {
@@ -148,7 +148,7 @@ static bool has_one_freedom(const struct ct_partition *s)
 static bool use_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];
-    f->least_part = has_one_freedom(s) ? wary * s->least_cancellation : 0;
+    f->least_part = has_one_freedom(s) ? cancellation_margin * s->least_cancellation : 0;
     s->strength.now = ct_solver_solve(f, s->m, s->a);
     if (!ct_partition_is_sound(s) || f->has_fallen)
         return false;
@@ -159,7 +159,7 @@ static bool use_solver(struct ct_partition *s)
     ct_solver_check(f, s->m);
     s->solves.refined++;
     memcpy(s->a, f->a, s->m->nu * sizeof *s->a);
-    return f->refined_remainder <= ct_left_most;
+    return f->refined_remainder <= ct_largest_residual;
 }
 
 enum ct_eval ct_partition_solve(struct ct_partition *s)
@@ -195,13 +195,16 @@ static void check_solver(struct ct_partition *s)
     }
     s->correction_checked = s->correction > 0 ? s->correction : s->correction_checked;
     ct_solver_check(f, s->m);
-    s->needs_refinement = f->remainder > ct_left_plain;
-    s->nunchecked = f->remainder <= well_below * ct_left_plain ? UNCHECKED : 0;
+    s->needs_refinement = f->remainder > ct_refinement_residual;
+    s->nunchecked = f->remainder <= small_residual_ratio * ct_refinement_residual
+                      ? UNCHECKED_PROJECTIONS
+                      : 0;
     s->checked_at = s->strength.now;
-    if (s->strength.now > ct_solver_least_strength && f->refined_remainder <= ct_left_most) {
+    if (s->strength.now > ct_solver_least_strength
+        && f->refined_remainder <= ct_largest_residual) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
-    } else if (++s->nweak >= MOST_WEAK * checks_before_retry(s)) {
+    } else if (++s->nweak >= MOST_FAILED_CHECKS * checks_before_retry(s)) {
         make_solver(s);
         forget_strength(s);
     }
@@ -228,7 +231,7 @@ bool ct_partition_solver_multipliers(struct ct_partition *s)
     ct_solver_check(f, s->m);
     memcpy(s->lam, f->lam,
            s->m->nrow * sizeof *s->lam); // no row is redundant, and rows are in ascending order
-    return f->refined_remainder <= ct_left_most;
+    return f->refined_remainder <= ct_largest_residual;
 }
 
 enum ct_eval ct_partition_accelerate_at(struct ct_partition *s, double t, const double *y)

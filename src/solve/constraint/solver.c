@@ -7,19 +7,19 @@
 
 // The overhead of the dense solver, in operations of straight-line code.
 // Chosen: about what it takes; only the choice of a solver depends on it.
-static const double call = 500;
+static const double dense_call_cost = 500;
 // Limit: nodes of the expressions of a symbolic solver; with more another solver is used. A node
 // takes about a microsecond and half a kilobyte: two seconds and a gigabyte.
 static const double most_nodes = 2e6;
 // Limit: the same where the caller wants a symbolic solver whatever it costs.
-static const double most_asked_nodes = 8e6;
+static const double most_requested_nodes = 8e6;
 // Nodes of all programs, those of checks and projections included, over those of the solution.
 // Chosen: about the largest ratio; a symbolic solver with more nodes is not made.
-static const double programs = 4;
+static const double all_programs_ratio = 4;
 // The symbolic solver of [M J'; J 0] is made if its predicted cost is below this part of the
 // others'.
 // Chosen: the time to make it against the time that it saves.
-static const double worth = 0.9;
+static const double kkt_cost_ratio = 0.9;
 
 // See solver.h. Chosen: three digits that are lost against the time of dense matrices.
 const double ct_solver_least_strength = 1e-3;
@@ -87,7 +87,7 @@ static double cost_of(const struct ct_solver *f)
 // The number of nodes that a symbolic solver may have to be cheaper than one of this cost.
 static double allowed(double cost)
 {
-    return fmin(programs * longest(fmin(cost, most_nodes)), most_nodes);
+    return fmin(all_programs_ratio * longest(fmin(cost, most_nodes)), most_nodes);
 }
 
 const double *ct_solver_values(struct ct_arena *a, const struct ct_evaluator *m)
@@ -116,7 +116,7 @@ static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
         const double operations = ct_solver_operations(&m->motion) + p.pivots->operations;
         c->symbolic_kkt = ct_solver_straight_cost(operations, ct_solver_code_size(operations));
     }
-    if (m->nu + p.rank >= CT_LEAST_SPARSE) {
+    if (m->nu + p.rank >= CT_FEWEST_SPARSE_UNKNOWNS) {
         f = ct_solver_sparse.create(a, m, &p, 0);
         c->sparse = cost_of(f);
     }
@@ -124,7 +124,7 @@ static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
     struct ct_solver *unrolled = ct_solver_symbolic.create(a, m, &p, allowed(others));
     c->symbolic = cost_of(unrolled);
     f = cheaper(m, f, unrolled);
-    if (c->symbolic_kkt < worth * (f ? f->cost : c->dense))
+    if (c->symbolic_kkt < kkt_cost_ratio * (f ? f->cost : c->dense))
         f = cheaper(m, f, ct_solver_symbolic_kkt.create(a, m, &p, allowed(c->symbolic_kkt)));
     ct_arena_destroy(own);
     return f;
@@ -136,7 +136,7 @@ struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
                                    struct ct_solver_costs *costs)
 {
     struct ct_solver_costs c = {.symbolic = NAN, .symbolic_kkt = NAN, .sparse = NAN};
-    c.dense = ct_solver_operations(&m->motion) + operations + call;
+    c.dense = ct_solver_operations(&m->motion) + operations + dense_call_cost;
     struct ct_solver *f = kind ? kind->create(a, m, p, most_nodes) : compare(a, m, p, &c);
     if (f && !kind && f->cost > c.dense) {
         ct_solver_destroy(m, f);
@@ -158,7 +158,7 @@ struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_eval
                                               const struct ct_partition_sets *p,
                                               const struct ct_solver_kind *kind)
 {
-    return kind->create(a, m, p, most_asked_nodes);
+    return kind->create(a, m, p, most_requested_nodes);
 }
 
 void ct_solver_set_partition(struct ct_solver *f, const struct ct_partition_sets *p)

@@ -50,7 +50,7 @@ struct ct_solver_kind {
 
 /// Unknowns of [M J'; J 0] from which sparse matrices are tried.
 /// Chosen: the time of the analysis; smaller systems are not cheaper as sparse matrices.
-enum { CT_LEAST_SPARSE = 100 };
+enum { CT_FEWEST_SPARSE_UNKNOWNS = 100 };
 extern const struct ct_solver_kind ct_solver_symbolic, ct_solver_symbolic_kkt, ct_solver_sparse;
 
 /// Predicted cost of each solver, evaluation of M, Q, J and gam included [operations of

@@ -90,8 +90,8 @@ static double solve_whole(struct sparse_solver *f, bool *is_refined)
         const double error = ok ? ct_sparse_solve(f->whole, f->x, f->b, is_refined) : INFINITY;
         // Backward error from which pivots are sought anew.
         // Chosen: digits against the time of a search.
-        const double worn = 1e-12;
-        if (error < worn || is_again)
+        const double degraded_error = 1e-12;
+        if (error < degraded_error || is_again)
             return error;
     }
     return INFINITY;
@@ -112,8 +112,9 @@ static double solve_into(struct sparse_solver *f, struct ct_evaluator *m, bool i
 static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
 {
     struct sparse_solver *f = sparse_solver_of(form);
-    const double most = 1e-11; // Chosen: backward error from which dense matrices are used
-    if (!(solve_into(f, m, false) < most) || !factor_Jd(f, m->Q + m->nu))
+    const double largest_error
+        = 1e-11; // Chosen: backward error from which dense matrices are used
+    if (!(solve_into(f, m, false) < largest_error) || !factor_Jd(f, m->Q + m->nu))
         return 0;
     for (size_t i = 0; i < m->nu; i++)
         if (!isfinite(f->x[i]))

@@ -7,14 +7,14 @@
 
 // Times in a step near which methods have stages, those of order 2 the first one only: dop853,
 // dopri5 and radau5 leave no wider gaps.
-static const double seen_at[] = {1, 0.25, 0.65, 0.85};
+static const double stage_times[] = {1, 0.25, 0.65, 0.85};
 // Between these a smooth change that they follow is hardly larger than at one of them; a pulse that
 // they miss is.
 // Chosen: pulses that are seen against steps that are shortened in vain.
-static const double missed = 2;
+static const double pulse_ratio = 2;
 // Steps of fewer pieces are as fine as what is known.
 // Chosen: four
-static const double fine = 4;
+static const double fewest_pieces = 4;
 
 static void find_range(struct ct_input_sampling *c, size_t i)
 {
@@ -63,31 +63,31 @@ static double at(const double *value, double place)
 
 // Does a step over these places pass over a change? Of what is not finite nothing is known.
 static bool passes_over(const double *value, double from, double to, size_t nseen,
-                        double unfelt)
+                        double negligible_change)
 {
     const double start = at(value, from);
     double seen = 0, change = 0;
     for (size_t i = 0; i < nseen; i++)
-        seen = fmax(seen, fabs(at(value, from + seen_at[i] * (to - from)) - start));
+        seen = fmax(seen, fabs(at(value, from + stage_times[i] * (to - from)) - start));
     for (size_t k = (size_t)from + 1; (double)k < to; k++)
         change = fmax(change, fabs(value[k] - start));
-    return change > missed * seen + unfelt;
+    return change > pulse_ratio * seen + negligible_change;
 }
 
 double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
                                     const struct ct_method *method, double t, double h,
-                                    double unfelt)
+                                    double negligible_change)
 {
     t = fmax(
         t,
         // a start in a singular configuration is led in to from before: nothing is known of that
         0);
-    const size_t nseen = method->order > 2 ? COUNT(seen_at) : 1;
+    const size_t nseen = method->order > 2 ? COUNT(stage_times) : 1;
     for (size_t i = 0; i < c->n; i++) {
         const double *value = c->value + i * (CT_INPUT_SAMPLES + 1);
-        while (h > fine * c->piece
+        while (h > fewest_pieces * c->piece
                && passes_over(value, t / c->piece, fmin((t + h) / c->piece, CT_INPUT_SAMPLES),
-                              nseen, unfelt * c->range[i]))
+                              nseen, negligible_change * c->range[i]))
             h /= 2;
     }
     return h;

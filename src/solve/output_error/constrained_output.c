@@ -13,12 +13,12 @@
 // output also changes if its derivative is zero in this configuration, as at a dead centre or on
 // the straight line of Watt's linkage. If loops do not close there it is made shorter.
 // Chosen: outputs with zero derivatives against loops that do not close.
-static const double first_way = 0x1p-4, shorter = 0.25;
+static const double first_displacement = 0x1p-4, displacement_reduction = 0.25;
 // Derived: the last of them is 2^-4 2^-24 = 2^-28, half the digits: a change is above round-off.
 enum { TRIES = 13 };
 // An output counts as constrained only if errors of states change it by less than this part of its
 // tolerance. Chosen: an error that does not matter.
-static const double harmless = 0.25;
+static const double negligible_part = 0.25;
 // Chosen: calls without a test, their time against an output that is no longer constrained.
 enum { MOST_BETWEEN = 7 };
 
@@ -112,8 +112,8 @@ static double find_along(struct ct_constrained_output *p, double t)
 {
     struct ct_partition *s = p->outputs->s;
     const size_t nfree = s->m->nu - (size_t)s->rank;
-    double way = first_way;
-    for (int i = 0; i < TRIES; i++, way *= shorter) {
+    double way = first_displacement;
+    for (int i = 0; i < TRIES; i++, way *= displacement_reduction) {
         move_states(p, s->independent, nfree, way);
         if (ct_partition_close_loops(s, t, p->y))
             return way;
@@ -141,7 +141,7 @@ static bool is_constrained(double at, double along, double across, double way, d
 {
     const double change = fabs(along - at), roundoff = DBL_EPSILON * fabs(across - at) / way;
     return change <= ct_output_error_least_size * roundoff
-        && change <= harmless * way * (fabs(at) + small);
+        && change <= negligible_part * way * (fabs(at) + small);
 }
 
 static void look(struct ct_constrained_output *p, struct ct_constrained_output_record *r,

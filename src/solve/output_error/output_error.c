@@ -8,33 +8,34 @@
 #include <string.h>
 
 // The ratio is the error of outputs over the error of states, both in their tolerances. At a ratio
-// of at most `harmless` the error of outputs is not estimated in the next STEPS_BETWEEN steps.
+// of at most `negligible_ratio` the error of outputs is not estimated in the next STEPS_BETWEEN
+// steps.
 // Chosen: time of estimates against errors in between.
-static const double harmless = 0.25;
+static const double negligible_ratio = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // If the ratio changes by at most this part between two estimates, it is used for twice as many
 // steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
 // evaluations, and the ratio may change more. Chosen: time of estimates against errors in between.
-static const double steady[CT_OUTPUT_KINDS] = {0.02, 0.5};
+static const double steady_change[CT_OUTPUT_KINDS] = {0.02, 0.5};
 enum { MOST_BETWEEN = 15 }; // Chosen: as above
-// Steps without an estimate after one in which outputs err by at most `harmless` of their
+// Steps without an estimate after one in which outputs err by at most `negligible_ratio` of their
 // tolerance.
 // Chosen: as above.
-static const int few_between[CT_OUTPUT_KINDS] = {0, 3};
+static const int fewest_between[CT_OUTPUT_KINDS] = {0, 3};
 // Estimates without a new measurement of round-off, after one in which it did not matter. An error
 // that would reject a step has it measured at once. Chosen: as above.
-enum { LOOKS_BETWEEN = 15 };
+enum { MEASUREMENTS_BETWEEN = 15 };
 // Errors of states below this, in tolerances, do not give a ratio: the step size is still growing.
 // Chosen: steps that are too short against accurate ones.
-static const double least_error = 0.02;
+static const double least_state_error = 0.02;
 // Relative change of the states by which the round-off of outputs is measured.
 // Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
-static const double change = 0x1p-40;
+static const double perturbation = 0x1p-40;
 // An output counts if it is larger than this many of its round-off errors, that is, has six digits;
-// its error need not be less than `most_precise` of them.
+// its error need not be less than `fewest_roundoff_errors` of them.
 // Chosen: outputs that are only round-off against small ones; steps against the last digits.
 const double ct_output_error_least_size = 1e6;
-static const double most_precise = 16;
+static const double fewest_roundoff_errors = 16;
 
 // Outputs of one kind.
 struct group {
@@ -178,29 +179,29 @@ bool ct_output_error_is_due(struct ct_output_error_record *r)
 
 double ct_output_error_extrapolated(const struct ct_output_error_record *r, double states)
 {
-    return r->ratio > harmless ? r->ratio * states : 0;
+    return r->ratio > negligible_ratio ? r->ratio * states : 0;
 }
 
 // After a look: how many steps the ratio of both errors is to hold for.
 static void plan_checks(struct ct_output_error_record *r, double error, double states)
 {
-    const double before = r->ratio, ratio = states >= least_error ? error / states : 0;
-    const bool is_steady = fabs(ratio - before) <= steady[r->kind] * before;
+    const double before = r->ratio, ratio = states >= least_state_error ? error / states : 0;
+    const bool is_steady = fabs(ratio - before) <= steady_change[r->kind] * before;
     r->ratio = ratio;
-    if (states >= least_error && ratio <= harmless)
+    if (states >= least_state_error && ratio <= negligible_ratio)
         r->between = STEPS_BETWEEN;
     else
-        r->between = is_steady && ratio > 0 ? 2 * r->between + 1
-                   : error <= harmless      ? few_between[r->kind]
-                                            : 0;
+        r->between = is_steady && ratio > 0    ? 2 * r->between + 1
+                   : error <= negligible_ratio ? fewest_between[r->kind]
+                                               : 0;
     r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
     r->skip = r->between;
 }
 
-// One of an output, from what ct_output_error_perturbation changes it by.
+// Round-off of an output, from its values at a state and at the perturbed one.
 static double roundoff_of(double at, double probed)
 {
-    return fabs(probed - at) * (DBL_EPSILON / change);
+    return fabs(probed - at) * (DBL_EPSILON / perturbation);
 }
 
 double ct_output_error_evaluate(struct ct_output_error_record *r, const double *at,
@@ -219,17 +220,18 @@ double ct_output_error_evaluate(struct ct_output_error_record *r, const double *
         const double size = ct_larger(r->last[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_felt |= !(size >= ct_output_error_least_size * roundoff)
-                || !(wanted >= most_precise * roundoff);
+                || !(wanted >= fewest_roundoff_errors * roundoff);
         if (!(size >= ct_output_error_least_size * roundoff)
             || (r->sensitive && ct_output_sensitivity_is_sensitive(r->sensitive, i)))
             continue;
-        const double part = (off[i] - at[i]) / ct_larger(most_precise * roundoff, wanted);
+        const double part
+            = (off[i] - at[i]) / ct_larger(fewest_roundoff_errors * roundoff, wanted);
         sum += part * part;
         n++;
     }
     const double error = n && isfinite(sum) ? sqrt(sum / (double)n) : 0;
     if (probed != at)
-        r->unprobed = is_felt ? 0 : LOOKS_BETWEEN;
+        r->unprobed = is_felt ? 0 : MEASUREMENTS_BETWEEN;
     plan_checks(r, error, states);
     return error;
 }
@@ -238,7 +240,7 @@ bool ct_output_error_limits_step(const struct ct_output_error_record *r, const d
                                  const double *off, const struct ct_tolerance *tolerance,
                                  double states)
 {
-    const double least = harmless * ct_smaller(states, 1);
+    const double least = negligible_ratio * ct_smaller(states, 1);
     bool any = false;
     for (size_t i = 0; i < r->n; i++) {
         const double size = ct_larger(fabs(at[i]), r->largest[i]);
@@ -400,7 +402,7 @@ void ct_output_error_accept(struct ct_output_error *p)
 // this. Such a step is a third, the fourth root, of what states ask for. Still shorter steps do not
 // damp vibrations that earlier steps have excited, and would have to resolve them.
 // Chosen: a third.
-static const double least_states = 1e-2;
+static const double least_rejected_error = 1e-2;
 
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,
                                     const double *e, const struct ct_tolerance *tolerance,
@@ -409,7 +411,7 @@ double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const d
     double most = 0;
     for (size_t i = 0; i < p->n; i++) {
         struct group *g = &p->group[i];
-        if (g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS && !(states >= least_states))
+        if (g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS && !(states >= least_rejected_error))
             continue;
         const struct ct_tolerance own
             = ct_controlled_outputs_tolerance(g->outputs.kind, tolerance);

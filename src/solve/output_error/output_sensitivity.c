@@ -9,18 +9,18 @@
 
 // Error of outputs that is promised at the end of a run, in tolerances. An output is sensitive if
 // errors of states within their tolerance may change it by more. Chosen: as documented.
-static const double promised = 10;
+static const double promised_error = 10;
 // Relative change of states in difference quotients of outputs.
 // Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
-static const double change = 0x1p-40;
+static const double perturbation = 0x1p-40;
 // An output need not be more accurate than so many round-off errors of states.
 // Chosen: steps against the last digit.
-static const double most_precise = 2;
+static const double fewest_roundoff_errors = 2;
 // Calls without a test after one that found no sensitive output. Chosen: time against a late start.
 enum { CALLS_BETWEEN = 7 };
 // Derivatives of outputs change slowly. Those of accelerations are used at so many further states.
 // Chosen: as above.
-static const int places_between[CT_OUTPUT_KINDS] = {0, 7};
+static const int states_between[CT_OUTPUT_KINDS] = {0, 7};
 
 struct ct_output_sensitivity {
     struct ct_controlled_outputs *outputs;
@@ -82,16 +82,16 @@ static double part(size_t i)
     return 1 + (x - (double)(size_t)x);
 }
 
-// What outputs change by, over `change`, where states are changed by it in different parts of
+// What outputs change by, over `perturbation`, where states are changed by it in different parts of
 // themselves, so that nothing cancels; of themselves and of `small`.
 static void find_way(struct ct_output_sensitivity *p, double t, const double *y, double small,
                      double *way)
 {
     for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + change * part(i) * (y[i] + copysign(small, y[i]));
+        p->y[i] = y[i] + perturbation * part(i) * (y[i] + copysign(small, y[i]));
     const double *off = ct_controlled_outputs_at(p->outputs, t, p->y);
     for (size_t i = 0; i < p->n; i++)
-        way[i] = fabs(off[i] - p->at[i]) / change;
+        way[i] = fabs(off[i] - p->at[i]) / perturbation;
 }
 
 // Fills `at`, `largest`, `way`, `reach` at y.
@@ -106,7 +106,7 @@ static void look(struct ct_output_sensitivity *p, double t, const double *y,
     ct_evaluator_copy(p->seen, y, p->ny);
     if (p->between-- > 0)
         return;
-    p->between = places_between[p->outputs->kind];
+    p->between = states_between[p->outputs->kind];
     find_way(p, t, y, 0, p->way);
     if (is_solved && tolerance->rtol > 0)
         find_way(p, t, y, tolerance->atol / tolerance->rtol, p->reach);
@@ -119,7 +119,7 @@ static bool find_known(struct ct_output_sensitivity *p, const double *way,
     bool any = *is_new = false;
     for (size_t i = 0; i < p->n; i++) {
         const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
-        const bool amplifies = tolerance->rtol * way[i] > promised * wanted;
+        const bool amplifies = tolerance->rtol * way[i] > promised_error * wanted;
         p->has[i] = amplifies && !p->record->is_found[i];
         any |= p->has[i];
         *is_new |= amplifies && !p->record->is_settled[i];
@@ -162,7 +162,7 @@ int ct_output_sensitivity_roundoff_limit(struct ct_output_sensitivity *p, double
     int blunt = -1;
     note_sizes(p, largest);
     find(p, t, y, p->way, &tolerance);
-    *part = wanted / most_precise;
+    *part = wanted / fewest_roundoff_errors;
     for (size_t i = 0; i < p->n; i++) {
         const double size = p->largest[i], roundoff = DBL_EPSILON * p->way[i];
         // a residual is nothing but round-off
@@ -196,7 +196,8 @@ double ct_output_sensitivity_error(struct ct_output_sensitivity *p, double t, co
             continue;
         const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
         const double roundoff = DBL_EPSILON * p->way[i];
-        const double part = (off[i] - p->at[i]) / ct_larger(most_precise * roundoff, wanted);
+        const double part
+            = (off[i] - p->at[i]) / ct_larger(fewest_roundoff_errors * roundoff, wanted);
         sum += part * part;
         n++;
     }

@@ -23,10 +23,10 @@
 
 // Changes of states in difference quotients, in units of round-off. Derived: the quotients have
 // twelve bits, and terms of second order, 2^-80, are far below round-off.
-static const double roundoffs = 0x1p12;
+static const double perturbation_units = 0x1p12;
 // An output need not be more accurate than so many round-off errors.
 // Chosen: reports of the last digit are of no use.
-static const double most_precise = 2;
+static const double fewest_roundoff_errors = 2;
 
 static double part_of(size_t i)
 {
@@ -57,7 +57,7 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     e->place = 0;
     for (size_t i = 0; i < nq; i++) {
-        const double change = roundoffs * DBL_EPSILON / 2 * part_of(i) * fabs(r->y[i]);
+        const double change = perturbation_units * DBL_EPSILON / 2 * part_of(i) * fabs(r->y[i]);
         e->place = fmax(e->place, change);
         r->stage[i] += change;
     }
@@ -115,7 +115,7 @@ static bool evaluate_change(struct ct_run *r, double t, const double *d, const d
     if (ct_run_results(r, t, r->stage, r->value) != CT_EVAL_OK)
         return false;
     for (size_t i = 0; i < r->e->nresult; i++)
-        part[i] = fabs(r->value[i] - at[i]) / roundoffs / r->largest[i];
+        part[i] = fabs(r->value[i] - at[i]) / perturbation_units / r->largest[i];
     return true;
 }
 
@@ -189,7 +189,8 @@ static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, d
     const struct ct_evaluator *m = r->m;
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     for (size_t i = 0; i < m->nq; i++)
-        r->stage[i] += side * roundoffs * DBL_EPSILON / 2 * part_of(i + look) * fabs(r->y[i]);
+        r->stage[i]
+            += side * perturbation_units * DBL_EPSILON / 2 * part_of(i + look) * fabs(r->y[i]);
     ct_evaluator_set(r->m, t, r->stage);
     ct_program_run(&r->m->solved, m->input);
     memcpy(out, m->solved.out, (2 * m->nu + m->nq) * sizeof *out);
@@ -235,7 +236,7 @@ static void find_cancellation(struct ct_run *r, double t, struct cancellation *g
 static double remembered(struct ct_run *r, double t, size_t k)
 {
     const size_t nq = r->m->nq;
-    const double change = roundoffs * DBL_EPSILON * fabs(r->y[nq + k]);
+    const double change = perturbation_units * DBL_EPSILON * fabs(r->y[nq + k]);
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     r->stage[nq + k] += change;
     if (!(change > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
@@ -247,7 +248,8 @@ static double remembered(struct ct_run *r, double t, size_t k)
 static void find_phase_error(struct ct_run *r, double t, const double *at, double wanted,
                              struct ct_roundoff_limit *b)
 {
-    const double few = 100 * DBL_EPSILON; // Chosen: two digits, which any long sum may lose
+    const double largest_cancellation
+        = 100 * DBL_EPSILON; // Chosen: two digits, which any long sum may lose
     const size_t nu = r->m->nu;
     struct cancellation g = {.part = CT_NEWN(r->arena, double, nu + 1)};
     double *u = CT_NEWN(r->arena, double, nu + 1),
@@ -257,11 +259,11 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
     memcpy(r->scratch, r->dy + r->m->nq, nu * sizeof *r->scratch);
     find_cancellation(r, t, &g);
     const size_t k = g.worst;
-    if (!(g.part[k] > few && g.part[k] < 1) || g.noise[k] == 0)
+    if (!(g.part[k] > largest_cancellation && g.part[k] < 1) || g.noise[k] == 0)
         return;
     const double error = g.part[k] * fabs(r->scratch[k]) * remembered(r, t, k) / 2;
     for (size_t i = 0; i < nu; i++)
-        u[i] = roundoffs * error * g.noise[i] / g.noise[k];
+        u[i] = perturbation_units * error * g.noise[i] / g.noise[k];
     if (!evaluate_change(r, t, NULL, u, at, felt))
         return;
     b->output = find_worst(r, felt, &most);
@@ -277,7 +279,8 @@ struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double hel
     struct roundoff e = {CT_NEWN(r->arena, double, nu + 1), CT_NEWN(r->arena, double, nu + 1),
                          CT_NEWN(r->arena, double, nu + 1), 0};
     double *at = CT_NEWN(r->arena, double, n + 1), *felt = CT_NEWN(r->arena, double, n + 1);
-    struct ct_roundoff_limit b = {.output = -1, .one = held / most_precise, .sum = NAN};
+    struct ct_roundoff_limit b
+        = {.output = -1, .one = held / fewest_roundoff_errors, .sum = NAN};
     if (r->output_error)
         b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, held,
                                                   small_output(r), &b.one);

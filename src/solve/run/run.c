@@ -91,9 +91,9 @@ static double turning(struct ct_run *r, double t, const double *y)
 {
     // Time over which angles are compared, part of the run, or [s].
     // Chosen: half the digits, for a difference of which no angle turns far.
-    const double glance = 1e-6;
-    const double dt = glance * (r->o ? fmin(1, r->o->duration) : 1);
-    return ct_memory_turning(r->m, ct_run_time_before_event(r, t), y, dt > 0 ? dt : glance);
+    const double small_part = 1e-6;
+    const double dt = small_part * (r->o ? fmin(1, r->o->duration) : 1);
+    return ct_memory_turning(r->m, ct_run_time_before_event(r, t), y, dt > 0 ? dt : small_part);
 }
 
 void ct_run_note_turning(struct ct_run *r, double t, const double *y)
@@ -249,7 +249,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
     ct_evaluator_measure_rows(r->m);
     if (r->m->is_inexact) // symbolic solvers do not know the gaps of inexact data
         ct_partition_use_solver(
-            r->s, r->m->nu + r->m->nrow < CT_LEAST_SPARSE ? NULL : &ct_solver_sparse);
+            r->s, r->m->nu + r->m->nrow < CT_FEWEST_SPARSE_UNKNOWNS ? NULL : &ct_solver_sparse);
     ct_partition_find_units(r->s);
     if (!ct_partition_choose(r->s))
         return false;
@@ -609,11 +609,11 @@ static void find_requested(struct ct_run *r, struct ct_problem *p)
 
 // The tightest tolerance for which cancellation of inertias is judged.
 // Chosen: below it round-off of double precision is near.
-static const double sharpest = 1e-10;
+static const double tightest_tolerance = 1e-10;
 
 // A round-off error of states counts if it changes an output by this part of the wanted tolerance.
 // Chosen: truncation errors have the rest.
-static const double held_to = 0.1;
+static const double roundoff_tolerance_part = 0.1;
 
 static double input_limited_step(void *user, double t, double h)
 {
@@ -728,7 +728,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_rank_monitor_start(r->singular);
     r->singular->wanted = o->step == 0 ? o->output_rtol : 0;
-    r->s->least_cancellation = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, sharpest) : 0;
+    r->s->least_cancellation
+        = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, tightest_tolerance) : 0;
     r->s->left = INFINITY;
     if (r->output_error)
         ct_output_error_start(r->output_error, o->method);
@@ -788,8 +789,8 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->singular = r->singular;
     report->y = r->y;
     if (ok) {
-        const struct ct_roundoff_limit b
-            = ct_run_find_roundoff_limit(r, held_to * o->output_rtol, o->output_rtol);
+        const struct ct_roundoff_limit b = ct_run_find_roundoff_limit(
+            r, roundoff_tolerance_part * o->output_rtol, o->output_rtol);
         report->roundoff_limited = b.output;
         report->roundoff = b.one;
         report->roundoff_sum = b.sum;

@@ -42,7 +42,7 @@ static void name_singular(struct ct_run *r, const char *advice)
 
 // The part of the run by which a state a little later or before is computed.
 // Chosen: far enough for a contradiction of drivers to be more than round-off.
-static const double little = 1e-3;
+static const double small_part = 1e-3;
 
 // If steps ended as the constraints could not be closed: name the row that is open most a little
 // later.
@@ -50,7 +50,7 @@ static void name_open_row(struct ct_run *r)
 {
     if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
         return;
-    const double dt = little * r->o->duration, t = r->stats.last_time + dt;
+    const double dt = small_part * r->o->duration, t = r->stats.last_time + dt;
     for (size_t i = 0; i < r->m->nu; i++)
         r->scratch[i] = dt * r->y[r->m->nq + i];
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
@@ -182,8 +182,8 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
 // near singular configurations first.
 static void advise_order(struct ct_run *r)
 {
-    const int low = 2; // Chosen: order from which on steps are long enough
-    if (r->method->order <= low)
+    const int low_order = 2; // Chosen: order from which on steps are long enough
+    if (r->method->order <= low_order)
         ct_note(
             r->ctx, (struct ct_mark){0},
             "steps of '%s', of order %d, are many times shorter than those of 'radau5' or "
@@ -196,7 +196,7 @@ static void advise_order(struct ct_run *r)
 // leaves the configuration.
 static bool has_switched(const struct ct_run *r)
 {
-    const double t = r->stats.last_time, near = little * r->o->duration;
+    const double t = r->stats.last_time, near = small_part * r->o->duration;
     return t - r->last_event <= near || r->pending - t <= near;
 }
 
@@ -206,14 +206,16 @@ static const char *const let_pass
 // Have drivers come to rest, compared with the largest speed of the run?
 static bool is_driven_to_rest(const struct ct_run *r)
 {
-    const double rest = 0.01; // Chosen: part of the largest speed that counts as rest
+    const double rest_speed_ratio
+        = 0.01; // Chosen: part of the largest speed that counts as rest
     bool is_driven = false;
     for (size_t i = 0; i < r->model->njoint; i++) {
         const struct ct_instance *joint = &r->model->joint[i];
         is_driven |= joint->cls->motion && ct_instance_value(joint, "motion")->given;
     }
     return is_driven
-        && ct_vector_largest(r->y + r->m->nq, r->m->nu) < rest * r->singular->swiftest;
+        && ct_vector_largest(r->y + r->m->nq, r->m->nu)
+               < rest_speed_ratio * r->singular->swiftest;
 }
 
 // Advice for a run that ended near a singular configuration. If round-off ended it, that is a

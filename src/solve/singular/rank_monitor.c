@@ -83,20 +83,20 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 // evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
 // their rows avoid it below the second part.
 // Chosen: shorter steps near small pivots against the accuracy of accelerations.
-static const double foreseen_pivot = 0.8, near_pivot = 0.5;
+static const double predicted_pivot = 0.8, near_pivot = 0.5;
 // No step ends where the pivot is less than this part. Derived: round-off is divided by its square,
 // and eps / 1e-14 leaves one digit to tell which motion goes on.
-static const double lost_pivot = 1e-7;
+static const double smallest_pivot = 1e-7;
 
 // Round-off of accelerations is eps over the square of the pivot, against its largest. They have
 // too few digits if that is more than this part of the tolerance. Derived: two digits of it.
-static const double felt_rounding = 0.01;
+static const double roundoff_part = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
 {
     const double part = pivot / w->farthest;
     return w->wanted > 0 && part < CT_SINGULAR_PIVOT / 2
-        && part * part * felt_rounding * w->wanted < DBL_EPSILON;
+        && part * part * roundoff_part * w->wanted < DBL_EPSILON;
 }
 
 bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y)
@@ -112,9 +112,9 @@ static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_t
     enum { SECANTS = 3 }; // Limit: of the time of a prediction, which each look repeats
     // Derived: of the last step, for a difference with ten digits; and of the way there, so that it
     // is not stepped over where the pivot falls faster by a quarter
-    const double glance = 1e-3, part = 0.8;
-    const double far = CT_SINGULAR_STEPS * dt;
-    double s = glance * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
+    const double small_part = 1e-3, part = 0.8;
+    const double far = CT_STEPS_NEAR_SINGULAR * dt;
+    double s = small_part * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
            slope = (pivot - now) / s;
     if (!(slope < 0))
         return INFINITY;
@@ -165,20 +165,21 @@ static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahea
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
     // Chosen: changes on a step; steps
-    const double hardly = 1.05, steps_away = 2 * CT_SINGULAR_STEPS;
+    const double unchanged_ratio = 1.05, far_steps = 2 * CT_STEPS_NEAR_SINGULAR;
     const struct ct_partition *s = w->s;
     if (!s->has_solver || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
         return false;
     const struct ct_solver *f = s->solver[0];
     if (f->volume / w->volume < 0)
         return false;
-    if (w->part > foreseen_pivot && is_fixed)
+    if (w->part > predicted_pivot && is_fixed)
         return ct_is_within(f->weakest / w->weakest, ct_same_strength)
             && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
     const bool is_away
-        = is_fixed || w->part > foreseen_pivot || w->time_to_singular > steps_away * dt;
-    return w->part > near_pivot && is_away && ct_is_within(f->weakest / w->weakest, hardly)
-        && ct_is_within(f->volume / w->volume, hardly);
+        = is_fixed || w->part > predicted_pivot || w->time_to_singular > far_steps * dt;
+    return w->part > near_pivot && is_away
+        && ct_is_within(f->weakest / w->weakest, unchanged_ratio)
+        && ct_is_within(f->volume / w->volume, unchanged_ratio);
 }
 
 // Have speeds changed by far more since the last look, dt before, than accelerations there or here
@@ -240,9 +241,9 @@ static struct look look_around(struct ct_rank_monitor *w, const struct ct_rank_t
         look_back(w, at->pending);
     look_at(w, ct_time_just_before(at->t, at->pending), at->y);
     l.is_far = w->most > 0
-            && ct_partition_pivot_is_between(w->s, foreseen_pivot * w->most,
+            && ct_partition_pivot_is_between(w->s, predicted_pivot * w->most,
                                              w->most); // then at least so much
-    l.now = l.is_far ? foreseen_pivot * w->most : ct_partition_pivot(w->s);
+    l.now = l.is_far ? predicted_pivot * w->most : ct_partition_pivot(w->s);
     l.part = l.now / fmax(w->most, l.now);
     ct_tangent_basis_find(w->s, w->here);
     if (w->here->rank && w->there->rank)
@@ -276,7 +277,7 @@ static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look 
 {
     const bool was_unforeseen
         = w->s->switches == w->switches && isinf(w->time_to_singular) && w->part > near_pivot;
-    return l->is_another || l->part < lost_pivot
+    return l->is_another || l->part < smallest_pivot
         || (was_unforeseen && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
 }
 
@@ -344,7 +345,7 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
         note_step(w, t, &l);
     }
     keep(w, &at, &l, dt);
-    if (!(l.is_far || l.part > foreseen_pivot || step->is_fixed))
+    if (!(l.is_far || l.part > predicted_pivot || step->is_fixed))
         find_next(w, &at, l.now);
     return true;
 }
@@ -363,7 +364,7 @@ void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
     w->there->rank = 0;
     w->pivot = 0;
     keep_speeds(w, &ahead); // a look back finds the place, and these
-    if (!(w->most > 0) || w->part > foreseen_pivot || !(w->dt > 0))
+    if (!(w->most > 0) || w->part > predicted_pivot || !(w->dt > 0))
         return;
     find_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
 }

@@ -12,18 +12,19 @@
 // NARROWED times to an eighth. Positions are then known to `resolved` of the way.
 // Limit: of the time of a search. Derived: resolved to 1e-4 of the way, where rank is measured
 enum { PARTS = 16, NARROWED = 3 };
-static const double narrower = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
+static const double interval_reduction = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
 
 // Part of the way, to either side of a position, where its dependence is looked at.
 // Derived: a quarter of the spacing of looks
-static const double distance = 1.0 / (4 * PARTS);
+static const double test_distance = 1.0 / (4 * PARTS);
 
 // Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
-// `distance` or nearer: entries of rows that take part are of order 1, those of others of order
-// distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out (tests/cli/singular.sh).
+// `test_distance` or nearer: entries of rows that take part are of order 1, those of others of
+// order test_distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out
+// (tests/cli/singular.sh).
 static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 {
-    // Derived: between distance^2 and 1.
+    // Derived: between test_distance^2 and 1.
     const double involved = 1e-3; // of the largest entry
     const int n = w->s->rank;
     double most = 0;
@@ -74,7 +75,7 @@ static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct 
     for (int i = 0; i < NARROWED; i++) {
         const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
-        d *= narrower;
+        d *= interval_reduction;
     }
     return theta;
 }
@@ -121,7 +122,7 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
         const double at = i * part, behind = pivot_on(w, p, at);
         ct_tangent_basis_find(w->s, next);
         if (ct_singularity_test_sign_changed(w->s, last, next)) {
-            theta[n] = narrow(w, p, at - behind / (before + behind) * part, distance);
+            theta[n] = narrow(w, p, at - behind / (before + behind) * part, test_distance);
             n += pivot_on(w, p, theta[n]) < zero;
         }
         struct ct_tangent_basis *v = last;
@@ -141,10 +142,10 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
     const int n = w->s->rank;
     memset(at->row, 0, w->m->nrow * sizeof *at->row);
     at->rank_loss = 0;
-    pivot_on(w, p, theta - distance);
+    pivot_on(w, p, theta - test_distance);
     if (!ct_partition_dependence(w->s, w->x, &far))
         return;
-    pivot_on(w, p, theta - distance / 2);
+    pivot_on(w, p, theta - test_distance / 2);
     if (!ct_partition_dependence(w->s, w->x, &near))
         return;
     at->rank_loss = (int)fmin(n, fmax(1, round((near - far) / log(0.5))));
@@ -255,13 +256,13 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
 // Steps came across a position, or close by, where on their way the pivot falls below this part of
 // what it is at both ends.
 // Chosen: configurations that are passed near by against those that are crossed.
-static const double nearly_zero = 0.1;
+static const double crossed_pivot_ratio = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
                                 double before, double behind)
 {
     const struct passage p = {.to = to};
-    const double part = find_least(w, &p, nearly_zero * fmin(before, behind));
+    const double part = find_least(w, &p, crossed_pivot_ratio * fmin(before, behind));
     return part > 0 && part < 1;
 }
 
@@ -279,14 +280,14 @@ bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const
                                       double step, bool *row)
 {
     // Derived: a hundredth, where round-off takes four digits
-    const double beside = 1e-2; // of the largest pivot
+    const double near_singular_ratio = 1e-2; // of the largest pivot
     double log_det;
     memset(row, 0, w->m->nrow * sizeof *row);
     if (w->s->rank < w->rank) // in it
         return true;
     if (!ct_partition_has_pivot(w->s))
         return false;
-    if (!(ct_rank_monitor_pivot(w, t, y) < beside * w->most)
+    if (!(ct_rank_monitor_pivot(w, t, y) < near_singular_ratio * w->most)
         && !(step > 0 && is_within(w, t, y, step)))
         return false;
     if (ct_partition_dependence(w->s, w->x, &log_det))

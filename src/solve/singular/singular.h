@@ -22,7 +22,7 @@ enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
 /// computed without a crossing. Derived: they lose 1/part^2 = 16 of accuracy there, a digit.
 #define CT_SINGULAR_PIVOT 0.25
 /// Steps within which a singular configuration is near. Chosen: four.
-#define CT_SINGULAR_STEPS 4
+#define CT_STEPS_NEAR_SINGULAR 4
 
 /// A singular configuration that was passed.
 struct ct_singular_configuration {

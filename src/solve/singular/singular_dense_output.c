@@ -154,10 +154,10 @@ static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_i
 {
     const struct ct_rank_monitor *w = s->w;
     // Chosen: far below the distance of stages
-    const double apart = 1e-7 * (b->t[N - 1] - b->t[0]);
+    const double pole_separation = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
-        if (!s->n || w->pole[k] - s->pole[s->n - 1] > apart)
+        if (!s->n || w->pole[k] - s->pole[s->n - 1] > pole_separation)
             s->pole[s->n++] = w->pole[k];
 }
 
@@ -180,11 +180,11 @@ static double error_of(const struct model *m, const double *at)
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
     // Chosen: as above
-    const double clearly = 0.1;
+    const double pole_gain = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;
         const bool is_singular
-            = has_poles && error_of(&s->singular, at) < clearly * error_of(&s->smooth, at);
+            = has_poles && error_of(&s->singular, at) < pole_gain * error_of(&s->smooth, at);
         x->value[i] = ct_vector_dot((is_singular ? &s->singular : &s->smooth)->weight, at, N);
     }
 }

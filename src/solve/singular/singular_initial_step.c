@@ -22,9 +22,9 @@
 // Largest change of a coordinate from where the motion is slowest to either end of the step [rad,
 // m], at first; halved where the step errs.
 // Chosen: longer steps have more digits, and err more.
-static const double longest_way = 0.4;
+static const double longest_displacement = 0.4;
 // Limit: halvings of the step; a motion that lingers leaves faster than accelerations of now tell
-enum { LOOKS = 12 };
+enum { MOST_HALVINGS = 12 };
 
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
 // way; up to there from it a start tells nothing of how the smallest pivot falls.
@@ -34,7 +34,7 @@ static const double beside = 0.2, near = 0.5;
 // The step may err by so much of the largest state, or by so much of what is asked if that is more.
 // (8.35)
 // Derived: 4500 units of round-off; a fiftieth is not seen in the digits that are asked for.
-static const double exact = 1e-12, unfelt = 0.02;
+static const double smallest_error = 1e-12, error_part = 0.02;
 
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct initial_step {
@@ -105,7 +105,7 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
 // How far y may be from the start to be on the motion that is meant, of the largest state: speeds
 // beside a position are known no better, other motions are as far as speeds are large.
 // Chosen: between both.
-static const double meant = 1e-4;
+static const double same_motion_tolerance = 1e-4;
 
 // How far y (ny) is from it, the work aside.
 static double miss(const double *assembled, const double *y, size_t ny)
@@ -118,7 +118,7 @@ static double miss(const double *assembled, const double *y, size_t ny)
 
 bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny)
 {
-    return miss(assembled, y, ny) <= meant;
+    return miss(assembled, y, ny) <= same_motion_tolerance;
 }
 
 // Does the step from l->before lead across, and to the start on its way? r->stage (out): what it
@@ -127,7 +127,7 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
                          const struct across *c)
 {
     const double t = begin_of(c), most = ct_vector_largest(l->before, (size_t)r->p->ny),
-                 roundoff = fmax(ct_crossing_roundoff, unfelt * r->output_rtol);
+                 roundoff = fmax(ct_crossing_roundoff, error_part * r->output_rtol);
     const struct ct_tolerance tolerance = {r->rtol, fmax(r->atol, roundoff * most)};
     double error;
     if (r->p->rhs(r->p->user, t, l->before, r->dy) != CT_EVAL_OK
@@ -147,7 +147,7 @@ static double collocate_backwards(struct ct_singular_start *r, const struct init
 {
     const double *y = r->assembled, largest = ct_vector_largest(y, (size_t)r->p->ny),
                  t = begin_of(c);
-    double error, part = exact;
+    double error, part = smallest_error;
     while (part <= l->most) {
         const struct ct_tolerance tolerance = {part, part * largest};
         if (ct_crossing_initial_step(r->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
@@ -229,8 +229,10 @@ static bool keeps_sides(struct ct_singular_start *r, const struct initial_step *
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct across *best)
 {
-    struct across c = {middle, 2 * time_for(l, speed_at(l, middle), longest_way), INFINITY};
-    for (int i = 0; i < LOOKS && c.h > best->h && c.h / 2 > fabs(middle); i++, c.h /= 2) {
+    struct across c
+        = {middle, 2 * time_for(l, speed_at(l, middle), longest_displacement), INFINITY};
+    for (int i = 0; i < MOST_HALVINGS && c.h > best->h && c.h / 2 > fabs(middle);
+         i++, c.h /= 2) {
         look_back(r, l, &c);
         if (c.error < INFINITY && keeps_rank(r, l, &c) && keeps_sides(r, l, begin_of(&c))) {
             *best = c;
@@ -242,7 +244,7 @@ static void find_step(struct ct_singular_start *r, const struct initial_step *l,
 // Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them
 // leaves is far below.
 // Chosen: between both.
-static const double belongs = 1e-7;
+static const double speed_misfit_tolerance = 1e-7;
 
 static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)
 {
@@ -251,9 +253,10 @@ static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedo
              "configuration, where constraints of %s do not count "
              "and several motions go on, and %s",
              r->joints,
-             misfit > belongs ? "the speeds belong to none of them"
-                              : "none that has these speeds is found to this tolerance");
-    if (misfit > belongs)
+             misfit > speed_misfit_tolerance
+                 ? "the speeds belong to none of them"
+                 : "none that has these speeds is found to this tolerance");
+    if (misfit > speed_misfit_tolerance)
         ct_note(r->ctx, (struct ct_mark){0},
                 "give the rates of %d joints there, as one motion through the position has "
                 "them together: those of now miss that by "
@@ -322,7 +325,7 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 // What the step may err by, where it is felt by so much, for steps that are held to `asked`.
 static void allow(struct initial_step *l, double asked, double felt)
 {
-    l->most = fmax(exact, unfelt * asked * felt);
+    l->most = fmax(smallest_error, error_part * asked * felt);
 }
 
 static bool begin_in_position(struct ct_singular_start *r, struct initial_step *l)
@@ -337,7 +340,8 @@ static bool begin_in_position(struct ct_singular_start *r, struct initial_step *
             r->joints);
     const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
     allow(l, r->rtol, 1);
-    return (misfit <= belongs && begin_before(r, l)) || refuse_speeds(r, misfit, freedoms);
+    return (misfit <= speed_misfit_tolerance && begin_before(r, l))
+        || refuse_speeds(r, misfit, freedoms);
 }
 
 // How far the position is, below 0 behind the start, as the motion goes there.
@@ -345,7 +349,7 @@ static double find_way(struct ct_rank_monitor *w, const double *y, const double 
                        struct initial_step *l)
 {
     // Derived: a difference with ten digits
-    const double glance = 1e-3; // of the time to a position beside
+    const double small_part = 1e-3; // of the time to a position beside
     const size_t nq = w->m->nq, nu = w->m->nu;
     const double *a = dy + nq, *u = y + nq;
     l->u = ct_vector_max_norm(u, nu);
@@ -353,7 +357,7 @@ static double find_way(struct ct_rank_monitor *w, const double *y, const double 
     l->ua = ct_vector_dot(u, a, nu);
     if (!(l->u + l->a > 0))
         return INFINITY;
-    return ct_rank_monitor_distance(w, 0, y, dy, glance * time_for(l, l->u, beside));
+    return ct_rank_monitor_distance(w, 0, y, dy, small_part * time_for(l, l->u, beside));
 }
 
 // Beside a position: from before it, or else what is known of it from the start on.
@@ -362,7 +366,7 @@ static void begin_near_singular(struct ct_singular_start *r, struct initial_step
     const double way = find_way(r->singular, r->y, r->dy, l), size = fabs(way);
     if (!(size > 0 && size < near))
         return;
-    const double along = fmax(size, l->u * time_for(l, l->u, longest_way));
+    const double along = fmax(size, l->u * time_for(l, l->u, longest_displacement));
     allow(l, r->output_rtol, fmin(1, along));
     l->in = copysign(time_for(l, l->u, size), way);
     ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near / size);

@@ -16,13 +16,13 @@
 // Loops that close to 1e-13 meet a singular configuration to about the root of that: what is less
 // of J is left out.
 // Derived: three times that root.
-static const double unmet = 1e-6;
+static const double rank_loss_tolerance = 1e-6;
 
 // Rows take part in what is lost where they have this part of the most that one has. Which of them
 // a choice of pivots leaves out is a matter of round-off where they are alike; what is always lost
 // turns by as much as the way there.
 // Chosen: between both.
-static const double part_taken = 0.3;
+static const double involved_row_part = 0.3;
 
 struct probe {
     struct ct_evaluator *m;
@@ -46,7 +46,7 @@ static void least_step(struct probe *p, const double *r)
     memset(p->d, 0, (size_t)(n > m ? n : m) * sizeof *p->d);
     for (int i = 0; i < m; i++)
         p->d[i] = -r[i];
-    ct_lstsq(p->d, p->A, m, n, m, unmet, p->iwork, p->work);
+    ct_lstsq(p->d, p->A, m, n, m, rank_loss_tolerance, p->iwork, p->work);
 }
 
 static void evaluate(struct probe *p)
@@ -180,7 +180,7 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     p->largest = ct_vector_largest(p->x, p->m->nrow);
     memcpy(p->y, y, ny * sizeof *y);
     evaluate(p);
-    return find_rank(p, fmax(unmet * beside, p->m->rank_tolerance));
+    return find_rank(p, fmax(rank_loss_tolerance * beside, p->m->rank_tolerance));
 }
 
 // Rank of J beside y, with the largest way along which it is more than `here`; where it is not,
@@ -224,7 +224,7 @@ bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition 
     weigh_rows(&p, size, lost, n - here, always, n - there);
     const double most = ct_vector_largest(size, m->nrow);
     for (size_t i = 0; i < m->nrow; i++)
-        row[i] = size[i] > part_taken * most;
+        row[i] = size[i] > involved_row_part * most;
     return true;
 }
 
