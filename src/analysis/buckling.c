@@ -390,7 +390,7 @@ static bool is_gentle(const double *before, const double *after, int next, int n
 // axis bends under the load. The linear problem only gives the length of the first step there:
 // a bent axis couples stretch and bending in K, and shortens with the square of the load, so
 // that the factors of the path may be far from the linear ones.
-static bool march(struct search *s, const struct place *start, double step, double last)
+static bool follow_path(struct search *s, const struct place *start, double step, double last)
 {
     struct place here = place_create(s->l), next = place_create(s->l),
                  first = place_create(s->l);
@@ -629,7 +629,7 @@ bool ct_buckling_find(struct ct_linear *l, size_t at, size_t count,
     list->has_potential = s.has_potential;
     const bool is_refined = s.is_large && refine_all(&s, &start, c, n);
     if (!is_refined && list->has_potential
-        && !march(&s, &start, first_step * c[0], behind * c[n - 1]))
+        && !follow_path(&s, &start, first_step * c[0], behind * c[n - 1]))
         return false;
     if (list->has_potential && !s.nfound)
         return none_on_path(&s);

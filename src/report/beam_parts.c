@@ -107,12 +107,12 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
     struct ct_exs *x = b->x;
     ct_ex3 less[2];
     const struct ct_base m = ct_flexible_base(b, f, CT_BIAS),
-                         felt = ct_flexible_felt(b, f, &m, &less[0], &less[1]);
+                         effective = ct_flexible_effective_base(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
     struct ct_base turned = {{{{0}}}};
     p->nturning = 0;
     for (int i = 0; i < 3; i++)
-        turned.w.e[i] = define_turning(a, x, p, felt.w.e[i],
+        turned.w.e[i] = define_turning(a, x, p, effective.w.e[i],
                                        ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
                                        b->nflexible > 1 && !b->topology->is_planar);
     ct_ex *still = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);

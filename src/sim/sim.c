@@ -349,7 +349,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
 
 // Is the deadline past? Or has an eighth of the allowed time passed, and would the run at its
 // present pace need more than four times the allowed time?
-static bool is_hopeless(const struct ct_sim *sim, double t, double end)
+static bool will_miss_deadline(const struct ct_sim *sim, double t, double end)
 {
     const double now = ct_monotonic_time(), all = sim->deadline - sim->begun,
                  gone = now - sim->begun;
@@ -368,11 +368,11 @@ static bool at_progress(void *user, double t, double end)
         sim->is_interrupted = true;
     // reading the clock costs as much as a step of a small system
     if (sim->deadline > 0 && sim->nstep++ % steps_between_clock_reads == 0)
-        sim->is_late = is_hopeless(sim, t, end);
+        sim->is_late = will_miss_deadline(sim, t, end);
     return !sim->is_late && !sim->is_interrupted;
 }
 
-static void foresee(void *user, const struct ct_step_forecast *f)
+static void print_forecast(void *user, const struct ct_step_forecast *f)
 {
     struct ct_sim *sim = user;
     if (!sim->progress)
@@ -430,7 +430,7 @@ static bool integrate(struct ct_sim *sim)
         sim->progress = &sim->bar;
     }
     o->progress = at_progress;
-    o->forecast = foresee;
+    o->forecast = print_forecast;
     o->row = at_row;
     o->want_residual = want_residual;
     o->user = sim;
@@ -455,14 +455,14 @@ static void warn_of_positions(struct ct_sim *sim)
     const struct ct_mark mark = {.file = sim->system->model.file};
     if (!w)
         return;
-    if (w->nover)
+    if (w->ncrossed)
         ct_warning(&sim->own, mark, 0,
                    "steps of fixed size have come across a singular configuration, or past one "
                    "close by, at "
                    "t = %.9g%s, which they do not see: the motion behind it may be another "
                    "one; without 'step' "
                    "it is crossed",
-                   w->over, w->nover > 1 ? " and more often later" : "");
+                   w->t_crossed, w->ncrossed > 1 ? " and more often later" : "");
     // two divisions by a pivot, which is as small as the distance, amplify round-off
     if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < roundoff)
         ct_warning(

@@ -15,20 +15,20 @@ long ct_sim_operations(const struct ct_sim *sim)
         const struct ct_tape_counts all = m->solved.listing->counts;
         return ct_tape_count_all(&all);
     }
-    const struct ct_partition *embed = ct_run_partition(sim->run);
-    if (embed->nsolver)
-        return (long)embed->solver[0]->operations;
+    const struct ct_partition *partition = ct_run_partition(sim->run);
+    if (partition->nsolver)
+        return (long)partition->solver[0]->operations;
     const struct ct_tape_counts c = m->motion.listing->counts;
-    return ct_tape_count_all(&c) + (long)ct_partition_operations(embed);
+    return ct_tape_count_all(&c) + (long)ct_partition_operations(partition);
 }
 
 const char *ct_sim_solver(const struct ct_sim *sim)
 {
-    const struct ct_partition *embed = ct_run_partition(sim->run);
-    return !embed->m->nu         ? "none"
-         : embed->m->solved.nout ? "unrolled"
-         : embed->nsolver        ? embed->solver[0]->kind->name
-                                 : "dense";
+    const struct ct_partition *partition = ct_run_partition(sim->run);
+    return !partition->m->nu         ? "none"
+         : partition->m->solved.nout ? "unrolled"
+         : partition->nsolver        ? partition->solver[0]->kind->name
+                                     : "dense";
 }
 
 long ct_sim_freedoms(const struct ct_sim *sim)

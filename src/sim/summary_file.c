@@ -276,11 +276,12 @@ static void write_work(struct ct_json *j, const struct ct_sim *sim)
     ct_json_number(j, "energy_drift", r->energy_drift);
     ct_json_number(j, "position_constraint", r->position_constraint);
     ct_json_number(j, "velocity_constraint", r->velocity_constraint);
-    const bool is_blunt = !sim->is_followed && r->roundoff_limited >= 0;
-    ct_json_number(j, "rounding", is_blunt ? r->roundoff : NAN);
-    ct_json_number(j, "rounding_sum", is_blunt ? r->roundoff_sum : NAN);
+    const bool is_roundoff_limited = !sim->is_followed && r->roundoff_limited >= 0;
+    ct_json_number(j, "rounding", is_roundoff_limited ? r->roundoff : NAN);
+    ct_json_number(j, "rounding_sum", is_roundoff_limited ? r->roundoff_sum : NAN);
     ct_json_text(j, "rounding_of",
-                 is_blunt ? sim->system->equations.result[r->roundoff_limited].name : NULL);
+                 is_roundoff_limited ? sim->system->equations.result[r->roundoff_limited].name
+                                     : NULL);
     write_estimate(j, sim);
     ct_json_end(j);
 }

@@ -81,16 +81,17 @@ ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v)
     return ct_ex3_scale(b->x, ct_ex_const(b->x, 2), ct_ex3_cross(b->x, w, v));
 }
 
-struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
-                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque)
+struct ct_base ct_flexible_effective_base(struct ct_build *b, const struct ct_flexible *f,
+                                          const struct ct_base *m, ct_ex3 *force,
+                                          ct_ex3 *torque)
 {
-    struct ct_base felt = *m;
+    struct ct_base effective = *m;
     *force = *torque = zero3;
     if (!f->beam->lacks_quadratic)
-        return felt;
+        return effective;
     struct ct_exs *x = b->x;
     *force = ct_ex3_cross(x, m->w, ct_ex3_cross(x, m->w, f->inertia->moment));
     *torque = ct_ex3_cross(x, m->w, ct_ex33_apply(x, &f->inertia->inertia, m->w));
-    felt.w = zero3;
-    return felt;
+    effective.w = zero3;
+    return effective;
 }

@@ -133,13 +133,13 @@ void ct_flexible_sweep(struct ct_build *b, enum ct_level level, const ct_ex3 *ap
         const struct ct_node_placement *p = &b->kinematics->placement[f->base];
         const struct ct_base m = ct_base_motion(b, f, level, apparent[p->anchor]);
         ct_ex3 F, T, lessF, lessT;
-        const struct ct_base felt = ct_flexible_felt(b, f, &m, &lessF, &lessT);
-        ct_flexible_relative_wrench(b, f, &felt, level, &F, &T);
+        const struct ct_base effective = ct_flexible_effective_base(b, f, &m, &lessF, &lessT);
+        ct_flexible_relative_wrench(b, f, &effective, level, &F, &T);
         F = ct_ex3_sub(x, F, lessF);
         T = ct_ex3_sub(x, T, lessT);
         rest[p->anchor] = ct_ex3_add(x, rest[p->anchor], ct_base_out_of(b, f, F));
         torque[p->frame] = ct_ex3_add(x, torque[p->frame], ct_base_out_of(b, f, T));
-        ct_flexible_rows(b, f, &felt, level, row);
+        ct_flexible_rows(b, f, &effective, level, row);
     }
 }
 
@@ -152,7 +152,7 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
         = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
     const struct ct_base moved = ct_base_motion(b, f, CT_FULL, a);
     ct_ex3 F, T;
-    const struct ct_base m = ct_flexible_felt(b, f, &moved, &F, &T);
+    const struct ct_base m = ct_flexible_effective_base(b, f, &moved, &F, &T);
     ct_flexible_relative_wrench(b, f, &m, CT_FULL, &F, &T);
     F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
     F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));

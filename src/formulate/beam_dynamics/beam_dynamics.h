@@ -104,8 +104,9 @@ struct ct_base ct_flexible_base(struct ct_build *b, const struct ct_flexible *f,
 /// With `quadratic_velocity: false`: m without the rotation of the base; also the centrifugal force
 /// and gyroscopic torque of the inertia lumped at the base, which the caller subtracts. Otherwise m
 /// itself and zero.
-struct ct_base ct_flexible_felt(struct ct_build *b, const struct ct_flexible *f,
-                                const struct ct_base *m, ct_ex3 *force, ct_ex3 *torque);
+struct ct_base ct_flexible_effective_base(struct ct_build *b, const struct ct_flexible *f,
+                                          const struct ct_base *m, ct_ex3 *force,
+                                          ct_ex3 *torque);
 /// Angular velocity and velocity of the base, and gravity, in axes of the beam.
 void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3]);
 /// al~ + w~ w~

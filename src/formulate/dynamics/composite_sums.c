@@ -63,7 +63,7 @@ ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor)
 }
 
 // Does a rotation of the augmented body accelerate a mass, by its first moment or through a link?
-static bool is_felt(const struct ct_build *b, const struct ct_augmented_body *s)
+static bool accelerates_mass(const struct ct_build *b, const struct ct_augmented_body *s)
 {
     for (int k = 0; k < s->nchild; k++)
         if (!ct_ex_is_zero(
@@ -76,11 +76,11 @@ static void count_augmented_body(struct ct_composite_sums *s, int anchor, int bo
 {
     const struct ct_build *b = s->b;
     const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[body];
-    const bool felt = is_felt(b, self);
-    s->nstar[anchor] += felt;
+    const bool has_mass = accelerates_mass(b, self);
+    s->nstar[anchor] += has_mass;
     for (int c = self->cluster; c > 0; c = b->kinematics->cluster[c].parent) {
         struct ct_composite_pair *p = take_pair(s, anchor, c);
-        p->nturning += felt;
+        p->nturning += has_mass;
         add_part(s, p, body, -1);
     }
     for (int k = 0; k < self->nchild; k++) {
@@ -129,7 +129,7 @@ static void find_starts(struct ct_composite_sums *s)
         s->start[c] = -1;
     for (size_t i = 0; i < b->dynamics.masses.naugmented_body; i++)
         for (int c = b->dynamics.masses.augmented_body[i].cluster;
-             c > 0 && is_felt(b, &b->dynamics.masses.augmented_body[i]);
+             c > 0 && accelerates_mass(b, &b->dynamics.masses.augmented_body[i]);
              c = b->kinematics->cluster[c].parent) {
             int other = b->dynamics.masses.augmented_body[i].anchor;
             if (s->start[c] < 0)

@@ -171,11 +171,11 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
                            CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
     ct_ex3 F, T, lessF, lessT;
-    const struct ct_base felt = ct_flexible_felt(b, f, &motion, &lessF, &lessT);
-    I->method->wrench(b, f, &felt, CT_BIAS, &F, &T);
+    const struct ct_base effective = ct_flexible_effective_base(b, f, &motion, &lessF, &lessT);
+    I->method->wrench(b, f, &effective, CT_BIAS, &F, &T);
     F = ct_ex3_sub(x, F, lessF);
     T = ct_ex3_sub(x, T, lessT);
-    ct_flexible_rows(b, f, &felt, CT_BIAS, w->row);
+    ct_flexible_rows(b, f, &effective, CT_BIAS, w->row);
     if (e->is_augmented) {
         add_elements(w, k, e, A, &c);
     } else

@@ -18,8 +18,8 @@ struct seeds {
     size_t n, cap;
 };
 
-static void plant(struct ct_build *b, struct seeds *s, ct_ex symbol, size_t direction,
-                  ct_ex value)
+static void add_seed(struct ct_build *b, struct seeds *s, ct_ex symbol, size_t direction,
+                     ct_ex value)
 {
     const struct ct_seed seed = {symbol, (uint32_t)direction, value};
     CT_PUSH(s->a ? s->a : b->ctx->scratch, s->e, s->n, s->cap, seed);
@@ -31,7 +31,7 @@ static size_t direction(const struct ct_build *b, int level, size_t speed)
 }
 
 // Adds the seeds of the coordinates: the entries of Z.
-static void plant_places(struct ct_build *b, struct seeds *s)
+static void add_position_seeds(struct ct_build *b, struct seeds *s)
 {
     const struct ct_equations *e = b->eqs;
     struct ct_arena *scratch = b->ctx->scratch;
@@ -41,11 +41,12 @@ static void plant_places(struct ct_build *b, struct seeds *s)
     for (size_t i = 0; i < e->nq; i++)
         rate[i] = e->q[i].rate;
     for (size_t k = 0; k < e->nu; k++)
-        plant(b, &speeds, e->u[k].symbol, k, CT_EX_ONE);
+        add_seed(b, &speeds, e->u[k].symbol, k, CT_EX_ONE);
     const size_t nZ
         = ct_ex_jacobian(b->x, scratch, scratch, rate, e->nq, speeds.e, speeds.n, &Z);
     for (size_t i = 0; i < nZ; i++)
-        plant(b, s, e->q[Z[i].row].symbol, direction(b, POSITION, Z[i].direction), Z[i].value);
+        add_seed(b, s, e->q[Z[i].row].symbol, direction(b, POSITION, Z[i].direction),
+                 Z[i].value);
 }
 
 // Picks the entries of one group; their directions are then counted from 0.
@@ -118,14 +119,14 @@ struct slopes {
     size_t nplace; // of the seeds
 };
 
-static void plant_all(struct ct_build *b, struct slopes *s)
+static void add_all_seeds(struct ct_build *b, struct slopes *s)
 {
     const struct ct_equations *e = b->eqs;
-    plant_places(b, &s->all);
+    add_position_seeds(b, &s->all);
     s->nplace = s->all.n;
     for (size_t k = 0; k < e->nu; k++) {
-        plant(b, &s->all, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
-        plant(b, &s->all, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
+        add_seed(b, &s->all, e->u[k].symbol, direction(b, SPEED, k), CT_EX_ONE);
+        add_seed(b, &s->all, e->u[k].derivative, direction(b, ACCELERATION, k), CT_EX_ONE);
     }
 }
 
@@ -176,15 +177,15 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
     for (size_t k = 0; k < nu; k++)
         speed[k] = e->u[k].symbol;
     for (size_t i = 0; i < e->nq; i++) // q' = Z(q) u
-        plant(b, &seeds, e->q[i].symbol, 0,
-              ct_ex_subst(b->x, e->q[i].rate, speed, along->seed, nu));
+        add_seed(b, &seeds, e->q[i].symbol, 0,
+                 ct_ex_subst(b->x, e->q[i].rate, speed, along->seed, nu));
     struct seeds places = seeds;
     for (size_t k = 0; k < nu; k++) {
-        plant(b, &seeds, e->u[k].symbol, 0, along->seed[nu + k]);
-        plant(b, &seeds, e->u[k].derivative, 0, along->seed[2 * nu + k]);
+        add_seed(b, &seeds, e->u[k].symbol, 0, along->seed[nu + k]);
+        add_seed(b, &seeds, e->u[k].derivative, 0, along->seed[2 * nu + k]);
     }
     for (size_t k = 0; k < s->ninner; k++)
-        plant(b, &seeds, s->r[nu + k], 0, along->seed[NLEVEL * nu + k]);
+        add_seed(b, &seeds, s->r[nu + k], 0, along->seed[NLEVEL * nu + k]);
     struct ct_slope *d;
     const size_t nr = ct_ex_jacobian(b->x, b->ctx->scratch, b->ctx->scratch, s->r, s->nr,
                                      seeds.e, seeds.n, &d);
@@ -290,7 +291,7 @@ size_t ct_residual_seeds(struct ct_build *b, struct ct_arena *a, struct ct_seed 
                          size_t *nplace)
 {
     struct slopes s = {.all = {.a = a}};
-    plant_all(b, &s);
+    add_all_seeds(b, &s);
     *nplace = s.nplace;
     *out = s.all.e;
     return s.all.n;
@@ -319,7 +320,7 @@ static void add_inner(struct ct_build *b, struct ct_residual *f, struct slopes *
     memcpy(s->r, f->r, s->nu * sizeof *s->r);
     for (size_t k = 0; k < s->ninner; k++) {
         s->r[s->nu + k] = f->auxiliary[k];
-        plant(b, &s->all, f->auxiliary[k], direction(b, INNER, k), CT_EX_ONE);
+        add_seed(b, &s->all, f->auxiliary[k], direction(b, INNER, k), CT_EX_ONE);
     }
 }
 
@@ -335,7 +336,7 @@ void ct_residual_derive(struct ct_build *b, enum ct_slope_form form)
     s.v = CT_NEWN(b->ctx->scratch, ct_ex, e->nrow + 1);
     for (size_t i = 0; i < e->nrow; i++)
         s.v[i] = e->row[i].v;
-    plant_all(b, &s);
+    add_all_seeds(b, &s);
     add_inner(b, f, &s);
     if (form == CT_SLOPES_ENTRIES || !try_along(b, f, &s, form))
         derive_entries(b, f, &s);
@@ -350,8 +351,8 @@ size_t ct_slopes_derive(struct ct_build *b, struct ct_arena *a, const ct_ex *f, 
     seeds.n = seeds.cap = ct_residual_seeds(b, b->ctx->scratch, &seeds.e, &nplace);
     const size_t first = direction(b, NLEVEL, 0);
     for (size_t i = 0; i < e->nrow; i++)
-        plant(b, &seeds, e->row[i].lam, first + i, CT_EX_ONE);
+        add_seed(b, &seeds, e->row[i].lam, first + i, CT_EX_ONE);
     for (size_t i = 0; i < nmore; i++)
-        plant(b, &seeds, more[i], first + e->nrow + i, CT_EX_ONE);
+        add_seed(b, &seeds, more[i], first + e->nrow + i, CT_EX_ONE);
     return ct_ex_jacobian(b->x, b->ctx->scratch, a, f, nf, seeds.e, seeds.n, out);
 }

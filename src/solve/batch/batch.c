@@ -256,10 +256,10 @@ static struct ct_lane_solver *find_solver(struct ct_batch *s, const struct ct_pa
 
 void ct_batch_begin(struct ct_batch *s)
 {
-    const struct ct_partition *embed = s->partition;
-    const size_t rank = (size_t)embed->rank, n = (size_t)s->nu;
+    const struct ct_partition *partition = s->partition;
+    const size_t rank = (size_t)partition->rank, n = (size_t)s->nu;
     const struct ct_partition_sets p
-        = {embed->row, embed->dependent, embed->independent, rank, n - rank};
+        = {partition->row, partition->dependent, partition->independent, rank, n - rank};
     s->origin = CT_NEWN(s->arena, double, s->m->ninput);
     ct_evaluator_set(s->m, 0, ct_run_state(s->run));
     memcpy(s->origin, s->m->input, s->m->ninput * sizeof *s->origin);
@@ -270,19 +270,20 @@ void ct_batch_begin(struct ct_batch *s)
 bool ct_lane_choose(struct ct_batch *s, int l)
 {
     struct ct_lane *lane = &s->lane[l];
-    const struct ct_partition *embed = s->partition;
+    const struct ct_partition *partition = s->partition;
     const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
-    if (embed->rank != s->rank)
+    if (partition->rank != s->rank)
         return false;
-    memcpy(lane->row, embed->row, (size_t)s->nrow * sizeof *embed->row);
-    memcpy(lane->dependent, embed->dependent, rank * sizeof *embed->dependent);
-    memcpy(lane->independent, embed->independent, (n - rank) * sizeof *embed->independent);
-    lane->kappa_chosen = embed->kappa_chosen;
-    lane->sigma_chosen = embed->sigma_chosen;
-    lane->sigma_best = embed->sigma_best;
+    memcpy(lane->row, partition->row, (size_t)s->nrow * sizeof *partition->row);
+    memcpy(lane->dependent, partition->dependent, rank * sizeof *partition->dependent);
+    memcpy(lane->independent, partition->independent,
+           (n - rank) * sizeof *partition->independent);
+    lane->kappa_chosen = partition->kappa_chosen;
+    lane->sigma_chosen = partition->sigma_chosen;
+    lane->sigma_best = partition->sigma_best;
     lane->strength = (struct ct_strength){0};
-    s->kappa[l] = embed->kappa;
-    s->sigma[l] = embed->sigma;
+    s->kappa[l] = partition->kappa;
+    s->sigma[l] = partition->sigma;
     s->low[l] = s->high[l] = s->slope[l] = 0;
     s->needs_refinement &= ~(1u << l);
     s->alike &= ~(1u << l);
@@ -426,18 +427,18 @@ static bool is_singular_start(const struct ct_batch *s)
     // Derived: half the digits
     const double changed
         = 1e-6; // rows that see speeds by round-off alone make a projection change them
-    const struct ct_partition *embed = ct_run_partition(s->run);
+    const struct ct_partition *partition = ct_run_partition(s->run);
     const double *u = ct_run_assembled(s->run) + s->nq, *now = ct_run_state(s->run) + s->nq;
     const double largest = ct_vector_largest(u, s->m->nu);
     for (size_t k = 0; k < s->m->nu; k++)
         if (fabs(now[k] - u[k]) > changed * largest)
             return true;
-    if (embed->rank == s->nrow)
+    if (partition->rank == s->nrow)
         return false;
     struct ct_arena *own = ct_arena_create_under(s->arena);
     bool *row = CT_NEWN(own, bool, (size_t)s->nrow + 1);
     const bool is_singular
-        = ct_singular_start_test(own, embed, 0, ct_run_assembled(s->run), row);
+        = ct_singular_start_test(own, partition, 0, ct_run_assembled(s->run), row);
     ct_arena_destroy(own);
     return is_singular;
 }

@@ -14,25 +14,26 @@ void ct_lane_give_up(struct ct_batch *s, int l)
 static void take_choice(struct ct_batch *s, int l, double t, const vec *y)
 {
     const struct ct_lane *lane = &s->lane[l];
-    struct ct_partition *embed = s->partition;
+    struct ct_partition *partition = s->partition;
     const size_t rank = (size_t)s->rank, n = (size_t)s->nu;
     s->run->pending = lane->events.pending;
     ct_lane_take(s->one_y, y, l, (size_t)s->ny);
     ct_evaluator_set(s->m, ct_run_time_before_event(s->run, t), s->one_y);
-    embed->rank = s->rank;
-    embed->scale = lane->scale;
-    embed->has_units = lane->has_units;
-    memcpy(embed->unit, lane->unit, (size_t)s->nrow * sizeof *embed->unit);
-    embed->least_cancellation
+    partition->rank = s->rank;
+    partition->scale = lane->scale;
+    partition->has_units = lane->has_units;
+    memcpy(partition->unit, lane->unit, (size_t)s->nrow * sizeof *partition->unit);
+    partition->least_cancellation
         = 0; // whatever a run alone has left: bits depend on the member only
-    memcpy(embed->row, lane->row, (size_t)s->nrow * sizeof *embed->row);
-    memcpy(embed->dependent, lane->dependent, rank * sizeof *embed->dependent);
-    memcpy(embed->independent, lane->independent, (n - rank) * sizeof *embed->independent);
-    embed->kappa = s->kappa[l];
-    embed->sigma = s->sigma[l];
-    embed->kappa_chosen = lane->kappa_chosen;
-    embed->sigma_chosen = lane->sigma_chosen;
-    embed->sigma_best = lane->sigma_best;
+    memcpy(partition->row, lane->row, (size_t)s->nrow * sizeof *partition->row);
+    memcpy(partition->dependent, lane->dependent, rank * sizeof *partition->dependent);
+    memcpy(partition->independent, lane->independent,
+           (n - rank) * sizeof *partition->independent);
+    partition->kappa = s->kappa[l];
+    partition->sigma = s->sigma[l];
+    partition->kappa_chosen = lane->kappa_chosen;
+    partition->sigma_chosen = lane->sigma_chosen;
+    partition->sigma_best = lane->sigma_best;
 }
 
 void ct_lane_load_run_whole(struct ct_batch *s, int l, double t, const vec *y)

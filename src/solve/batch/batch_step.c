@@ -258,7 +258,7 @@ static double judge_lane(struct ct_batch *s, enum ct_output_kind kind, int l, co
     if (is_probed)
         ct_lane_take(o->one_probed, o->probed, l, r->n);
     else
-        r->unprobed--;
+        r->without_measurement--;
     if (ct_output_error_limits_step(r, o->one_at, o->one_off, &tolerance, s->joint[l]))
         ct_lane_find_constrained_outputs(s, kind, l, &tolerance);
     return ct_output_error_evaluate(r, o->one_at, is_probed ? o->one_probed : o->one_at,
@@ -275,7 +275,7 @@ static void judge_outputs(struct ct_batch *s, enum ct_output_kind kind, const ve
     vec *y = s->end;
     set probing = 0, again = 0;
     for (int l = 0; l < W; l++)
-        if (ct_has_lane(lanes, l) && s->lane[l].outputs[kind].unprobed == 0)
+        if (ct_has_lane(lanes, l) && s->lane[l].outputs[kind].without_measurement == 0)
             probing |= 1u << l;
     copy(o->at, outputs(s, kind, t, s->y1, lanes), n);
     for (int i = 0; i < s->ny && probing; i++)
@@ -294,7 +294,7 @@ static void judge_outputs(struct ct_batch *s, enum ct_output_kind kind, const ve
         if (is_probed || error <= 1) {
             lane->error = fmax(lane->error, error);
         } else { // no step is refused for its round-off
-            lane->outputs[kind].skip = lane->outputs[kind].unprobed = 0;
+            lane->outputs[kind].skip = lane->outputs[kind].without_measurement = 0;
             again |= 1u << l;
         }
     }

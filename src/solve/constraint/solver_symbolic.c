@@ -220,8 +220,9 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     return &f->form;
 }
 
-static struct ct_solver *create_embedded(struct ct_arena *a, struct ct_evaluator *m,
-                                         const struct ct_partition_sets *p, double most_nodes)
+static struct ct_solver *create_partitioned(struct ct_arena *a, struct ct_evaluator *m,
+                                            const struct ct_partition_sets *p,
+                                            double most_nodes)
 {
     return create(a, m, p, most_nodes, &ct_solver_symbolic);
 }
@@ -234,7 +235,7 @@ static struct ct_solver *create_whole(struct ct_arena *a, struct ct_evaluator *m
 }
 
 const struct ct_solver_kind ct_solver_symbolic = {.name = "unrolled",
-                                                  .create = create_embedded,
+                                                  .create = create_partitioned,
                                                   .solve = solve,
                                                   .check = check,
                                                   .close = close,

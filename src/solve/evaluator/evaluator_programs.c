@@ -206,23 +206,23 @@ static void compile_rest(struct ct_arena *a, struct ct_evaluator *m, const struc
     compile(a, m, in, momentum.e, momentum.n, &m->momentum);
     compile(a, m, in, driver.e, driver.n, &m->driver);
     compile(a, m, in, wanted.e, wanted.n, &m->assembly_sign);
-    struct list validity = {.a = a}, carried = {.a = a}, poised = {.a = a};
+    struct list validity = {.a = a}, base_motion = {.a = a}, mode_state = {.a = a};
     for (size_t i = 0; i < e->nvalidity; i++) {
         const struct ct_validity *v = &e->validity[i];
         push(&validity, v->eta);
         for (int k = 0; k < 9 && v->estimates_error; k++)
-            push(&carried, v->base_motion[k / 3].e[k % 3]);
+            push(&base_motion, v->base_motion[k / 3].e[k % 3]);
         for (int k = 0; k < 2 * v->nshape && v->estimates_error; k++)
-            push(&poised, v->shape[k / 2].state[k % 2]);
+            push(&mode_state, v->shape[k / 2].state[k % 2]);
         for (int k = 0; k < 2 && v->estimates_error; k++)
-            push(&carried, v->end[k]);
+            push(&base_motion, v->end[k]);
     }
     for (size_t i = 0; i < e->nbent_beam; i++)
         for (size_t k = 0; k < e->bent_beam[i].n; k++)
             push(&validity, e->bent_beam[i].square[k]);
     compile(a, m, in, validity.e, validity.n, &m->validity);
-    compile(a, m, in, carried.e, carried.n, &m->base_motion);
-    compile(a, m, in, poised.e, poised.n, &m->beam_mode_state);
+    compile(a, m, in, base_motion.e, base_motion.n, &m->base_motion);
+    compile(a, m, in, mode_state.e, mode_state.n, &m->beam_mode_state);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
     // seldom run: not worth native code

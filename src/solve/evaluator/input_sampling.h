@@ -24,10 +24,10 @@ void ct_input_sampling_sample(struct ct_arena *a, struct ct_evaluator *m, double
 
 /// The longest of h, h/2, h/4 ... such that of no function the largest change within a step from t
 /// is more than twice the largest at times where the method evaluates, and more than the part
-/// `unfelt` of its range. Changes that come and go within end/CT_INPUT_SAMPLES may be missed, and
-/// steps of up to four such pieces are not looked at.
+/// `negligible_change` of its range. Changes that come and go within end/CT_INPUT_SAMPLES may be
+/// missed, and steps of up to four such pieces are not looked at.
 double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
                                     const struct ct_method *method, double t, double h,
-                                    double unfelt);
+                                    double negligible_change);
 
 #endif

@@ -232,8 +232,8 @@ static int ascending(const void *a, const void *b)
 bool ct_table_has_kinks(const struct ct_table *table, int order)
 {
     // Derived: methods of this order see the error of a jump of the third derivative
-    const int unfelt = 5;
-    return !table->m || order > unfelt;
+    const int highest_order = 5;
+    return !table->m || order > highest_order;
 }
 
 size_t ct_time_events(struct ct_arena *a, struct ct_evaluator *m, int order, double t0,

@@ -116,7 +116,7 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
 
 // ---- evaluation ---------------------------------------------------------------------------------
 
-static void spread(struct ct_tangent_lanes *t, const double *input)
+static void set_values(struct ct_tangent_lanes *t, const double *input)
 {
     for (size_t i = 0; i < t->ninput; i++)
         for (size_t lane = 0; lane < LANES; lane++)
@@ -125,14 +125,14 @@ static void spread(struct ct_tangent_lanes *t, const double *input)
 
 void ct_tangent_lanes_prepare(struct ct_tangent_lanes *t, const double *input)
 {
-    spread(t, input);
+    set_values(t, input);
     if (t->native)
         ct_native_prepare(t->native, t->input, t->work);
     else
         ct_tape_prepare_lanes(t->tape, LANES, t->input, t->work);
 }
 
-static void plant(struct ct_tangent_lanes *t, uint32_t colour, size_t lane, double value)
+static void set_seed(struct ct_tangent_lanes *t, uint32_t colour, size_t lane, double value)
 {
     for (size_t i = t->first_seed[colour]; i < t->first_seed[colour + 1]; i++)
         t->input[LANES * (t->ninput + t->seed[i]) + lane] = value;
@@ -140,17 +140,17 @@ static void plant(struct ct_tangent_lanes *t, uint32_t colour, size_t lane, doub
 
 void ct_tangent_lanes_run(struct ct_tangent_lanes *t, const double *input, double *slope)
 {
-    spread(t, input);
+    set_values(t, input);
     for (uint32_t first = 0; first < t->ncolour; first += LANES) {
         const uint32_t n = t->ncolour - first < LANES ? t->ncolour - first : LANES;
         for (uint32_t lane = 0; lane < n; lane++)
-            plant(t, first + lane, lane, 1);
+            set_seed(t, first + lane, lane, 1);
         if (t->native)
             ct_native_eval(t->native, t->input, t->out, t->work);
         else
             ct_tape_eval_lanes(t->tape, LANES, t->input, t->out, t->work);
         for (uint32_t lane = 0; lane < n; lane++) {
-            plant(t, first + lane, lane, 0);
+            set_seed(t, first + lane, lane, 0);
             for (size_t i = t->first_reading[first + lane];
                  i < t->first_reading[first + lane + 1]; i++)
                 slope[t->reading[i].slope] = t->out[LANES * t->reading[i].row + lane];

@@ -40,8 +40,8 @@ static const double fewest_roundoff_errors = 16;
 // Outputs of one kind.
 struct group {
     struct ct_controlled_outputs outputs;
-    struct ct_constrained_output *invariant; // NULL: constraints determine none
-    struct ct_output_sensitivity *amplifier;
+    struct ct_constrained_output *constrained_output; // NULL: constraints determine none
+    struct ct_output_sensitivity *sensitivity;
     int *result; // (n) of the equations
     struct ct_output_error_record record;
     double *at, *probed, *off; // (n) g there
@@ -112,10 +112,10 @@ static bool create_group(struct ct_arena *a, struct ct_partition *s, enum ct_out
     p->off = CT_NEWN(a, double, n);
     p->expected = CT_NEWN(a, double, n);
     p->shown = CT_NEWN(a, double, n);
-    p->invariant = ct_constrained_output_create(a, &p->outputs, g);
-    ct_constrained_output_clear(p->invariant, &p->record.constrained, false);
-    p->amplifier
-        = ct_output_sensitivity_create(a, &p->outputs, p->invariant, &p->record.constrained);
+    p->constrained_output = ct_constrained_output_create(a, &p->outputs, g);
+    ct_constrained_output_clear(p->constrained_output, &p->record.constrained, false);
+    p->sensitivity = ct_output_sensitivity_create(a, &p->outputs, p->constrained_output,
+                                                  &p->record.constrained);
     return true;
 }
 
@@ -144,7 +144,7 @@ struct ct_constrained_output *ct_output_error_constrained(const struct ct_output
 {
     for (size_t i = 0; p && i < p->n; i++)
         if (p->group[i].outputs.kind == kind)
-            return p->group[i].invariant;
+            return p->group[i].constrained_output;
     return NULL;
 }
 
@@ -164,7 +164,7 @@ void ct_output_error_clear(struct ct_output_error_record *r)
 {
     if (r->n)
         memset(r->largest, 0, r->n * sizeof *r->largest);
-    r->skip = r->between = r->unprobed = 0;
+    r->skip = r->between = r->without_measurement = 0;
     r->ratio = 0;
     r->has_last = false;
 }
@@ -210,7 +210,7 @@ double ct_output_error_evaluate(struct ct_output_error_record *r, const double *
 {
     double sum = 0;
     size_t n = 0;
-    bool is_felt = false;
+    bool is_roundoff_significant = false;
     r->has_last = true;
     for (size_t i = 0; i < r->n; i++) {
         const double roundoff = roundoff_of(at[i], probed[i]);
@@ -219,8 +219,8 @@ double ct_output_error_evaluate(struct ct_output_error_record *r, const double *
             continue;
         const double size = ct_larger(r->last[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
-        is_felt |= !(size >= ct_output_error_least_size * roundoff)
-                || !(wanted >= fewest_roundoff_errors * roundoff);
+        is_roundoff_significant |= !(size >= ct_output_error_least_size * roundoff)
+                                || !(wanted >= fewest_roundoff_errors * roundoff);
         if (!(size >= ct_output_error_least_size * roundoff)
             || (r->sensitive && ct_output_sensitivity_is_sensitive(r->sensitive, i)))
             continue;
@@ -231,7 +231,7 @@ double ct_output_error_evaluate(struct ct_output_error_record *r, const double *
     }
     const double error = n && isfinite(sum) ? sqrt(sum / (double)n) : 0;
     if (probed != at)
-        r->unprobed = is_felt ? 0 : MEASUREMENTS_BETWEEN;
+        r->without_measurement = is_roundoff_significant ? 0 : MEASUREMENTS_BETWEEN;
     plan_checks(r, error, states);
     return error;
 }
@@ -265,9 +265,9 @@ void ct_output_error_start(struct ct_output_error *p, const struct ct_method *me
 {
     for (size_t i = 0; i < p->n; i++) {
         ct_output_error_clear(&p->group[i].record);
-        ct_constrained_output_clear(p->group[i].invariant, &p->group[i].record.constrained,
-                                    method->leaves_speeds);
-        ct_output_sensitivity_start(p->group[i].amplifier);
+        ct_constrained_output_clear(p->group[i].constrained_output,
+                                    &p->group[i].record.constrained, method->leaves_speeds);
+        ct_output_sensitivity_start(p->group[i].sensitivity);
     }
 }
 
@@ -305,7 +305,7 @@ static const double *find_error(struct ct_output_error *p, struct group *g, doub
     if (!ct_output_error_limits_step(&g->record, g->at, off, tolerance, states))
         return off;
     memcpy(g->off, off, g->record.n * sizeof *off);
-    ct_constrained_output_find(g->invariant, &g->record.constrained, t, y, tolerance);
+    ct_constrained_output_find(g->constrained_output, &g->record.constrained, t, y, tolerance);
     return g->off;
 }
 
@@ -313,18 +313,18 @@ static double check(struct ct_output_error *p, struct group *g, double t, const 
                     const double *e, const struct ct_tolerance *tolerance, double states)
 {
     struct ct_output_error_record *r = &g->record;
-    const bool is_probed = r->unprobed == 0;
+    const bool is_probed = r->without_measurement == 0;
     find_at(g, t, y);
     if (is_probed)
         probe(p, g, t, y);
     else
-        r->unprobed--;
+        r->without_measurement--;
     const double *off = find_error(p, g, t, y, e, tolerance, states),
                  *probed = is_probed ? g->probed : g->at;
     const double error = ct_output_error_evaluate(r, g->at, probed, off, tolerance, states);
     if (is_probed || error <= 1)
         return error;
-    r->skip = r->unprobed = 0; // no step is refused for its round-off
+    r->skip = r->without_measurement = 0; // no step is refused for its round-off
     return check(p, g, t, y, e, tolerance, states);
 }
 
@@ -339,7 +339,7 @@ double ct_output_error_of_step(struct ct_output_error *p, double t, const double
             = ct_controlled_outputs_tolerance(g->outputs.kind, tolerance);
         if (is_implicit && g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS)
             continue;
-        g->record.sensitive = is_implicit ? g->amplifier : NULL;
+        g->record.sensitive = is_implicit ? g->sensitivity : NULL;
         const double error = ct_output_error_is_due(&g->record)
                                ? check(p, g, t, y, e, &own, states)
                                : ct_output_error_extrapolated(&g->record, states);
@@ -361,7 +361,7 @@ static double change_of(struct ct_output_error *p, struct group *g, double t, co
                      size = ct_larger(fabs(g->at[i]), g->record.largest[i]),
                      to_come = least > 0 ? ct_larger(g->expected[i], least) : 0;
         if (g->record.constrained.is_found[i]
-            || (least > 0 && ct_output_sensitivity_is_sensitive(g->amplifier, i)))
+            || (least > 0 && ct_output_sensitivity_is_sensitive(g->sensitivity, i)))
             continue;
         if (way > 0 && size >= ct_output_error_least_size * roundoff_of(g->at[i], g->probed[i]))
             most = ct_larger(most, way / ct_larger(size, to_come));
@@ -417,7 +417,7 @@ double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const d
             = ct_controlled_outputs_tolerance(g->outputs.kind, tolerance);
         for (size_t k = 0; k < g->record.n; k++)
             g->shown[k] = p->shown[g->result[k]];
-        most = ct_larger(ct_output_sensitivity_error(g->amplifier, t, y, e, g->shown, &own),
+        most = ct_larger(ct_output_sensitivity_error(g->sensitivity, t, y, e, g->shown, &own),
                          most);
     }
     return most;
@@ -428,9 +428,9 @@ bool ct_output_error_has_sensitive(struct ct_output_error *p, double t, const do
 {
     bool any = false;
     for (size_t i = 0; i < p->n; i++) { // whatever a run before has found
-        ct_constrained_output_clear(p->group[i].invariant, &p->group[i].record.constrained,
-                                    false);
-        any |= ct_output_sensitivity_any(p->group[i].amplifier, t, y, tolerance);
+        ct_constrained_output_clear(p->group[i].constrained_output,
+                                    &p->group[i].record.constrained, false);
+        any |= ct_output_sensitivity_any(p->group[i].sensitivity, t, y, tolerance);
     }
     return any;
 }
@@ -438,18 +438,18 @@ bool ct_output_error_has_sensitive(struct ct_output_error *p, double t, const do
 int ct_output_error_roundoff_limit(struct ct_output_error *p, double t, const double *y,
                                    double wanted, double small, double *part)
 {
-    int blunt = -1;
+    int limited = -1;
     for (size_t k = 0; k < p->n; k++) {
         const struct group *g = &p->group[k];
         double own;
         for (size_t i = 0; i < g->record.n; i++)
             g->shown[i] = ct_larger(p->shown[g->result[i]], g->record.largest[i]);
-        const int i = ct_output_sensitivity_roundoff_limit(g->amplifier, t, y, g->shown, wanted,
-                                                           small, &own);
-        if (i >= 0 && (blunt < 0 || own > *part)) {
+        const int i = ct_output_sensitivity_roundoff_limit(g->sensitivity, t, y, g->shown,
+                                                           wanted, small, &own);
+        if (i >= 0 && (limited < 0 || own > *part)) {
             *part = own;
-            blunt = g->result[i];
+            limited = g->result[i];
         }
     }
-    return blunt;
+    return limited;
 }

@@ -85,7 +85,7 @@ struct ct_output_error_record {
     bool has_last; // since the last acceptance
     int skip;      // steps left without an estimate
     int between;   // such steps planned at the last estimate
-    int unprobed;  // estimates left without a measurement of round-off
+    int without_measurement; // estimates left without a measurement of round-off
     const struct ct_output_sensitivity
         *sensitive; // sensitive outputs do not count; NULL: all do
     struct ct_constrained_output_record

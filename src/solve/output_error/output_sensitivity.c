@@ -40,14 +40,14 @@ struct ct_output_sensitivity {
 
 struct ct_output_sensitivity *
 ct_output_sensitivity_create(struct ct_arena *a, struct ct_controlled_outputs *outputs,
-                             struct ct_constrained_output *invariant,
+                             struct ct_constrained_output *constrained_output,
                              struct ct_constrained_output_record *record)
 {
     const struct ct_evaluator *m = outputs->s->m;
     const size_t n = outputs->n;
     struct ct_output_sensitivity *p = CT_NEW(a, struct ct_output_sensitivity);
     *p = (struct ct_output_sensitivity){.outputs = outputs,
-                                        .constrained = invariant,
+                                        .constrained = constrained_output,
                                         .record = record,
                                         .n = n,
                                         .ny = m->nq + m->nu + 1};
@@ -159,7 +159,7 @@ int ct_output_sensitivity_roundoff_limit(struct ct_output_sensitivity *p, double
                                          double small, double *part)
 {
     const struct ct_tolerance tolerance = {wanted, 0};
-    int blunt = -1;
+    int limited = -1;
     note_sizes(p, largest);
     find(p, t, y, p->way, &tolerance);
     *part = wanted / fewest_roundoff_errors;
@@ -168,10 +168,10 @@ int ct_output_sensitivity_roundoff_limit(struct ct_output_sensitivity *p, double
         // a residual is nothing but round-off
         if (p->has[i] && size > small && roundoff < size && roundoff > *part * size) {
             *part = roundoff / size;
-            blunt = (int)i;
+            limited = (int)i;
         }
     }
-    return blunt;
+    return limited;
 }
 
 double ct_output_sensitivity_error(struct ct_output_sensitivity *p, double t, const double *y,

@@ -15,10 +15,11 @@
 
 struct ct_output_sensitivity;
 
-/// Lives in a. Outputs that invariant (may be NULL) and record find constrained are not sensitive.
+/// Lives in a. Outputs that constrained_output (may be NULL) and record find constrained are not
+/// sensitive.
 struct ct_output_sensitivity *
 ct_output_sensitivity_create(struct ct_arena *a, struct ct_controlled_outputs *outputs,
-                             struct ct_constrained_output *invariant,
+                             struct ct_constrained_output *constrained_output,
                              struct ct_constrained_output_record *record);
 /// A new run begins: nothing is known of the sizes of outputs.
 void ct_output_sensitivity_start(struct ct_output_sensitivity *p);

@@ -91,7 +91,7 @@ bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_a
     if (y != r->y)
         memcpy(r->y, y, r->ny * sizeof *y);
     ct_rank_monitor_start(r->singular);
-    r->singular->wanted = s->o.step == 0 ? s->o.output_rtol : 0;
+    r->singular->output_rtol = s->o.step == 0 ? s->o.output_rtol : 0;
     r->s->least_cancellation
         = s->o.step == 0 && s->o.output_rtol > 0 ? DBL_EPSILON / s->o.output_rtol : 0;
     r->s->left = INFINITY;

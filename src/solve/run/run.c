@@ -727,7 +727,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->final = CT_NEWN(r->arena, double, r->e->nresult + 1);
     memset(r->largest, 0, r->e->nresult * sizeof *r->largest);
     ct_rank_monitor_start(r->singular);
-    r->singular->wanted = o->step == 0 ? o->output_rtol : 0;
+    r->singular->output_rtol = o->step == 0 ? o->output_rtol : 0;
     r->s->least_cancellation
         = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, tightest_tolerance) : 0;
     r->s->left = INFINITY;

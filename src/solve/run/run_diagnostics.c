@@ -215,7 +215,7 @@ static bool is_driven_to_rest(const struct ct_run *r)
     }
     return is_driven
         && ct_vector_largest(r->y + r->m->nq, r->m->nu)
-               < rest_speed_ratio * r->singular->swiftest;
+               < rest_speed_ratio * r->singular->largest_speed;
 }
 
 // Advice for a run that ended near a singular configuration. If round-off ended it, that is a

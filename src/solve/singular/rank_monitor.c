@@ -39,23 +39,24 @@ void ct_rank_monitor_start(struct ct_rank_monitor *w)
 {
     w->time_to_singular = INFINITY;
     w->solver_unchanged = false;
-    w->reach = w->most = w->part = w->pivot = w->fall = w->t = w->dt = 0;
+    w->reach = w->largest_pivot = w->relative_pivot = w->pivot = w->pivot_rate = w->t = w->dt
+        = 0;
     w->switches = -1;
-    w->npassed = w->nover = 0;
+    w->npassed = w->ncrossed = 0;
     w->npole = 0;
     w->closest = INFINITY;
-    w->swiftest = 0;
+    w->largest_speed = 0;
     ct_tangent_basis_reserve(w->s, w->there);
     ct_tangent_basis_reserve(w->s, w->here);
     ct_tangent_basis_reserve(w->s, w->along);
     w->s->nearness = 1;
-    w->farthest = w->wanted = 0;
+    w->reference_pivot = w->output_rtol = 0;
     w->rank = 0;
 }
 
 // ---- ahead --------------------------------------------------------------------------------------
 
-static void look_at(struct ct_rank_monitor *w, double t, const double *y)
+static void evaluate_constraints(struct ct_rank_monitor *w, double t, const double *y)
 {
     ct_evaluator_set(w->m, t, y);
     ct_evaluator_constraint(w->m);
@@ -63,7 +64,7 @@ static void look_at(struct ct_rank_monitor *w, double t, const double *y)
 
 double ct_rank_monitor_pivot(struct ct_rank_monitor *w, double t, const double *y)
 {
-    look_at(w, t, y);
+    evaluate_constraints(w, t, y);
     return ct_partition_pivot(w->s);
 }
 
@@ -94,9 +95,9 @@ static const double roundoff_part = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
 {
-    const double part = pivot / w->farthest;
-    return w->wanted > 0 && part < CT_SINGULAR_PIVOT / 2
-        && part * part * roundoff_part * w->wanted < DBL_EPSILON;
+    const double part = pivot / w->reference_pivot;
+    return w->output_rtol > 0 && part < CT_SINGULAR_PIVOT / 2
+        && part * part * roundoff_part * w->output_rtol < DBL_EPSILON;
 }
 
 bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y)
@@ -149,9 +150,10 @@ double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const doubl
 }
 
 // The position ahead, where the pivot of now has begun to fall.
-static void find_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahead, double now)
+static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahead,
+                         double now)
 {
-    const double part = now / fmax(w->most, now);
+    const double part = now / fmax(w->largest_pivot, now);
     w->time_to_singular = time_to_singular(w, ahead, now, w->dt);
     w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : CT_SINGULAR_PIVOT) / part;
 }
@@ -172,12 +174,12 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
     const struct ct_solver *f = s->solver[0];
     if (f->volume / w->volume < 0)
         return false;
-    if (w->part > predicted_pivot && is_fixed)
+    if (w->relative_pivot > predicted_pivot && is_fixed)
         return ct_is_within(f->weakest / w->weakest, ct_same_strength)
             && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
-    const bool is_away
-        = is_fixed || w->part > predicted_pivot || w->time_to_singular > far_steps * dt;
-    return w->part > near_pivot && is_away
+    const bool is_away = is_fixed || w->relative_pivot > predicted_pivot
+                      || w->time_to_singular > far_steps * dt;
+    return w->relative_pivot > near_pivot && is_away
         && ct_is_within(f->weakest / w->weakest, unchanged_ratio)
         && ct_is_within(f->volume / w->volume, unchanged_ratio);
 }
@@ -191,68 +193,68 @@ static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double 
     // two motions that meet differ by
     const double part = 0.2;
     const size_t nu = w->m->nu;
-    const double least = part * fmax(w->swiftest, ct_vector_largest(u, nu));
+    const double least = part * fmax(w->largest_speed, ct_vector_largest(u, nu));
     for (size_t i = 0; i < nu; i++)
         if (fabs(u[i] - w->u[i]) > least + dt * fmax(fabs(a[i]), fabs(w->a[i])))
             return true;
     return false;
 }
 
-static void keep_speeds(struct ct_rank_monitor *w, const struct ct_rank_test *at)
+static void store_speeds(struct ct_rank_monitor *w, const struct ct_rank_test *at)
 {
     const size_t nu = w->m->nu;
     memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
     memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
-    w->swiftest = fmax(w->swiftest, ct_vector_largest(w->u, nu));
+    w->largest_speed = fmax(w->largest_speed, ct_vector_largest(w->u, nu));
 }
 
-static void keep_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_test *at)
+static void store_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_test *at)
 {
     struct ct_tangent_basis *v = w->there;
     w->there = w->here;
     w->here = v;
-    keep_speeds(w, at);
+    store_speeds(w, at);
 }
 
 // From the last state, of which the form has told: what has not changed until then may have on the
 // step from there.
-static void look_back(struct ct_rank_monitor *w, double pending)
+static void test_last_state(struct ct_rank_monitor *w, double pending)
 {
     ct_rank_monitor_pivot(w, ct_time_just_before(w->t, pending), w->last);
     ct_tangent_basis_find(w->s, w->there);
 }
 
 // What is seen of an accepted state.
-struct look {
+struct rank_test_result {
     double now,
         part; // the pivot, and against the largest; no more is known than that it is `is_far`
     bool is_far;
     bool
         // a position has been stepped over since the last look, or left on another motion
-        is_another;
+        is_crossed;
 };
 
-static struct look look_around(struct ct_rank_monitor *w, const struct ct_rank_test *at,
-                               double dt)
+static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
+                                                   const struct ct_rank_test *at, double dt)
 {
     const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
-    struct look l = {.is_another = false};
+    struct rank_test_result l = {.is_crossed = false};
     if (w->solver_unchanged)
-        look_back(w, at->pending);
-    look_at(w, ct_time_just_before(at->t, at->pending), at->y);
-    l.is_far = w->most > 0
-            && ct_partition_pivot_is_between(w->s, predicted_pivot * w->most,
-                                             w->most); // then at least so much
-    l.now = l.is_far ? predicted_pivot * w->most : ct_partition_pivot(w->s);
-    l.part = l.now / fmax(w->most, l.now);
+        test_last_state(w, at->pending);
+    evaluate_constraints(w, ct_time_just_before(at->t, at->pending), at->y);
+    l.is_far = w->largest_pivot > 0
+            && ct_partition_pivot_is_between(w->s, predicted_pivot * w->largest_pivot,
+                                             w->largest_pivot); // then at least so much
+    l.now = l.is_far ? predicted_pivot * w->largest_pivot : ct_partition_pivot(w->s);
+    l.part = l.now / fmax(w->largest_pivot, l.now);
     ct_tangent_basis_find(w->s, w->here);
     if (w->here->rank && w->there->rank)
-        l.is_another = ct_singularity_test_sign_changed(w->s, w->there, w->here)
+        l.is_crossed = ct_singularity_test_sign_changed(w->s, w->there, w->here)
                     || has_jumped(w, dt, u, a);
     return l;
 }
 
-static void note_state(struct ct_rank_monitor *w, double t, const double *y)
+static void store_state(struct ct_rank_monitor *w, double t, const double *y)
 {
     w->t = t;
     memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
@@ -261,11 +263,11 @@ static void note_state(struct ct_rank_monitor *w, double t, const double *y)
 // A step that ends in the position itself, as one to an event there, chooses rows for it, of which
 // there are fewer: those of before, for the same step taken shorter. False where there are as many
 // as ever.
-static bool return_rows(struct ct_rank_monitor *w, double pending)
+static bool restore_rows(struct ct_rank_monitor *w, double pending)
 {
     if (w->s->rank >= w->rank)
         return false;
-    look_at(w, ct_time_just_before(w->t, pending), w->last);
+    evaluate_constraints(w, ct_time_just_before(w->t, pending), w->last);
     w->s->sigma_best = 0;
     ct_partition_choose(w->s);
     return true;
@@ -273,49 +275,51 @@ static bool return_rows(struct ct_rank_monitor *w, double pending)
 
 // Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot
 // is not to be compared with the last one.
-static bool is_to_be_shorter(const struct ct_rank_monitor *w, const struct look *l)
+static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_test_result *l)
 {
-    const bool was_unforeseen
-        = w->s->switches == w->switches && isinf(w->time_to_singular) && w->part > near_pivot;
-    return l->is_another || l->part < smallest_pivot
-        || (was_unforeseen && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
+    const bool was_unpredicted = w->s->switches == w->switches && isinf(w->time_to_singular)
+                              && w->relative_pivot > near_pivot;
+    return l->is_crossed || l->part < smallest_pivot
+        || (was_unpredicted
+            && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
 }
 
 // Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where
 // rank is lost by two at a time both places are on the same side.
-static bool is_steep(const struct ct_rank_monitor *w, double dt)
+static bool falls_to_zero(const struct ct_rank_monitor *w, double dt)
 {
-    return w->pivot > 0 && w->pivot < 2 * dt * w->fall;
+    return w->pivot > 0 && w->pivot < 2 * dt * w->pivot_rate;
 }
 
-static void keep(struct ct_rank_monitor *w, const struct ct_rank_test *at, const struct look *l,
-                 double dt)
+static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
+                       const struct rank_test_result *l, double dt)
 {
-    keep_tangent_basis(w, at);
-    note_state(w, at->t, at->y);
+    store_tangent_basis(w, at);
+    store_state(w, at->t, at->y);
     w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
     w->solver_unchanged = false;
-    w->part = l->part;
+    w->relative_pivot = l->part;
     w->switches = w->s->switches;
     w->nmade = w->s->nmade;
     w->weakest = w->s->has_solver ? w->s->solver[0]->weakest : 0;
     w->volume = w->s->has_solver ? w->s->solver[0]->volume : NAN;
-    w->most = fmax(w->most, l->now);
-    w->fall = ((w->pivot > 0 ? w->pivot : w->most) - l->now) / dt;
-    w->pivot = l->is_far ? w->most : l->now;
+    w->largest_pivot = fmax(w->largest_pivot, l->now);
+    w->pivot_rate = ((w->pivot > 0 ? w->pivot : w->largest_pivot) - l->now) / dt;
+    w->pivot = l->is_far ? w->largest_pivot : l->now;
     w->time_to_singular = INFINITY;
     w->s->is_near_singular = l->part < near_pivot;
     w->s->nearness = l->part;
     w->dt = dt;
-    w->farthest = fmax(w->farthest, fmax(w->most, l->now));
+    w->reference_pivot = fmax(w->reference_pivot, fmax(w->largest_pivot, l->now));
 }
 
 // Notes, for the end of the run, how near a step that is no crossing has come to a singular
 // configuration.
-static void note_step(struct ct_rank_monitor *w, double t, const struct look *l)
+static void record_closest(struct ct_rank_monitor *w, double t,
+                           const struct rank_test_result *l)
 {
-    if (l->is_another)
-        w->over = w->nover++ ? w->over : t;
+    if (l->is_crossed)
+        w->t_crossed = w->ncrossed++ ? w->t_crossed : t;
     if (l->part < w->closest) {
         w->closest = l->part;
         w->t_closest = t;
@@ -330,23 +334,23 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     if (!ct_partition_has_pivot(w->s) || !(dt > 0))
         return true;
     if (is_unchanged_by_solver(w, dt, step->is_fixed)) {
-        note_state(w, t, y);
-        keep_speeds(w, &at);
+        store_state(w, t, y);
+        store_speeds(w, &at);
         w->solver_unchanged = true;
         w->pivot = 0;
         return true;
     }
-    struct look l = look_around(w, &at, dt);
-    if (step->is_fixed && !l.is_another && is_steep(w, dt))
-        l.is_another = ct_rank_monitor_is_crossed(w, &at, w->pivot, l.now);
+    struct rank_test_result l = test_accepted_state(w, &at, dt);
+    if (step->is_fixed && !l.is_crossed && falls_to_zero(w, dt))
+        l.is_crossed = ct_rank_monitor_is_crossed(w, &at, w->pivot, l.now);
     if (!step->is_across) {
-        if (!step->is_fixed && (return_rows(w, at.pending) || is_to_be_shorter(w, &l)))
+        if (!step->is_fixed && (restore_rows(w, at.pending) || must_be_repeated(w, &l)))
             return false;
-        note_step(w, t, &l);
+        record_closest(w, t, &l);
     }
-    keep(w, &at, &l, dt);
+    store_test(w, &at, &l, dt);
     if (!(l.is_far || l.part > predicted_pivot || step->is_fixed))
-        find_next(w, &at, l.now);
+        predict_next(w, &at, l.now);
     return true;
 }
 
@@ -363,39 +367,39 @@ void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
     const struct ct_rank_test ahead = {t, *w->pending, y, dy};
     w->there->rank = 0;
     w->pivot = 0;
-    keep_speeds(w, &ahead); // a look back finds the place, and these
-    if (!(w->most > 0) || w->part > predicted_pivot || !(w->dt > 0))
+    store_speeds(w, &ahead); // a look back finds the place, and these
+    if (!(w->largest_pivot > 0) || w->relative_pivot > predicted_pivot || !(w->dt > 0))
         return;
-    find_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
+    predict_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
 }
 
 void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
                                  double times)
 {
-    w->farthest = times * ct_rank_monitor_pivot(w, t, y);
+    w->reference_pivot = times * ct_rank_monitor_pivot(w, t, y);
 }
 
 void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
                                 double times)
 {
     ct_rank_monitor_announce(w, t, y, in);
-    w->most *= times;
-    w->part = w->s->nearness = 1 / times;
-    w->farthest = fmax(w->farthest, w->most);
-    w->s->is_near_singular = w->part < near_pivot;
+    w->largest_pivot *= times;
+    w->relative_pivot = w->s->nearness = 1 / times;
+    w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
+    w->s->is_near_singular = w->relative_pivot < near_pivot;
     w->reach = in * fmin(1, CT_SINGULAR_PIVOT * times);
 }
 
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)
 {
-    w->most = ct_rank_monitor_pivot(w, t, y); // what is farther off is not known
+    w->largest_pivot = ct_rank_monitor_pivot(w, t, y); // what is farther off is not known
     w->there->rank = 0;
     w->t = t;
-    w->part = w->s->nearness = 1;
+    w->relative_pivot = w->s->nearness = 1;
     w->switches = w->s->switches;
     w->time_to_singular = in;
     w->reach = INFINITY;
-    w->farthest = fmax(w->farthest, w->most);
+    w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
 }
 
 // The stages of a crossing keep away from the position and are put onto the constraints: an order
@@ -403,5 +407,5 @@ void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double 
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;
-    w->s->is_near_singular = !is_crossing && w->part < near_pivot;
+    w->s->is_near_singular = !is_crossing && w->relative_pivot < near_pivot;
 }

@@ -69,8 +69,8 @@ typedef double measure(struct ct_rank_monitor *w, const struct passage *p, doubl
 
 // From where the pivot is nearly as small as it becomes, within d: it falls and rises about
 // linearly, so that its sizes before and behind tell.
-static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct passage *p,
-                        double theta, double d)
+static double narrow_interval_of(measure *pivot, struct ct_rank_monitor *w,
+                                 const struct passage *p, double theta, double d)
 {
     for (int i = 0; i < NARROWED; i++) {
         const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
@@ -80,21 +80,24 @@ static double narrow_by(measure *pivot, struct ct_rank_monitor *w, const struct 
     return theta;
 }
 
-static double narrow(struct ct_rank_monitor *w, const struct passage *p, double theta, double d)
+static double narrow_interval(struct ct_rank_monitor *w, const struct passage *p, double theta,
+                              double d)
 {
-    return narrow_by(pivot_on, w, p, theta, d);
+    return narrow_interval_of(pivot_on, w, p, theta, d);
 }
 
 // Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if
 // it is not.
-static double find_in_middle(struct ct_rank_monitor *w, const struct passage *p, double zero)
+static double find_zero_in_middle(struct ct_rank_monitor *w, const struct passage *p,
+                                  double zero)
 {
-    const double theta = narrow(w, p, 0.5, 1.0 / PARTS);
+    const double theta = narrow_interval(w, p, 0.5, 1.0 / PARTS);
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
 // Where the smallest pivot is least on the way, if it is zero there; else NaN.
-static double find_least(struct ct_rank_monitor *w, const struct passage *p, double zero)
+static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passage *p,
+                                  double zero)
 {
     double least = INFINITY, at = 0;
     for (int i = 0; i <= PARTS; i++) {
@@ -104,14 +107,14 @@ static double find_least(struct ct_rank_monitor *w, const struct passage *p, dou
             at = part;
         }
     }
-    at = narrow(w, p, at, 1.0 / PARTS);
+    at = narrow_interval(w, p, at, 1.0 / PARTS);
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
 // Where the test function changes its sign. theta (PARTS, out); returns how many such places there
 // are.
-static int find_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                        double *theta)
+static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
+                             double *theta)
 {
     const double part = 1.0 / PARTS; // Definition: of the way
     struct ct_tangent_basis *last = w->along, *next = w->here;
@@ -122,7 +125,8 @@ static int find_changes(struct ct_rank_monitor *w, const struct passage *p, doub
         const double at = i * part, behind = pivot_on(w, p, at);
         ct_tangent_basis_find(w->s, next);
         if (ct_singularity_test_sign_changed(w->s, last, next)) {
-            theta[n] = narrow(w, p, at - behind / (before + behind) * part, test_distance);
+            theta[n]
+                = narrow_interval(w, p, at - behind / (before + behind) * part, test_distance);
             n += pivot_on(w, p, theta[n]) < zero;
         }
         struct ct_tangent_basis *v = last;
@@ -154,7 +158,8 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
 
 // Is the end of the way on the side where this loss of rank on it leads to from w->along, where it
 // begins, if that is known?
-static bool tells_of(struct ct_rank_monitor *w, const struct passage *p, int rank_loss)
+static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *p,
+                               int rank_loss)
 {
     pivot_on(w, p, 1);
     ct_tangent_basis_find(w->s, w->here);
@@ -163,40 +168,41 @@ static bool tells_of(struct ct_rank_monitor *w, const struct passage *p, int ran
 }
 
 // Positions on a way, as parts of it.
-struct found {
+struct found_configurations {
     double theta[PARTS];
     int n;
-    bool is_seen; // one, of which all is known in the last of w->passed
+    bool has_dependence; // one, of which all is known in the last of w->passed
 };
 
 // One in the middle, where it has been foreseen, as most often. False if there may be others:
 // multipliers tell two of them apart that are next to each other.
-static bool find_foreseen(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                          struct found *f)
+static bool find_predicted(struct ct_rank_monitor *w, const struct passage *p, double zero,
+                           struct found_configurations *f)
 {
     struct ct_singular_configuration *last = &w->passed[CT_MOST_SINGULAR];
     ct_tangent_basis_find(w->s, w->along); // from where the pivot has just been found
-    f->theta[0] = find_in_middle(w, p, zero);
+    f->theta[0] = find_zero_in_middle(w, p, zero);
     f->n = isfinite(f->theta[0]);
     if (!f->n)
         return false;
     find_dependence(w, p, f->theta[0], last);
-    if (!tells_of(w, p, last->rank_loss))
+    if (!is_side_consistent(w, p, last->rank_loss))
         return false;
-    f->is_seen = last->rank_loss % 2 == 1 || !w->has_poles;
-    return f->is_seen;
+    f->has_dependence = last->rank_loss % 2 == 1 || !w->has_poles;
+    return f->has_dependence;
 }
 
-static void find_positions(struct ct_rank_monitor *w, const struct passage *p, struct found *f)
+static void find_singular_configurations(struct ct_rank_monitor *w, const struct passage *p,
+                                         struct found_configurations *f)
 {
     // the pivot falls linearly from where the crossing began: a zero is one to what is resolved
     const double zero = resolved * pivot_on(w, p, 0);
     double theta[PARTS];
-    if (find_foreseen(w, p, zero, f))
+    if (find_predicted(w, p, zero, f))
         return;
-    int n = find_changes(w, p, zero, theta);
+    int n = find_sign_changes(w, p, zero, theta);
     if (!n && !f->n) {
-        theta[0] = find_least(w, p, zero);
+        theta[0] = find_smallest_pivot(w, p, zero);
         n = isfinite(theta[0]);
     }
     if (!n)
@@ -205,14 +211,14 @@ static void find_positions(struct ct_rank_monitor *w, const struct passage *p, s
     f->n = n;
 }
 
-static void keep_position(struct ct_rank_monitor *w, const struct passage *p,
-                          const struct found *f, int i)
+static void record_configuration(struct ct_rank_monitor *w, const struct passage *p,
+                                 const struct found_configurations *f, int i)
 {
     if (w->npassed++ >= CT_MOST_SINGULAR)
         return;
     struct ct_singular_configuration *at = &w->passed[w->npassed - 1],
                                      *last = &w->passed[CT_MOST_SINGULAR];
-    if (!f->is_seen)
+    if (!f->has_dependence)
         find_dependence(w, p, f->theta[i], last);
     memcpy(at->row, last->row, w->m->nrow * sizeof *at->row);
     at->rank_loss = last->rank_loss;
@@ -220,7 +226,7 @@ static void keep_position(struct ct_rank_monitor *w, const struct passage *p,
 }
 
 // Of the kept rows, which depend where all do: singular values have but half of the digits.
-static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
+static double retained_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
 {
     pivot_on(w, p, part);
     return ct_partition_retained_pivot(w->s);
@@ -228,26 +234,26 @@ static double kept_pivot_on(struct ct_rank_monitor *w, const struct passage *p, 
 
 // To as many digits as the way has: what multipliers make of a position is divided by the time to
 // it.
-static void keep_poles(struct ct_rank_monitor *w, const struct passage *p,
-                       const struct found *f)
+static void record_poles(struct ct_rank_monitor *w, const struct passage *p,
+                         const struct found_configurations *f)
 {
     w->npole = 0;
     for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
-        w->pole[w->npole++]
-            = time_on(p, narrow_by(kept_pivot_on, w, p, f->theta[i], 4 * resolved));
+        w->pole[w->npole++] = time_on(
+            p, narrow_interval_of(retained_pivot_on, w, p, f->theta[i], 4 * resolved));
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
                             double begin, double t1)
 {
     const struct passage p = {.span = span, .begin = begin, .pending = *w->pending};
-    struct found f = {.n = 0};
+    struct found_configurations f = {.n = 0};
     bool has_passed = false;
-    find_positions(w, &p, &f);
-    keep_poles(w, &p, &f);
+    find_singular_configurations(w, &p, &f);
+    record_poles(w, &p, &f);
     for (int i = 0; i < f.n; i++)
         if (time_on(&p, f.theta[i]) <= t1) {
-            keep_position(w, &p, &f, i);
+            record_configuration(w, &p, &f, i);
             has_passed = true;
         }
     return has_passed;
@@ -262,13 +268,13 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
                                 double before, double behind)
 {
     const struct passage p = {.to = to};
-    const double part = find_least(w, &p, crossed_pivot_ratio * fmin(before, behind));
+    const double part = find_smallest_pivot(w, &p, crossed_pivot_ratio * fmin(before, behind));
     return part > 0 && part < 1;
 }
 
 // Is there a position within s seconds of y, the speeds being what they are? The machine is left
 // next to it.
-static bool is_within(struct ct_rank_monitor *w, double t, const double *y, double s)
+static bool is_singular_within(struct ct_rank_monitor *w, double t, const double *y, double s)
 {
     const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};
     w->t = t;
@@ -287,8 +293,8 @@ bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const
         return true;
     if (!ct_partition_has_pivot(w->s))
         return false;
-    if (!(ct_rank_monitor_pivot(w, t, y) < near_singular_ratio * w->most)
-        && !(step > 0 && is_within(w, t, y, step)))
+    if (!(ct_rank_monitor_pivot(w, t, y) < near_singular_ratio * w->largest_pivot)
+        && !(step > 0 && is_singular_within(w, t, y, step)))
         return false;
     if (ct_partition_dependence(w->s, w->x, &log_det))
         mark_rows(w, row);

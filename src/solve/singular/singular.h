@@ -36,34 +36,31 @@ struct ct_rank_monitor {
     struct ct_partition *s;
     const double *pending;   // time of the next event, owned by the run
     double time_to_singular; // time to the next singular configuration; INFINITY: there is none
-    double wanted;           // relative tolerance of outputs; 0: not known
+    double output_rtol;      // relative tolerance of outputs; 0: not known
     double
-        farthest; // the largest pivot so far, or an estimate after a start near a singular one
-    int rank;     // the largest rank of J so far
+        reference_pivot; // largest pivot so far, or its estimate after a start near a singular one
+    int rank;            // the largest rank of J so far
     double reach; // time before the singular configuration in which f should not be computed
-    double most, part, t; // the largest pivot so far, the last one relative to it, and its time
-    double dt;            // the last step size
-    double pivot, fall;   // the last pivot, 0: not known; its decrease per second
-    bool retains_rows;    // a step does, and there are more than it needs
-    bool solver_unchanged; // the form has told of the last state that nothing has changed
-    long switches, nmade;  // of the coordinate partitioning, there
-    long doubted; // its choice when a step was last looked at whether it is to be shorter
-    double weakest, volume; // of its form there
-    struct ct_tangent_basis *there, *here,
-        *along;      // the view from there, from where a step ends, and on the way
-    double *u, *a;   // (nu) speeds and accelerations there, where that is known
-    double swiftest; // largest speed at accepted states
-    long nover;      // singular configurations that fixed steps have passed
-    double over;     // time of the first
-    double closest,
-        t_closest;  // the smallest part of a step that was not made to cross, and when
-    bool has_poles; // they are asked for
+    double largest_pivot;         // so far
+    double relative_pivot, t, dt; // the last pivot over it; the last state's time and step size
+    double pivot, pivot_rate;     // the last pivot, 0: not known; its decrease per second
+    bool retains_rows;            // a step does, and there are more than it needs
+    bool solver_unchanged;        // at the last state the solver's pivots had not changed
+    long switches, nmade;         // of the coordinate partitioning at the last rank test
+    double weakest, volume;       // pivots of its solver at the last rank test
+    struct ct_tangent_basis *there, *here, *along; // at the last test, at this one, on the way
+    double *u, *a;             // (nu) speeds and accelerations at the last state
+    double largest_speed;      // at accepted states
+    long ncrossed;             // singular configurations that fixed steps have crossed
+    double t_crossed;          // time of the first of them
+    double closest, t_closest; // smallest relative pivot at steps that do not cross; its time
+    bool has_poles;            // poles of multipliers are asked for
     int npole;
     double pole[CT_MOST_POLES]; // exact times of singular configurations on the last crossing
     long npassed;
     struct ct_singular_configuration *passed; // the first of them (CT_MOST_SINGULAR)
     double *last;                             // the last accepted state  (nq + nu)
-    double *y, *d, *x;                        // (ny), (nu), (nrow)
+    double *y, *d, *x;                        // workspace (ny), (nu), (nrow)
 };
 
 /// pending: time of the next event, owned by the run; INFINITY if there is none.

@@ -29,7 +29,7 @@ enum { MOST_HALVINGS = 12 };
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
 // way; up to there from it a start tells nothing of how the smallest pivot falls.
 // Chosen: starts that are refused for lack of digits against steps that err.
-static const double beside = 0.2, near = 0.5;
+static const double crossing_distance = 0.2, near_distance = 0.5;
 
 // The step may err by so much of the largest state, or by so much of what is asked if that is more.
 // (8.35)
@@ -39,21 +39,21 @@ static const double smallest_error = 1e-12, error_part = 0.02;
 // Where a run starts: all speeds together, and accelerations where they are known.
 struct initial_step {
     void *work;
-    double u, a, ua;    // |u|, |u'|, u . u'
-    double in;          // time to the position, below 0 behind it
-    double most;        // the step may err by so much of the largest state
-    double *before;     // (ny, out)
-    double *end, *dend; // (ny)
-    struct ct_tangent_basis *view[2];
+    double u, a, ua;         // |u|, |u'|, u . u'
+    double time_to_singular; // time to the position, below 0 behind it
+    double largest_error;    // the step may err by so much of the largest state
+    double *before;          // (ny, out)
+    double *end, *dend;      // (ny)
+    struct ct_tangent_basis *tangents[2];
 };
 
 // A step across, h, around a place `middle` seconds after the start, and what it errs by, of the
 // largest state.
-struct across {
+struct crossing_step {
     double middle, h, error;
 };
 
-static double begin_of(const struct across *c)
+static double begin_of(const struct crossing_step *c)
 {
     return c->middle - c->h / 2;
 }
@@ -71,7 +71,7 @@ static double speed_at(const struct initial_step *l, double t)
 
 // How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no
 // motion leave much more.
-static double off_constraints(struct ct_singular_start *r, double t, const double *y)
+static double constraint_residual(struct ct_singular_start *r, double t, const double *y)
 {
     ct_evaluator_set(r->m, t, y);
     ct_evaluator_constraint(r->m);
@@ -80,7 +80,7 @@ static double off_constraints(struct ct_singular_start *r, double t, const doubl
 
 // Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h
 // after it.
-static bool choose_near_singular(struct ct_singular_start *r, double h, const double *y)
+static bool choose_partition(struct ct_singular_start *r, double h, const double *y)
 {
     const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     memcpy(r->stage, y, (size_t)r->p->ny * sizeof *y);
@@ -108,27 +108,27 @@ static bool choose_near_singular(struct ct_singular_start *r, double h, const do
 static const double same_motion_tolerance = 1e-4;
 
 // How far y (ny) is from it, the work aside.
-static double miss(const double *assembled, const double *y, size_t ny)
+static double relative_distance(const double *assembled, const double *y, size_t ny)
 {
-    double most = 0;
+    double largest = 0;
     for (size_t i = 0; i + 1 < ny; i++)
-        most = fmax(most, fabs(y[i] - assembled[i]));
-    return most / ct_vector_largest(assembled, ny);
+        largest = fmax(largest, fabs(y[i] - assembled[i]));
+    return largest / ct_vector_largest(assembled, ny);
 }
 
 bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny)
 {
-    return miss(assembled, y, ny) <= same_motion_tolerance;
+    return relative_distance(assembled, y, ny) <= same_motion_tolerance;
 }
 
 // Does the step from l->before lead across, and to the start on its way? r->stage (out): what it
 // makes of the start.
 static bool leads_across(struct ct_singular_start *r, const struct initial_step *l,
-                         const struct across *c)
+                         const struct crossing_step *c)
 {
-    const double t = begin_of(c), most = ct_vector_largest(l->before, (size_t)r->p->ny),
+    const double t = begin_of(c), largest = ct_vector_largest(l->before, (size_t)r->p->ny),
                  roundoff = fmax(ct_crossing_roundoff, error_part * r->output_rtol);
-    const struct ct_tolerance tolerance = {r->rtol, fmax(r->atol, roundoff * most)};
+    const struct ct_tolerance tolerance = {r->rtol, fmax(r->atol, roundoff * largest)};
     double error;
     if (r->p->rhs(r->p->user, t, l->before, r->dy) != CT_EVAL_OK
         || ct_crossing.step(r->p, t, c->h, l->before, r->dy, &tolerance, l->end, l->dend,
@@ -143,12 +143,12 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
 // Sweeps of the step into l->before, down to a part of the largest state or, where they come to
 // round-off before, to ten times as much and so on. Returns what the step errs by, or INFINITY.
 static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
-                                  const struct across *c)
+                                  const struct crossing_step *c)
 {
     const double *y = r->assembled, largest = ct_vector_largest(y, (size_t)r->p->ny),
                  t = begin_of(c);
     double error, part = smallest_error;
-    while (part <= l->most) {
+    while (part <= l->largest_error) {
         const struct ct_tolerance tolerance = {part, part * largest};
         if (ct_crossing_initial_step(r->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
                                      &error, l->work, r->stats)
@@ -160,8 +160,7 @@ static double collocate_backwards(struct ct_singular_start *r, const struct init
 }
 
 // The state where a step begins, with the digits that its stages have.
-static bool put_on_constraints(struct ct_singular_start *r, const struct initial_step *l,
-                               double t)
+static bool project_state(struct ct_singular_start *r, const struct initial_step *l, double t)
 {
     r->p->singular->set_crossing(r->p->singular->user, true);
     const enum ct_eval e = r->p->project(r->p->user, t, l->before);
@@ -171,31 +170,32 @@ static bool put_on_constraints(struct ct_singular_start *r, const struct initial
 
 // The state where a step across begins, into l->before, and what that errs by; INFINITY where it
 // does not lead across.
-static void look_back(struct ct_singular_start *r, const struct initial_step *l,
-                      struct across *c)
+static void find_state_before(struct ct_singular_start *r, const struct initial_step *l,
+                              struct crossing_step *c)
 {
     const double t = begin_of(c);
     c->error = INFINITY;
-    if (!choose_near_singular(r, t + c->h, r->assembled))
+    if (!choose_partition(r, t + c->h, r->assembled))
         return;
     ct_evaluator_set(r->m, 0, r->assembled);
     ct_evaluator_dynamics(r->m);
     memset(r->dy, 0, (size_t)r->p->ny * sizeof *r->dy);
     ct_evaluator_copy(r->dy, r->m->rate, r->m->nq);
     const double error = collocate_backwards(r, l, c);
-    if (error <= l->most && off_constraints(r, t, l->before) <= ct_crossing_mismatch_limit
-        && put_on_constraints(r, l, t) && leads_across(r, l, c))
+    if (error <= l->largest_error
+        && constraint_residual(r, t, l->before) <= ct_crossing_mismatch_limit
+        && project_state(r, l, t) && leads_across(r, l, c))
         c->error = error;
 }
 
 // Does J keep its rank on either side of the gap? Near a position among the stages samples would be
 // among round-off errors.
 static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
-                       const struct across *c)
+                       const struct crossing_step *c)
 {
     const struct ct_gap_interpolation b
         = ct_crossing_interpolation(l->work, begin_of(c), c->h, 0.5);
-    struct ct_tangent_basis *there = l->view[0], *here = l->view[1];
+    struct ct_tangent_basis *there = l->tangents[0], *here = l->tangents[1];
     for (int k = 0; k < b.n; k++) {
         ct_evaluator_set(r->m, b.t[k], b.y + (size_t)k * (size_t)r->p->ny);
         ct_evaluator_constraint(r->m);
@@ -211,7 +211,8 @@ static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l
 }
 
 // Do root functions keep their signs? What switches on the way is another motion.
-static bool keeps_sides(struct ct_singular_start *r, const struct initial_step *l, double t)
+static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_step *l,
+                             double t)
 {
     double *now = CT_NEWN(r->arena, double, 2 * (size_t)r->p->nroot + 1),
            *then = now + r->p->nroot;
@@ -227,14 +228,15 @@ static bool keeps_sides(struct ct_singular_start *r, const struct initial_step *
 // and reach the start, in place of best (in and out) if that is shorter: it ends farther from the
 // position.
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
-                      struct across *best)
+                      struct crossing_step *best)
 {
-    struct across c
+    struct crossing_step c
         = {middle, 2 * time_for(l, speed_at(l, middle), longest_displacement), INFINITY};
     for (int i = 0; i < MOST_HALVINGS && c.h > best->h && c.h / 2 > fabs(middle);
          i++, c.h /= 2) {
-        look_back(r, l, &c);
-        if (c.error < INFINITY && keeps_rank(r, l, &c) && keeps_sides(r, l, begin_of(&c))) {
+        find_state_before(r, l, &c);
+        if (c.error < INFINITY && keeps_rank(r, l, &c)
+            && keeps_root_signs(r, l, begin_of(&c))) {
             *best = c;
             return;
         }
@@ -295,24 +297,24 @@ static void warn_of_rounding(struct ct_singular_start *r, double unknown)
 static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
-    struct across best = {.error = INFINITY};
-    for (size_t i = 0; i < COUNT(l->view); i++) {
-        l->view[i] = ct_tangent_basis_create(r->arena);
-        ct_tangent_basis_reserve(r->s, l->view[i]);
+    struct crossing_step best = {.error = INFINITY};
+    for (size_t i = 0; i < COUNT(l->tangents); i++) {
+        l->tangents[i] = ct_tangent_basis_create(r->arena);
+        ct_tangent_basis_reserve(r->s, l->tangents[i]);
     }
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, (size_t)r->p->ny);
     r->singular->time_to_singular = 0; // nearer than from where crossings begin
     r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, r->p);
-    find_step(r, l, l->in, &best);
+    find_step(r, l, l->time_to_singular, &best);
     if (best.error < INFINITY)
-        look_back(r, l, &best);
+        find_state_before(r, l, &best);
     if (!(best.error < INFINITY)) {
         return_to_start(r);
         return false;
     }
-    const double unknown = miss(r->assembled, r->stage, (size_t)r->p->ny);
+    const double unknown = relative_distance(r->assembled, r->stage, (size_t)r->p->ny);
     if (unknown > r->output_rtol)
         warn_of_rounding(r, unknown);
     r->t0 = begin_of(&best);
@@ -323,12 +325,12 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 }
 
 // What the step may err by, where it is felt by so much, for steps that are held to `asked`.
-static void allow(struct initial_step *l, double asked, double felt)
+static void set_largest_error(struct initial_step *l, double asked, double felt)
 {
-    l->most = fmax(smallest_error, error_part * asked * felt);
+    l->largest_error = fmax(smallest_error, error_part * asked * felt);
 }
 
-static bool begin_in_position(struct ct_singular_start *r, struct initial_step *l)
+static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *l)
 {
     int freedoms;
     if (r->is_fixed)
@@ -339,14 +341,14 @@ static bool begin_in_position(struct ct_singular_start *r, struct initial_step *
             "away from it; leave out 'step'",
             r->joints);
     const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
-    allow(l, r->rtol, 1);
+    set_largest_error(l, r->rtol, 1);
     return (misfit <= speed_misfit_tolerance && begin_before(r, l))
         || refuse_speeds(r, misfit, freedoms);
 }
 
 // How far the position is, below 0 behind the start, as the motion goes there.
-static double find_way(struct ct_rank_monitor *w, const double *y, const double *dy,
-                       struct initial_step *l)
+static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
+                                     const double *dy, struct initial_step *l)
 {
     // Derived: a difference with ten digits
     const double small_part = 1e-3; // of the time to a position beside
@@ -357,35 +359,37 @@ static double find_way(struct ct_rank_monitor *w, const double *y, const double 
     l->ua = ct_vector_dot(u, a, nu);
     if (!(l->u + l->a > 0))
         return INFINITY;
-    return ct_rank_monitor_distance(w, 0, y, dy, small_part * time_for(l, l->u, beside));
+    return ct_rank_monitor_distance(w, 0, y, dy,
+                                    small_part * time_for(l, l->u, crossing_distance));
 }
 
 // Beside a position: from before it, or else what is known of it from the start on.
 static void begin_near_singular(struct ct_singular_start *r, struct initial_step *l)
 {
-    const double way = find_way(r->singular, r->y, r->dy, l), size = fabs(way);
-    if (!(size > 0 && size < near))
+    const double way = find_singular_distance(r->singular, r->y, r->dy, l), size = fabs(way);
+    if (!(size > 0 && size < near_distance))
         return;
     const double along = fmax(size, l->u * time_for(l, l->u, longest_displacement));
-    allow(l, r->output_rtol, fmin(1, along));
-    l->in = copysign(time_for(l, l->u, size), way);
-    ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near / size);
-    if (size > beside || !begin_before(r, l))
-        ct_rank_monitor_start_near(r->singular, 0, r->y, way > 0 ? l->in : INFINITY,
-                                   near / size);
+    set_largest_error(l, r->output_rtol, fmin(1, along));
+    l->time_to_singular = copysign(time_for(l, l->u, size), way);
+    ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near_distance / size);
+    if (size > crossing_distance || !begin_before(r, l))
+        ct_rank_monitor_start_near(r->singular, 0, r->y,
+                                   way > 0 ? l->time_to_singular : INFINITY,
+                                   near_distance / size);
 }
 
 bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy)
 {
-    struct initial_step l = {.in = 0};
-    return w->m->nrow && fabs(find_way(w, y, dy, &l)) < near;
+    struct initial_step l = {.time_to_singular = 0};
+    return w->m->nrow && fabs(find_singular_distance(w, y, dy, &l)) < near_distance;
 }
 
 bool ct_singular_initial_step(struct ct_singular_start *r)
 {
     struct initial_step l = {.u = ct_vector_max_norm(r->assembled + r->m->nq, r->m->nu)};
     if (r->m->nrow && r->joints && l.u > 0)
-        return begin_in_position(r, &l);
+        return begin_in_singular(r, &l);
     if (r->m->nrow && !r->joints && !r->is_fixed)
         begin_near_singular(r, &l);
     return true;
