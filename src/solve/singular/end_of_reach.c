@@ -1,11 +1,10 @@
 // End of reach: does a driven motion lead to where the constraints cannot be met any more?
 //
-// Before a position in which constraints come to depend on each other the motion either crosses it
-// or ends in it. It ends if behind it no place of the bodies meets the constraints: the sum of
-// their squares has a least value above 0 there, one that grows with time. That is looked for from
-// the place where the present speeds lead, by Levenberg and Marquardt's method, at two times. At a
-// position that can be crossed there are places that meet all, next to where the speeds lead, and
-// the least value found is 0.
+// The motion either crosses a singular configuration ahead or ends in it. It ends if no
+// configuration behind it meets the constraints: the minimum of the sum of their squares is above 0
+// there and grows with time. The minimum is computed at two times by the Levenberg-Marquardt
+// method, starting from the configuration to which the present speeds lead. If the singular
+// configuration can be crossed the minimum is 0.
 //
 // Source: Nocedal and Wright (2006), Numerical Optimization, 10.3, for the method.
 #include "solve/constraint/partition_internal.h"
@@ -26,7 +25,7 @@ struct search {
     double *H, *g;    // J' J + mu 1  (nu x nu), J' phi, and then the step  (nu)
 };
 
-// Half the sum of squares at y; J is there, too.
+// Half the sum of squares of phi at y. J is evaluated there, too.
 static double find_misfit(const struct search *s, const double *y)
 {
     const struct ct_evaluator *m = s->w->m;
@@ -38,7 +37,7 @@ static double find_misfit(const struct search *s, const double *y)
     return sum;
 }
 
-// H = J' J, g = J' phi; returns the size of g against that of its factors.
+// H = J' J, g = J' phi; returns the norm of g relative to those of its factors.
 static double find_slope(const struct search *s)
 {
     const struct ct_evaluator *m = s->w->m;
@@ -53,13 +52,13 @@ static double find_slope(const struct search *s)
     return trace * phi > 0 ? sqrt(ct_vector_dot(s->g, s->g, (size_t)nu) / (trace * phi)) : 0;
 }
 
-// To the place next to s->y where the misfit is least. size (out): of what is open there, the root
-// of the sum of squares. False if that is not found.
+// Moves s->y to the nearest local minimum of the sum of squares. size (out): the root of the sum
+// there. False if none is found.
 static bool find_least(struct search *s, double *size)
 {
-    // Limit: of the search, after which the end is not told
+    // Limit: iterations of the search; beyond them an end of the motion is not detected
     enum { MOST = 100 };
-    // the root of round-off: what a misfit tells of where it is least
+    // the root of round-off: the accuracy of the place of a minimum
     const double flat = sqrt(DBL_EPSILON);
     const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
@@ -91,7 +90,8 @@ static bool find_least(struct search *s, double *size)
     return false;
 }
 
-// What stays open dt after t, from where the speeds of y at t lead. False if it cannot be told.
+// The least residual of the constraints dt after t, near where the speeds of y at t lead. False
+// if it is not found.
 static bool find_open(struct search *s, double t, const double *y, double dt, double *size)
 {
     const struct ct_evaluator *m = s->w->m;
@@ -109,17 +109,17 @@ bool ct_singular_ends_motion(void *user, double t, const double *y, double in)
     struct ct_arena *a = w->s->arena;
     const size_t nu = w->m->nu, ny = w->m->nq + nu + 1;
     // Derived: the tolerance of assembly;
-    const double closed = 1e-9; // what steps leave open is less by far
+    const double closed = 1e-9; // residuals after steps are far below
     double once, twice;
     if (t + 3 * in >= *w->pending || ct_partition_is_large(w->s))
-        return false; // behind an event motions may be others
+        return false; // behind an event the motion may be another
     struct search s = {.w = w,
                        .ny = ny,
                        .y = CT_NEWN(a, double, ny),
                        .next = CT_NEWN(a, double, ny),
                        .H = CT_NEWN(a, double, nu *nu + 1),
                        .g = CT_NEWN(a, double, nu + 1)};
-    // it is open by as much more as it is later: from t + in on
+    // the residual grows in proportion to the time after t + in
     const bool is_found
         = find_open(&s, t, y, 2 * in, &once) && find_open(&s, t, y, 3 * in, &twice);
     ct_evaluator_set(w->m, ct_rank_monitor_time(w, t), y);

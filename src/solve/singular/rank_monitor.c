@@ -29,7 +29,7 @@ struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct
     w->a = CT_NEWN(arena, double, m->nu + 1);
     w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_configuration, kept + 1);
-    for (size_t i = 0; i < kept + 1; i++) // one to look at
+    for (size_t i = 0; i < kept + 1; i++) // the last one is workspace
         w->passed[i].row = CT_NEWN(arena, bool, m->nrow + 1);
     ct_rank_monitor_start(w);
     return w;
@@ -85,8 +85,9 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 // their rows avoid it below the second part.
 // Chosen: shorter steps near small pivots against the accuracy of accelerations.
 static const double predicted_pivot = 0.8, near_pivot = 0.5;
-// No step ends where the pivot is less than this part. Derived: round-off is divided by its square,
-// and eps / 1e-14 leaves one digit to tell which motion goes on.
+// No step ends where the pivot is less than this part of its largest value. Derived: round-off
+// is divided by its square, and eps / 1e-14 leaves one digit to distinguish the motions through the
+// singular configuration.
 static const double smallest_pivot = 1e-7;
 
 // Round-off of accelerations is eps over the square of the pivot, against its largest. They have
@@ -110,9 +111,9 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
-    enum { SECANTS = 3 }; // Limit: of the time of a prediction, which each look repeats
-    // Derived: of the last step, for a difference with ten digits; and of the way there, so that it
-    // is not stepped over where the pivot falls faster by a quarter
+    enum { SECANTS = 3 }; // Limit: evaluations of a prediction, which each rank test makes anew
+    // Derived: part of the last step, for a difference with ten digits; part of the predicted
+    // time, so that a secant does not pass the zero of a pivot that falls faster by a quarter
     const double small_part = 1e-3, part = 0.8;
     const double far = CT_STEPS_NEAR_SINGULAR * dt;
     double s = small_part * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
@@ -122,7 +123,7 @@ static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_t
     for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
         const double next = s - part * pivot / slope;
         double there = ct_rank_monitor_pivot_after(w, a, next);
-        if (there > fabs(pivot)) // it has changed its sign, which is not seen
+        if (there > fabs(pivot)) // the pivot has changed its sign; only its size is computed
             there = -there;
         if (there == pivot)
             break;
@@ -144,12 +145,12 @@ double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const doubl
                  ahead = ct_rank_monitor_pivot_after(w, &a, s);
     const double way = ct_vector_max_norm(w->d, w->m->nu);
     if (behind > now
-        && behind > ahead) // where it rises from the position on it tells, too, beyond it
+        && behind > ahead) // the pivot rises again beyond the singular configuration
         return now * way / (behind - now);
     return ahead > now ? -now * way / (ahead - now) : now * way / (now - ahead);
 }
 
-// The position ahead, where the pivot of now has begun to fall.
+// Predicts the singular configuration ahead of a state with a pivot that has begun to fall.
 static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahead,
                          double now)
 {
@@ -158,12 +159,11 @@ static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *a
     w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : CT_SINGULAR_PIVOT) / part;
 }
 
-// Where J loses rank its kept rows do, and a pivot of the form vanishes: while its pivots are what
-// they were at the last look, there is no need of another. Fixed steps cross nothing, and are told
-// only whether pivots are to be sought at every evaluation. The sign of their product changes
-// there, however far apart looks are. With step control it is that, too, that must hardly have
-// changed, and no position may be near by what was seen then: so little is neither lost of the
-// largest pivot nor of the first sight of a position.
+// Where J loses rank its retained rows do, and a pivot of the solver vanishes. No rank test is
+// needed while the solver's pivots are those of the last test. Their product changes its sign at a
+// singular configuration, however far apart tests are. With step control the product itself must be
+// nearly unchanged, too, and no configuration may be predicted near by. Fixed steps cross nothing:
+// for them it only matters whether pivots are sought at every evaluation.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
     // Chosen: changes on a step; steps
@@ -184,8 +184,8 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
         && ct_is_within(f->volume / w->volume, unchanged_ratio);
 }
 
-// Have speeds changed by far more since the last look, dt before, than accelerations there or here
-// make of them? Motions that meet in a position have others.
+// Have speeds changed by far more since the last rank test, dt before, than by accelerations
+// there or here? The motions that meet in a singular configuration have different speeds.
 static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
                        const double *a)
 {
@@ -216,21 +216,21 @@ static void store_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_
     store_speeds(w, at);
 }
 
-// From the last state, of which the form has told: what has not changed until then may have on the
-// step from there.
+// The tangent basis at the last state, where the solver's pivots stood for the rank test: rank
+// may change on the step from there.
 static void test_last_state(struct ct_rank_monitor *w, double pending)
 {
     ct_rank_monitor_pivot(w, ct_time_just_before(w->t, pending), w->last);
     ct_tangent_basis_find(w->s, w->there);
 }
 
-// What is seen of an accepted state.
+// Result of the rank test at an accepted state.
 struct rank_test_result {
     double now,
-        part; // the pivot, and against the largest; no more is known than that it is `is_far`
+        part; // the pivot, and relative to the largest; where is_far, lower bounds
     bool is_far;
     bool
-        // a position has been stepped over since the last look, or left on another motion
+        // a singular configuration was crossed since the last test, or left on another motion
         is_crossed;
 };
 
@@ -260,9 +260,8 @@ static void store_state(struct ct_rank_monitor *w, double t, const double *y)
     memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
 }
 
-// A step that ends in the position itself, as one to an event there, chooses rows for it, of which
-// there are fewer: those of before, for the same step taken shorter. False where there are as many
-// as ever.
+// A step that ends in the singular configuration itself, at an event there, chooses fewer rows.
+// Restores the rows of the state before, for a shorter step. False if no row was lost.
 static bool restore_rows(struct ct_rank_monitor *w, double pending)
 {
     if (w->s->rank >= w->rank)
@@ -273,8 +272,8 @@ static bool restore_rows(struct ct_rank_monitor *w, double pending)
     return true;
 }
 
-// Is the step to it to be taken again, shorter? After another choice of rows and columns the pivot
-// is not to be compared with the last one.
+// Must the step to this state be repeated with a shorter one? After another choice of rows and
+// columns the pivot cannot be compared with the last one.
 static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_test_result *l)
 {
     const bool was_unpredicted = w->s->switches == w->switches && isinf(w->time_to_singular)
@@ -284,8 +283,8 @@ static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_
             && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
 }
 
-// Would the pivot have come to zero on this step, as it fell on the one before, or nearly so? Where
-// rank is lost by two at a time both places are on the same side.
+// Would the pivot have fallen to zero on this step, or nearly so, at its rate on the step
+// before? Where the rank falls by two the test function does not change its sign.
 static bool falls_to_zero(const struct ct_rank_monitor *w, double dt)
 {
     return w->pivot > 0 && w->pivot < 2 * dt * w->pivot_rate;
@@ -313,7 +312,7 @@ static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
     w->reference_pivot = fmax(w->reference_pivot, fmax(w->largest_pivot, l->now));
 }
 
-// Notes, for the end of the run, how near a step that is no crossing has come to a singular
+// Records for the report how near a step that is no crossing has come to a singular
 // configuration.
 static void record_closest(struct ct_rank_monitor *w, double t,
                            const struct rank_test_result *l)
@@ -367,7 +366,7 @@ void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
     const struct ct_rank_test ahead = {t, *w->pending, y, dy};
     w->there->rank = 0;
     w->pivot = 0;
-    store_speeds(w, &ahead); // a look back finds the place, and these
+    store_speeds(w, &ahead); // the state before is tested again with these
     if (!(w->largest_pivot > 0) || w->relative_pivot > predicted_pivot || !(w->dt > 0))
         return;
     predict_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
@@ -392,7 +391,7 @@ void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const doubl
 
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)
 {
-    w->largest_pivot = ct_rank_monitor_pivot(w, t, y); // what is farther off is not known
+    w->largest_pivot = ct_rank_monitor_pivot(w, t, y); // pivots farther off are not known
     w->there->rank = 0;
     w->t = t;
     w->relative_pivot = w->s->nearness = 1;
@@ -402,8 +401,8 @@ void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double 
     w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
 }
 
-// The stages of a crossing keep away from the position and are put onto the constraints: an order
-// of pivots that holds where it begins holds for all of them.
+// The stages of a crossing keep away from the singular configuration and are projected onto the
+// constraints: the order of pivots at its beginning holds for all of them.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;

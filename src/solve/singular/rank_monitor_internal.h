@@ -1,7 +1,7 @@
-// Singular configurations from inside: what the files of singular.h share.
+// Declarations that the files behind singular.h share.
 //
-//     rank_monitor.c               what is ahead
-//     rank_monitor_record.c        what has been passed, and where steps have ended
+//     rank_monitor.c               prediction along the motion
+//     rank_monitor_record.c        configurations that were crossed; the end of steps near one
 //     singular.c, end_of_reach.c   hooks of the integration
 //     singular_start.c             is a start in a singular configuration?
 //     singular_initial_step.c      the first step from there
@@ -13,7 +13,7 @@
 #include "solve/evaluator/switch_state.h"
 #include "solve/singular/singular.h"
 
-struct ct_rank_test { // along q' and q'' as they are at an accepted state
+struct ct_rank_test { // an accepted state, continued with its q' and q''
     double t, pending;
     const double *y, *dy;
 };
@@ -23,28 +23,29 @@ double ct_rank_monitor_pivot(struct ct_rank_monitor *w, double t, const double *
 /// The same s seconds later.
 double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                    double s);
-/// Does the way from the last state, with these pivots at its ends, come across a position or close
-/// by one?
+/// Does the motion from the last state, with these pivots at its ends, cross a singular
+/// configuration or pass near one?
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
                                 double before, double behind);
 
-/// How far [rad, m] y at t, where steps begin, is from a position: above 0 ahead along the motion,
-/// below 0 behind; as the smallest pivot changes within s seconds, infinite where it does not
-/// change or does not tell.
+/// Distance [rad, m] of y at t, where steps begin, from a singular configuration, extrapolated
+/// from the change of the smallest pivot within s seconds: positive if the motion leads to it,
+/// negative behind it, infinite if the pivot does not change or is not known.
 double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
                                 const double *dy, double s);
-/// Beside a position, at y: farther off the smallest pivot is so many times what it is here.
+/// y is near a singular configuration: assume that the smallest pivot is this many times larger
+/// elsewhere.
 void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
                                  double times);
-/// At y, where steps begin, a position so much ahead is known of that is nearer than positions are
-/// where they are foreseen: the largest pivot is taken to be so many times the one of now.
+/// At y, where steps begin, a singular configuration is `in` seconds ahead, nearer than usual
+/// predictions are made: assume a largest pivot that is `times` the present one.
 void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
                                 double times);
-/// At y, where the time is t, it is known of a position so much ahead: the first step from there is
-/// to cross it, whatever round-off beside the position makes of it, as none from nearer by would be
-/// better.
+/// At y, t, a singular configuration is `in` seconds ahead: the first step crosses it, even if
+/// round-off near it is large, since no later step would have less.
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in);
-/// Is y so near to one that round-off of accelerations in double precision is felt?
+/// Is y so near to a singular configuration that round-off of accelerations exceeds its share
+/// of the tolerance?
 bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, const double *y);
 /// The hook `passed`: finds singular configurations on a crossing and keeps them.
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,

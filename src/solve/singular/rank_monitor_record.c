@@ -8,14 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-// A way that is searched is looked at in PARTS; from the best of them the search is narrowed
-// NARROWED times to an eighth. Positions are then known to `resolved` of the way.
-// Limit: of the time of a search. Derived: resolved to 1e-4 of the way, where rank is measured
+// A search evaluates the pivot at PARTS points of the step; around the best of them the interval
+// is reduced NARROWED times to an eighth. Singular configurations are then known to `resolved` of
+// the step. Limit: of the time of a search. Derived: resolved to 1e-4 of the step, where rank is
+// measured
 enum { PARTS = 16, NARROWED = 3 };
 static const double interval_reduction = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
 
-// Part of the way, to either side of a position, where its dependence is looked at.
-// Derived: a quarter of the spacing of looks
+// Part of the step, to either side of a singular configuration, at which the dependent rows are
+// found. Derived: a quarter of the spacing of points
 static const double test_distance = 1.0 / (4 * PARTS);
 
 // Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
@@ -67,8 +68,8 @@ static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, doubl
 
 typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
 
-// From where the pivot is nearly as small as it becomes, within d: it falls and rises about
-// linearly, so that its sizes before and behind tell.
+// Refines theta, which is within d of the minimum of the pivot: it falls and rises about
+// linearly, so its values at both sides give the place of the zero.
 static double narrow_interval_of(measure *pivot, struct ct_rank_monitor *w,
                                  const struct passage *p, double theta, double d)
 {
@@ -86,8 +87,7 @@ static double narrow_interval(struct ct_rank_monitor *w, const struct passage *p
     return narrow_interval_of(pivot_on, w, p, theta, d);
 }
 
-// Where on the way the pivot is below what counts as zero, as part of it: near the middle. NaN if
-// it is not.
+// The part of the step, near its middle, at which the pivot is below `zero`; NaN if it is not.
 static double find_zero_in_middle(struct ct_rank_monitor *w, const struct passage *p,
                                   double zero)
 {
@@ -95,7 +95,7 @@ static double find_zero_in_middle(struct ct_rank_monitor *w, const struct passag
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
-// Where the smallest pivot is least on the way, if it is zero there; else NaN.
+// The part of the step at which the smallest pivot is least, if it is below `zero` there; else NaN.
 static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passage *p,
                                   double zero)
 {
@@ -111,12 +111,12 @@ static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passag
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// Where the test function changes its sign. theta (PARTS, out); returns how many such places there
-// are.
+// Where the test function changes its sign. theta (PARTS, out); returns the number of sign
+// changes.
 static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                              double *theta)
 {
-    const double part = 1.0 / PARTS; // Definition: of the way
+    const double part = 1.0 / PARTS; // Definition: of the step
     struct ct_tangent_basis *last = w->along, *next = w->here;
     int n = 0;
     double before = pivot_on(w, p, 0);
@@ -137,8 +137,8 @@ static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p,
     return n;
 }
 
-// Rows that depend there and by how much the rank falls: with d the distance from the position det
-// J_d is as d^loss.
+// The rows that are dependent there and the loss of rank: at a distance d from the singular
+// configuration det J_d ~ d^loss.
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
                             struct ct_singular_configuration *at)
 {
@@ -156,8 +156,8 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
     mark_rows(w, at->row);
 }
 
-// Is the end of the way on the side where this loss of rank on it leads to from w->along, where it
-// begins, if that is known?
+// Does the sign of the test function at the end of the step, against its beginning (w->along),
+// agree with this loss of rank? True if the beginning is not known.
 static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *p,
                                int rank_loss)
 {
@@ -167,20 +167,21 @@ static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *
         || ct_singularity_test_sign_changed(w->s, w->along, w->here) == (rank_loss % 2 == 1);
 }
 
-// Positions on a way, as parts of it.
+// Singular configurations on a step, as parts of it.
 struct found_configurations {
     double theta[PARTS];
     int n;
-    bool has_dependence; // one, of which all is known in the last of w->passed
+    bool has_dependence; // there is one, and its dependent rows are in the last of w->passed
 };
 
-// One in the middle, where it has been foreseen, as most often. False if there may be others:
-// multipliers tell two of them apart that are next to each other.
+// The usual case, one in the middle, where it was predicted. False if there may be others:
+// multipliers have a pole at each of two that are close together.
 static bool find_predicted(struct ct_rank_monitor *w, const struct passage *p, double zero,
                            struct found_configurations *f)
 {
     struct ct_singular_configuration *last = &w->passed[CT_MOST_SINGULAR];
-    ct_tangent_basis_find(w->s, w->along); // from where the pivot has just been found
+    ct_tangent_basis_find(w->s,
+                          w->along); // at the beginning, where the pivot was computed last
     f->theta[0] = find_zero_in_middle(w, p, zero);
     f->n = isfinite(f->theta[0]);
     if (!f->n)
@@ -195,7 +196,7 @@ static bool find_predicted(struct ct_rank_monitor *w, const struct passage *p, d
 static void find_singular_configurations(struct ct_rank_monitor *w, const struct passage *p,
                                          struct found_configurations *f)
 {
-    // the pivot falls linearly from where the crossing began: a zero is one to what is resolved
+    // the pivot falls linearly from the beginning of the crossing: its zero is resolved to this
     const double zero = resolved * pivot_on(w, p, 0);
     double theta[PARTS];
     if (find_predicted(w, p, zero, f))
@@ -225,15 +226,15 @@ static void record_configuration(struct ct_rank_monitor *w, const struct passage
     at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts in one begins before it
 }
 
-// Of the kept rows, which depend where all do: singular values have but half of the digits.
+// The pivot of the retained rows, which are dependent where all are: singular values have only
+// half the digits.
 static double retained_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
 {
     pivot_on(w, p, part);
     return ct_partition_retained_pivot(w->s);
 }
 
-// To as many digits as the way has: what multipliers make of a position is divided by the time to
-// it.
+// Refined to all digits of the step, since multipliers are divided by the time to the pole.
 static void record_poles(struct ct_rank_monitor *w, const struct passage *p,
                          const struct found_configurations *f)
 {
@@ -272,8 +273,8 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
     return part > 0 && part < 1;
 }
 
-// Is there a position within s seconds of y, the speeds being what they are? The machine is left
-// next to it.
+// Does the motion with the speeds at y come to a singular configuration within s seconds? The
+// evaluator is left at a state near it.
 static bool is_singular_within(struct ct_rank_monitor *w, double t, const double *y, double s)
 {
     const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};
@@ -289,7 +290,7 @@ bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const
     const double near_singular_ratio = 1e-2; // of the largest pivot
     double log_det;
     memset(row, 0, w->m->nrow * sizeof *row);
-    if (w->s->rank < w->rank) // in it
+    if (w->s->rank < w->rank) // y is singular
         return true;
     if (!ct_partition_has_pivot(w->s))
         return false;

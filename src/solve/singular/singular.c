@@ -25,8 +25,8 @@ static void set_crossing(void *user, bool is_crossing)
     ct_rank_monitor_set_crossing(user, is_crossing);
 }
 
-// The residual of x' Phi with x'J = 0, x of size one. Where rows are redundant the kept ones may
-// become dependent before all of them do: then none is measured.
+// The residual x' Phi with x'J = 0 and max |x| = 1. With redundant rows the retained ones may
+// become dependent before all of them do: then no residual is measured.
 static double dependent_residual(struct ct_rank_monitor *w)
 {
     const struct ct_evaluator *m = w->m;

@@ -88,24 +88,24 @@ void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w);
 /// that was ahead may come earlier, later or not at all.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy);
-/// Is y, where steps have ended, near a singular configuration, foreseen or not, or would a step of
-/// this size, 0 where it is not fixed, come past one? row (nrow, out): those that depend there;
-/// none of a large system.
+/// Is y, where steps have ended, near a singular configuration, predicted or not, or would a
+/// step of this size (0 if it is not fixed) pass one? row (nrow, out): the rows that are dependent
+/// there; none in a large system.
 bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
                                       double step, bool *row);
-/// Does J have less rank at y, where the coordinate partitioning has chosen, or as near to y as
-/// loops are closed, than where the mechanism can go from there? row (nrow, out): those that take
-/// part in what depends at y alone. Not looked for in large systems. The machine is left with its
+/// Does J have a lower rank at y, where rows and columns were chosen, than at nearby
+/// configurations of the mechanism? y is known as exactly as loops are closed. row (nrow, out):
+/// rows that are dependent at y only. Large systems are not tested. The evaluator is left with its
 /// constraints at y.
 bool ct_singular_start_test(struct ct_arena *scratch, const struct ct_partition *s, double t,
                             const double *y, bool *row);
-/// At y in a singular configuration: what (8.23) is missed by, of the squares of the speeds that it
-/// is made of. freedoms (out): there.
+/// At y in a singular configuration: the residual of (8.23) relative to the squares of the
+/// speeds. freedoms (out): degrees of freedom at y.
 double ct_singular_start_misfit(struct ct_arena *scratch, const struct ct_partition *s,
                                 double t, const double *y, int *freedoms);
 /// The callback set_crossing of struct ct_singularities.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing);
-/// A start from which steps begin: assembled, with rows and columns chosen there.
+/// An assembled start, with rows and columns chosen there.
 struct ct_singular_start {
     struct ct_ctx *ctx;
     struct ct_arena *arena;
@@ -126,14 +126,14 @@ struct ct_singular_start {
     double t0;                  // out: where steps begin, 0 or before
 };
 
-/// From a start in a singular configuration, with speeds that select one of the motions through it,
-/// to a little before it: y, t0. The same from a start near one if it can be crossed; otherwise
+/// Moves the first state, y at t0, from a singular configuration to a little before it, on the
+/// motion that the speeds select. The same from a start near one if it can be crossed; otherwise
 /// steps begin at the start. False with CT_E_STEP_OPEN if the speeds belong to no motion.
 bool ct_singular_initial_step(struct ct_singular_start *r);
 /// Is the start, with its derivative dy, near a singular configuration, so that its first step is a
 /// special one?
 bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy);
-/// Is y the start, as well as a start near a singular configuration is known?
+/// Is y the start, to the accuracy of a start near a singular configuration?
 bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny);
 
 struct ct_singular_dense_output;

@@ -1,16 +1,15 @@
 // Dense output across a singular configuration: accelerations and multipliers in the gap of a
 // crossing, from what they are at its stages.
-//
-// Accelerations are smooth across a singular configuration, and interpolated. Multipliers are not:
-// what bears on the motion that is blocked there but for the position, forces that do not vanish,
-// is carried by rows that come to depend, and grows like 1/(t - t_k) towards a position at t_k.
-// Less that part they are smooth:
+// Accelerations are smooth across a singular configuration and are interpolated. Multipliers are
+// not: a load on the motion that is free only in that configuration is carried by rows that become
+// dependent, and their multipliers grow like 1/(t - t_k) towards a configuration at t_k. Without
+// that part they are smooth:
 //
 //     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
-//
-// with the product in brackets, and P, interpolated between stages, and those positions that stages
-// tell of. Results that are linear in multipliers are interpolated so themselves: what y errs by in
-// the gap times loads without bound would be seen in those that have no part in them.
+// with P and the product in brackets interpolated between stages. Only poles that improve the
+// interpolation of the stages are used. Results that are linear in multipliers are themselves
+// interpolated in this way: otherwise errors of y in the gap, times loads without bound, would
+// appear in results that do not depend on these loads.
 #include "solve/singular/singular.h"
 
 #include "integrate/crossing.h"
@@ -20,11 +19,11 @@
 #include <math.h>
 #include <string.h>
 
-// Definition: stages on both sides of the gap, one of each
+// Definition: stages on both sides of the gap
 enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// With poles at the positions, or without: weights of the stages for t, and for what the two beside
-// the gap are found to be from the others, less what they are.
+// An interpolant with poles or without: weights of the stages for t, and for the errors of its
+// prediction of the two stages next to the gap from the others.
 struct model {
     double weight[N], check[CHECKED][N];
 };
@@ -52,8 +51,8 @@ static struct numbers create_numbers(struct ct_arena *a, size_t n)
         .n = n, .at = CT_NEWN(a, double, n *N + 1), .value = CT_NEWN(a, double, n + 1)};
 }
 
-// Is g, which has multipliers in it, linear in them, and smooth but for them? ds (nrow): in no
-// simple relation.
+// Is g, which depends on multipliers, linear in them and otherwise smooth? ds (nrow): numbers in
+// no simple relation.
 static bool is_linear(const struct ct_equations *e, ct_ex g, const ct_ex *lam, const ct_ex *ds)
 {
     const unsigned has_lam = 1u << CT_SYM_LAM, kinds = ct_ex_kinds(e->x, g);
@@ -100,7 +99,7 @@ static double distance_to_pole(double t, double pole)
     return fabs(t - pole) > least ? t - pole : least;
 }
 
-// The weight of stage j in what is interpolated at t between the stages that `some` names.
+// The weight of stage j in the interpolation at t between the stages that `some` marks.
 static double lagrange(const struct ct_gap_interpolation *b, const bool *some, int j, double t)
 {
     double weight = some[j];
@@ -132,7 +131,7 @@ static void find_weights(const struct ct_singular_dense_output *s,
     }
 }
 
-// m (out): with the first n poles, for t.
+// m (out): the interpolant with the first n poles, for t.
 static void find_model(const struct ct_singular_dense_output *s,
                        const struct ct_gap_interpolation *b, double t, int n, struct model *m)
 {
@@ -149,7 +148,7 @@ static void find_model(const struct ct_singular_dense_output *s,
     }
 }
 
-// Positions that are next to each other are one.
+// Singular configurations that are close to each other count as one.
 static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
     const struct ct_rank_monitor *w = s->w;
@@ -175,8 +174,8 @@ static double error_of(const struct model *m, const double *at)
     return error;
 }
 
-// A number has poles if the stages tell of them: with poles they predict the two stages beside the
-// gap ten times as well.
+// A number has poles if they improve the interpolation: with poles the other stages predict the
+// two next to the gap ten times as well.
 static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
 {
     // Chosen: as above
@@ -189,7 +188,7 @@ static void take(const struct ct_singular_dense_output *s, struct numbers *x, bo
     }
 }
 
-// Results where the evaluator is, with these accelerations and multipliers.
+// Results at the evaluator's input, with these accelerations and multipliers.
 static const double *results(struct ct_evaluator *m, const double *a, const double *lam)
 {
     memcpy(m->input + m->at_a, a, m->nu * sizeof *a);

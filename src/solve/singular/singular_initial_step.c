@@ -23,7 +23,8 @@
 // m], at first; halved where the step errs.
 // Chosen: longer steps have more digits, and err more.
 static const double longest_displacement = 0.4;
-// Limit: halvings of the step; a motion that lingers leaves faster than accelerations of now tell
+// Limit: halvings of the step; a motion that stays near for long leaves faster than its
+// accelerations at the start predict
 enum { MOST_HALVINGS = 12 };
 
 // Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
@@ -31,24 +32,24 @@ enum { MOST_HALVINGS = 12 };
 // Chosen: starts that are refused for lack of digits against steps that err.
 static const double crossing_distance = 0.2, near_distance = 0.5;
 
-// The step may err by so much of the largest state, or by so much of what is asked if that is more.
-// (8.35)
-// Derived: 4500 units of round-off; a fiftieth is not seen in the digits that are asked for.
+// The error of the step may be this part of the largest state, or the second part of the
+// tolerance if that is more. (8.35) Derived: 4500 units of round-off; a fiftieth of the tolerance
+// does not change the digits that are wanted.
 static const double smallest_error = 1e-12, error_part = 0.02;
 
-// Where a run starts: all speeds together, and accelerations where they are known.
+// Start of a run: norms of speeds and accelerations, as far as they are known.
 struct initial_step {
     void *work;
     double u, a, ua;         // |u|, |u'|, u . u'
-    double time_to_singular; // time to the position, below 0 behind it
-    double largest_error;    // the step may err by so much of the largest state
+    double time_to_singular; // time to the singular configuration, negative behind it
+    double largest_error;    // of the step, relative to the largest state
     double *before;          // (ny, out)
     double *end, *dend;      // (ny)
     struct ct_tangent_basis *tangents[2];
 };
 
-// A step across, h, around a place `middle` seconds after the start, and what it errs by, of the
-// largest state.
+// A step of length h across the singular configuration, centred `middle` seconds after the
+// start, and its error relative to the largest state.
 struct crossing_step {
     double middle, h, error;
 };
@@ -58,7 +59,7 @@ static double begin_of(const struct crossing_step *c)
     return c->middle - c->h / 2;
 }
 
-// Time for a way from where the speed is u.
+// Time to move by `way` from the speed u.
 static double time_for(const struct initial_step *l, double u, double way)
 {
     return 2 * way / (u + sqrt(u * u + 2 * l->a * way));
@@ -69,8 +70,8 @@ static double speed_at(const struct initial_step *l, double t)
     return sqrt(fmax(0, l->u * l->u + t * (2 * l->ua + t * l->a * l->a)));
 }
 
-// How far the ends of the step may lie off the constraints [m, rad]: speeds that belong to no
-// motion leave much more.
+// Largest residual of the constraints at t, y [m, rad]. At the ends of the step it is large if
+// the speeds belong to no motion.
 static double constraint_residual(struct ct_singular_start *r, double t, const double *y)
 {
     ct_evaluator_set(r->m, t, y);
@@ -78,8 +79,8 @@ static double constraint_residual(struct ct_singular_start *r, double t, const d
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Rows and columns of the coordinate partitioning, for the motion from y with derivative dy, at h
-// after it.
+// Chooses rows and columns of the coordinate partitioning at the state reached with the speeds
+// of y in the time h.
 static bool choose_partition(struct ct_singular_start *r, double h, const double *y)
 {
     const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
@@ -91,13 +92,13 @@ static bool choose_partition(struct ct_singular_start *r, double h, const double
     ct_evaluator_constraint(r->m);
     r->s->sigma_best = 0;
     r->s->prefers_independent
-        // what follows from them is known less well, the less the nearer the position is
+        // dependent speeds are less accurate, the more so the nearer the singular configuration is
         = r->is_given;
     const bool is_chosen = ct_partition_choose(r->s);
     r->s->prefers_independent = NULL;
     if (is_chosen)
         return true;
-    r->ctx->ndiagnostic = n; // another place may do
+    r->ctx->ndiagnostic = n; // another configuration may succeed
     r->ctx->nerror = nerror;
     return false;
 }
@@ -107,7 +108,7 @@ static bool choose_partition(struct ct_singular_start *r, double h, const double
 // Chosen: between both.
 static const double same_motion_tolerance = 1e-4;
 
-// How far y (ny) is from it, the work aside.
+// Largest difference between y (ny) and the start, without the work, relative to the largest state.
 static double relative_distance(const double *assembled, const double *y, size_t ny)
 {
     double largest = 0;
@@ -121,8 +122,8 @@ bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny
     return relative_distance(assembled, y, ny) <= same_motion_tolerance;
 }
 
-// Does the step from l->before lead across, and to the start on its way? r->stage (out): what it
-// makes of the start.
+// Does the step from l->before succeed and pass through the start? r->stage (out): its state at
+// the start.
 static bool leads_across(struct ct_singular_start *r, const struct initial_step *l,
                          const struct crossing_step *c)
 {
@@ -140,8 +141,8 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
     return ct_singular_meets_start(r->assembled, r->stage, (size_t)r->p->ny);
 }
 
-// Sweeps of the step into l->before, down to a part of the largest state or, where they come to
-// round-off before, to ten times as much and so on. Returns what the step errs by, or INFINITY.
+// Solves the collocation into l->before to the smallest error that round-off allows: the
+// tolerance is raised tenfold until the sweeps converge. Returns the error, or INFINITY.
 static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
                                   const struct crossing_step *c)
 {
@@ -159,7 +160,7 @@ static double collocate_backwards(struct ct_singular_start *r, const struct init
     return INFINITY;
 }
 
-// The state where a step begins, with the digits that its stages have.
+// Projects the state at the beginning of the step as accurately as its stages.
 static bool project_state(struct ct_singular_start *r, const struct initial_step *l, double t)
 {
     r->p->singular->set_crossing(r->p->singular->user, true);
@@ -168,8 +169,8 @@ static bool project_state(struct ct_singular_start *r, const struct initial_step
     return e == CT_EVAL_OK;
 }
 
-// The state where a step across begins, into l->before, and what that errs by; INFINITY where it
-// does not lead across.
+// Finds the state at the beginning of a crossing step, l->before, and its error; INFINITY if the
+// step does not cross the singular configuration.
 static void find_state_before(struct ct_singular_start *r, const struct initial_step *l,
                               struct crossing_step *c)
 {
@@ -188,8 +189,8 @@ static void find_state_before(struct ct_singular_start *r, const struct initial_
         c->error = error;
 }
 
-// Does J keep its rank on either side of the gap? Near a position among the stages samples would be
-// among round-off errors.
+// Does J keep its rank on either side of the gap? With another singular configuration among the
+// stages samples would have large round-off.
 static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
                        const struct crossing_step *c)
 {
@@ -210,7 +211,7 @@ static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l
     return true;
 }
 
-// Do root functions keep their signs? What switches on the way is another motion.
+// Do root functions keep their signs? A switch on the way would change the motion.
 static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_step *l,
                              double t)
 {
@@ -224,9 +225,9 @@ static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_s
     return true;
 }
 
-// The longest step around `middle` that errs little enough, of those that are halves of each other
-// and reach the start, in place of best (in and out) if that is shorter: it ends farther from the
-// position.
+// Finds the longest step centred at `middle` that is accurate enough and reaches the start, by
+// halving. It replaces best (in and out) if that is shorter, since its ends are farther from the
+// singular configuration.
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct crossing_step *best)
 {
@@ -273,7 +274,7 @@ static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedo
     return false;
 }
 
-// As if nothing had been tried.
+// Restores the choice of rows and columns at the start.
 static void return_to_start(struct ct_singular_start *r)
 {
     ct_evaluator_set(r->m, 0, r->y);
@@ -282,7 +283,8 @@ static void return_to_start(struct ct_singular_start *r)
     ct_partition_choose(r->s);
 }
 
-// What is not given follows from what is by pivots as small as the way to the position.
+// Values that are not given follow from given ones by pivots as small as the distance to the
+// singular configuration.
 static void warn_of_rounding(struct ct_singular_start *r, double unknown)
 {
     ct_warning(
@@ -293,7 +295,7 @@ static void warn_of_rounding(struct ct_singular_start *r, double unknown)
         unknown);
 }
 
-// From half a step before the position on, if there is one that crosses it.
+// Begins half a step before the singular configuration, if there is a step that crosses it.
 static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
@@ -304,7 +306,7 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
     }
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, (size_t)r->p->ny);
-    r->singular->time_to_singular = 0; // nearer than from where crossings begin
+    r->singular->time_to_singular = 0; // nearer than where crossings usually begin
     r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, r->p);
     find_step(r, l, l->time_to_singular, &best);
@@ -324,10 +326,11 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
     return true;
 }
 
-// What the step may err by, where it is felt by so much, for steps that are held to `asked`.
-static void set_largest_error(struct initial_step *l, double asked, double felt)
+// Sets the error that the step may have for a tolerance `asked`; `effect`: its effect on the
+// motion.
+static void set_largest_error(struct initial_step *l, double asked, double effect)
 {
-    l->largest_error = fmax(smallest_error, error_part * asked * felt);
+    l->largest_error = fmax(smallest_error, error_part * asked * effect);
 }
 
 static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *l)
@@ -346,12 +349,12 @@ static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *
         || refuse_speeds(r, misfit, freedoms);
 }
 
-// How far the position is, below 0 behind the start, as the motion goes there.
+// Distance to the singular configuration along the motion, negative if it is behind the start.
 static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
                                      const double *dy, struct initial_step *l)
 {
     // Derived: a difference with ten digits
-    const double small_part = 1e-3; // of the time to a position beside
+    const double small_part = 1e-3; // of the time in which the motion covers crossing_distance
     const size_t nq = w->m->nq, nu = w->m->nu;
     const double *a = dy + nq, *u = y + nq;
     l->u = ct_vector_max_norm(u, nu);
@@ -363,7 +366,8 @@ static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
                                     small_part * time_for(l, l->u, crossing_distance));
 }
 
-// Beside a position: from before it, or else what is known of it from the start on.
+// Start near a singular configuration: begins before it, or passes its predicted distance to the
+// rank monitor.
 static void begin_near_singular(struct ct_singular_start *r, struct initial_step *l)
 {
     const double way = find_singular_distance(r->singular, r->y, r->dy, l), size = fabs(way);

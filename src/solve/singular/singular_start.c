@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-// Loops that close to 1e-13 meet a singular configuration to about the root of that: what is less
-// of J is left out.
+// Loops that close to 1e-13 meet a singular configuration to about the root of that: smaller
+// singular values of J count as zero.
 // Derived: three times that root.
 static const double rank_loss_tolerance = 1e-6;
 
@@ -29,7 +29,7 @@ struct probe {
     double t, *y, *x, *d, *A, *work; // (ny), (nu), (larger of nu and nrow), (nrow x nu)
     int *iwork;                      // (larger of nu and nrow)
     double *eigen_work;
-    double largest; // row of J beside the position  [m or 1]
+    double largest; // row of J near the configuration [m or 1]
 };
 
 static double *workspace(struct ct_arena *a, int n, int m)
@@ -55,7 +55,7 @@ static void evaluate(struct probe *p)
     ct_evaluator_constraint(p->m);
 }
 
-// Move by `way` [rad or m] in a direction of no meaning that J allows.
+// Move by `way` [rad or m] in an arbitrary direction in the null space of J.
 static void move(struct probe *p, struct ct_arena *scratch, double way)
 {
     const size_t n = p->m->nu, m = p->m->nrow;
@@ -75,13 +75,14 @@ static void move(struct probe *p, struct ct_arena *scratch, double way)
     ct_evaluator_retract(p->m, p->y, p->x);
 }
 
-// Back onto the constraints; false if that does not succeed, or leads far away.
+// Project onto the constraints; false if that fails or moves by more than `way`.
 static bool close(struct probe *p, double way)
 {
-    // Limit: of the iterations; they converge in five where it is well
+    // Limit: iterations; five are usual
     enum { MOST = 20 };
-    const double closed
-        = sqrt(DBL_EPSILON); // [m, rad]. Derived: J errs by as much, what is lost by 1e-5
+    // [m, rad]. Derived: J then has an error of the same size; singular values that vanish in the
+    // configuration are 1e-5 or less
+    const double closed = sqrt(DBL_EPSILON);
     for (int i = 0; i < MOST; i++) {
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
@@ -103,14 +104,13 @@ static void take_rows(struct probe *p)
             p->A[j + n * i] = p->m->J[i + m * j];
 }
 
-// The rank of J, what is left of other rows being less than `least` of their natural sizes.
+// The rank of J: of the other rows less than `least` of their natural sizes is left.
 static int find_rank(struct probe *p, double least)
 {
     return ct_evaluator_order_rows(p->m, p->m->J, least, p->iwork, p->A, p->x, p->work);
 }
 
-// N (nrow x nrow, out): its first nrow - rank columns are what rows can be combined to that says
-// nothing, J' N = 0.
+// N (nrow x nrow, out): its first nrow - rank columns are a basis of null(J'), J' N = 0.
 static bool find_combinations(struct probe *p, double *N)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
@@ -119,7 +119,7 @@ static bool find_combinations(struct probe *p, double *N)
     return ct_symmetric_eigen(p->x, N, m, m, p->eigen_work);
 }
 
-// size (nrow, out): of rows, as speeds. Beside a singular configuration: there they may be zero.
+// size (nrow, out): of rows, as speeds, near a singular configuration: in it they may be zero.
 static void size_rows(const struct probe *p, double *size)
 {
     const size_t m = p->m->nrow, n = p->m->nu;
@@ -131,8 +131,8 @@ static void size_rows(const struct probe *p, double *size)
     }
 }
 
-// size (nrow): times how much of each row is in combinations `here` that are none `there`. The
-// former are overwritten.
+// size (nrow): multiplied by the part that each row has in the null space of J' `here` which is
+// not in that `there`. `here` is overwritten.
 static void weigh_rows(const struct probe *p, double *size, double *here, int nhere,
                        const double *there, int nthere)
 {
@@ -165,8 +165,8 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
     return p;
 }
 
-// Rank of J at y, rows being measured by the largest beside it, as all may vanish there; not below
-// what round-off leaves. p->largest: that row, in its own unit.
+// Rank of J at y. Rows are measured by the largest one near y, since all may vanish at y, and
+// not below round-off. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
     // Chosen: far enough for J to change, near enough to be alike
@@ -183,14 +183,14 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     return find_rank(p, fmax(rank_loss_tolerance * beside, p->m->rank_tolerance));
 }
 
-// Rank of J beside y, with the largest way along which it is more than `here`; where it is not,
+// Rank of J near y, at the largest distance at which it is above `here`; if there is none,
 // `here` or less.
 static int find_rank_nearby(struct probe *p, struct ct_arena *scratch, const double *y,
                             int here)
 {
     const double ways[] = {0.1, 0.02};
     // Derived: two digits above what is closed
-    const double part = 1e-3; // of J's change along the way, which is about as large as the way
+    const double part = 1e-3; // of the change of J, which is about as large as the distance
     const size_t ny = p->m->nq + p->m->nu + 1;
     int there = 0;
     for (size_t i = 0; i < COUNT(ways) && here < (int)p->m->nrow && there <= here; i++) {

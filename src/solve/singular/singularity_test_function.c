@@ -1,9 +1,8 @@
 // Test function of singular configurations: does J lose rank between two configurations of a
 // motion?  (8.40)
-//
-// With J T = 0 and N'J = 0, [J N_0; T_0' 0] with T_0 and N_0 of another place is regular as long as
-// J has its rank, while tangents and what annihilates J turn by less than a right angle. With the
-// rows and columns that are kept here first, and signs of the orders,
+// With J T = 0 and N'J = 0, the bordered matrix [J N_0; T_0' 0], with T_0 and N_0 of another
+// configuration, is regular as long as J keeps its rank and both null spaces turn by less than a
+// right angle. With the retained rows and columns first, and signs of the permutations,
 //
 //     det [J N_0; T_0' 0] = +- det J_d det (T_0'T) det (N_0'N)
 #include "solve/constraint/partition_internal.h"
@@ -33,7 +32,7 @@ void ct_tangent_basis_reserve(struct ct_partition *s, struct ct_tangent_basis *v
     reserve(s, &v->N, &v->room_N, m * (m - r));
 }
 
-// Where rank has been lost since there is more than there is room for, and no place to compare
+// After a loss of rank the bases need more room than was reserved: there is nothing to compare
 // with.
 static bool has_room(const struct ct_partition *s, const struct ct_tangent_basis *v)
 {
@@ -41,8 +40,7 @@ static bool has_room(const struct ct_partition *s, const struct ct_tangent_basis
     return r && n * (n - r) <= v->room_T && m * (m - r) <= v->room_N;
 }
 
-// 1, or -1 if an odd number of exchanges sorts a and b, which together are 0 ... na + nb - 1. place
-// (na + nb)
+// Sign of the permutation (a, b) of 0 ... na + nb - 1. place (na + nb): workspace
 static int parity_of(const int *a, int na, const int *b, int nb, int *place)
 {
     int parity = 1;
@@ -58,7 +56,7 @@ static int parity_of(const int *a, int na, const int *b, int nb, int *place)
     return parity;
 }
 
-// The sign of the determinant of which this is the LU.
+// The sign of a determinant from its LU factors.
 static int sign_of(const double *LU, const int *pivot, int n)
 {
     int sign = 1;
@@ -80,8 +78,8 @@ static void find_tangents(const struct ct_partition *s, double *T)
     }
 }
 
-// Redundant rows as combinations of the kept ones: N has 1 for the former, less what the latter
-// count in them.
+// Redundant rows as combinations of the retained ones: N has 1 for the former and minus the
+// coefficients of the latter.
 static void find_left_null_space(const struct ct_partition *s, double *N)
 {
     const int m = (int)s->m->nrow, r = s->rank;
@@ -102,7 +100,7 @@ void ct_tangent_basis_find(struct ct_partition *s, struct ct_tangent_basis *v)
     v->rank = 0;
     if (!has_room(s, v) || ct_partition_is_large(s)
         || (ct_partition_has_redundant_rows(s) && !ct_partition_factor_only(s)))
-        return; // of rows none of which is redundant the pivot is that of the factors
+        return; // without redundant rows the pivot is that of the factors
     v->rank = s->rank;
     v->side = parity_of(s->row, s->rank, s->row + r, (int)(m - r), s->iwork)
             * parity_of(s->dependent, s->rank, s->independent, (int)(n - r), s->iwork)
@@ -111,7 +109,7 @@ void ct_tangent_basis_find(struct ct_partition *s, struct ct_tangent_basis *v)
     find_left_null_space(s, v->N);
 }
 
-// Of det (A'B), A and B (m x n); 0 where that is none.
+// The sign of det (A'B), A and B (m x n); 0 if it is singular.
 static int sign_between(struct ct_partition *s, const double *A, const double *B, int m, int n)
 {
     if (n == 0)
