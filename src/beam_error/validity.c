@@ -227,7 +227,7 @@ static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
         || (simulate_modes(b, v, OTHER_INSTANTS, &other)
             && is_alike(out->error[CT_BEAM_MODEL_LINEAR], other.error[CT_BEAM_MODEL_LINEAR])))
         return NULL;
-    return "automatic: its motion is too quick for so long a run to be looked at beforehand";
+    return "automatic: its motion is too fast to be simulated beforehand in so long a run";
 }
 
 static const char *figure(struct ct_arena *a, double error)

@@ -151,8 +151,8 @@ static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
                        f->uncut[1]);
         if (f->most_modes < f->beam->modes && f->deformation)
             ct_warning(ctx, f->beam->modes_mark, 0,
-                       "beam '%s' has %d mode%s beside what its points do: all its coordinates "
-                       "are kept, as without `modes`",
+                       "beam '%s' has %d mode%s besides the motions of its points: all its "
+                       "coordinates are kept, as without `modes`",
                        f->name, f->most_modes, f->most_modes == 1 ? "" : "s");
     }
 }

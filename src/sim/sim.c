@@ -251,8 +251,8 @@ void ct_sim_warn_of_singular_start(struct ct_sim *sim)
     ct_warning(
         &sim->own, sim->system->model.joint[first].mark, 0,
         "the mechanism starts in a singular configuration: constraints of %s depend on others "
-        "there and not elsewhere; beside it there are fewer freedoms, and several "
-        "motions may begin in it",
+        "there and not elsewhere; near it there are fewer freedoms, and several motions may "
+        "begin in it",
         names);
 }
 
@@ -407,8 +407,8 @@ static void explain_change(struct ct_sim *sim)
                           : ct_arena_printf(sim->own.model, " to t = %.3g s", r->returned_at);
     if (isnan(r->gain)) {
         sim->method_why = ct_arena_printf(sim->own.model,
-                                          "automatic, but %s from the start%s: outputs feel "
-                                          "errors of motions of %.2g 1/s that "
+                                          "automatic, but %s from the start%s: outputs are "
+                                          "sensitive to errors of motions of %.2g 1/s that "
                                           "are possible",
                                           sim->run_options.stiff_method->name, until, r->fast);
         return;
@@ -456,13 +456,12 @@ static void warn_of_positions(struct ct_sim *sim)
     if (!w)
         return;
     if (w->ncrossed)
-        ct_warning(&sim->own, mark, 0,
-                   "steps of fixed size have come across a singular configuration, or past one "
-                   "close by, at "
-                   "t = %.9g%s, which they do not see: the motion behind it may be another "
-                   "one; without 'step' "
-                   "it is crossed",
-                   w->t_crossed, w->ncrossed > 1 ? " and more often later" : "");
+        ct_warning(
+            &sim->own, mark, 0,
+            "steps of fixed size have crossed a singular configuration, or passed near one, at "
+            "t = %.9g%s, without detecting it: the motion after it may be another one; without "
+            "'step' it is crossed",
+            w->t_crossed, w->ncrossed > 1 ? " and more often later" : "");
     // two divisions by a pivot, which is as small as the distance, amplify round-off
     if (w->closest * w->closest * fmax(sim->tolerance, sim->least_rtol) < roundoff)
         ct_warning(
@@ -470,8 +469,8 @@ static void warn_of_positions(struct ct_sim *sim)
             "the motion has come near to a singular configuration at t = %.9g without crossing "
             "it, "
             "within %.1g "
-            "of the largest distance: round-off is felt there by more than the tolerance, "
-            "and may have led to another motion",
+            "of the largest distance: round-off exceeds the tolerance there, and may have led "
+            "to another motion",
             w->t_closest, w->closest);
 }
 

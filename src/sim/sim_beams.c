@@ -48,23 +48,22 @@ static void warn_of_linear(struct ct_sim *sim, const struct ct_validity *beam,
     const char *size
         = isnan(error) && v->modal.n
             ? "its error is not estimated: it bends in more shapes than are followed"
-        : isnan(error) ? "its error is not estimated: joints, loads or loops drive it beside "
-                         "its base, or jumps and "
-                         "events of the state drive that"
+        : isnan(error) ? "its error is not estimated: joints, loads or loops act on it besides "
+                         "its base, or jumps and events of the state drive its base"
         : error > CT_ESTIMATED_ERROR_LIMIT
             ? "its error is beyond 1, as large as the deflections or larger"
             : ct_arena_printf(a, "its error is about %.2g of the largest deflection", error);
-    const char *how = v->left_at >= 0
-                        ? ct_arena_printf(a,
-                                          "the validity indicator passes %.3g at t = %.6g s, "
-                                          "its mean over a period of the "
-                                          "beam reaches %.3g",
-                                          CT_VALIDITY_LIMIT, v->left_at, v->largest)
-                        : ct_arena_printf(
-                            a,
-                            "the validity indicator reaches %.3g only, but from t = %.6g s on "
-                            "what it causes has grown beyond %.3g",
-                            v->largest, v->error_beyond_since, CT_VALIDITY_LIMIT);
+    const char *how
+        = v->left_at >= 0
+            ? ct_arena_printf(a,
+                              "the validity indicator passes %.3g at t = %.6g s, "
+                              "its mean over a period of the "
+                              "beam reaches %.3g",
+                              CT_VALIDITY_LIMIT, v->left_at, v->largest)
+            : ct_arena_printf(a,
+                              "the validity indicator reaches %.3g only, but from t = %.6g s "
+                              "on the error that it causes has grown beyond %.3g",
+                              v->largest, v->error_beyond_since, CT_VALIDITY_LIMIT);
     const char *cure
         = 3 * other > error
             ? "it bends too far for one frame: cut it into several foreshortened ones that are "

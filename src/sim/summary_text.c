@@ -283,15 +283,15 @@ static void print_rounding(FILE *out, const struct ct_sim *sim)
         return;
     if (isnan(r->roundoff)) {
         fprintf(out,
-                "rounding     inertias that are left of larger ones which cancel lose digits: "
-                "it comes to some %.1e of the largest %s\n",
+                "rounding     inertias that are small differences of larger ones lose digits: "
+                "the error comes to some %.1e of the largest %s\n",
                 r->roundoff_sum, sim->system->equations.result[r->roundoff_limited].name);
         return;
     }
-    fprintf(out,
-            "rounding     one of coordinates is %.1e of the largest %s: steps cannot be held "
-            "to less",
-            r->roundoff, sim->system->equations.result[r->roundoff_limited].name);
+    fprintf(
+        out,
+        "rounding     one of coordinates is %.1e of the largest %s: smaller steps do not help",
+        r->roundoff, sim->system->equations.result[r->roundoff_limited].name);
     if (!isnan(r->roundoff_sum))
         fprintf(out, ", and those of %ld steps add up to some %.1e", r->explicit_steps,
                 r->roundoff_sum);

@@ -49,7 +49,7 @@ compare() {
     for T in 1e-4 1e-6 1e-8 1e-10; do
       # shellcheck disable=SC2086
       "$COTREE" simulate model.yaml --tolerance $T $options --quiet -o out.csv 2>out.txt || cat out.txt
-      grep -v -e '^ ' -e 'so near to a singular configuration that round-off' out.txt
+      grep -v -e '^ ' -e 'so near to a singular configuration that' out.txt
       tail -n 1 out.csv | awk -F, -v wanted="$*" -v name="$name $options" -v T=$T '
         { n = split(wanted, v, " "); for (i = 1; i <= n; i++) { d = $(i + 1) - v[i]; s += d * d; q += v[i] * v[i] }
           if (!(sqrt(s / q) < 10 * T)) print name ": error " sqrt(s / q) / T " T at " T }'
@@ -58,8 +58,8 @@ compare() {
   echo "$name"
 }
 
-# Parallel, antiparallel, and between two ways in line of bars 1, 2, 1.5 on 1.5 m; the last ones are slow or at rest and turn beside the
-# position.
+# Parallel, antiparallel, and between two ways in line of bars 1, 2, 1.5 on 1.5 m; the last ones are slow or at rest and turn near the
+# singular configuration.
 while read -r a b c d angle rate B C D end values; do
   four_bar "$a" "$b" "$c" "$d" "$angle" "$rate" "$B" "$C" "$D" "$end" >model.yaml
   # shellcheck disable=SC2086
@@ -102,7 +102,7 @@ echo '-- so near that round-off of coordinates, none of which is given, is more 
 four_bar 1 2 1.5 1.5 -1e-5 5 1e-5 -1e-5 -1e-5 0.1 >model.yaml
 "$COTREE" simulate model.yaml --tolerance 1e-10 --tree absolute --quiet -o out.csv 2>&1 | grep -v '^ ' | sed 's/[0-9.]*e-[0-9]*/X/g'
 
-# and where that is less than what is asked for: the run is that from 1e-4 before the position but for what is 1e-4 of it
+# and where that is less than what is asked for: the run is that from 1e-4 before the singular configuration but for what is 1e-4 of it
 four_bar 1 2 1.5 1.5 -4e-6 5 4e-6 -4e-6 -4e-6 0.2 >model.yaml
 four_bar 1 2 1.5 1.5 -1e-4 5 1e-4 -1e-4 -1e-4 0.2 >farther.yaml
 for name in model farther; do
@@ -110,8 +110,8 @@ for name in model farther; do
   tail -n 1 $name.csv
 done | awk -F, 'NR == 1 { q = $2 } NR == 2 { d = $2 - q; print (d*d < 1e-6 ? "as from farther off" : d) }'
 
-# Speeds that jump tell of another motion: from rest before the position, back to it and across, or an error, but not that.
-echo '-- antiparallelograms at rest beside their line: what errs by more than 10 T'
+# Speeds that jump belong to another motion: from rest before the singular configuration, back to it and across, or an error, but not that.
+echo '-- antiparallelograms at rest near their line: what errs by more than 10 T'
 while read -r angle B C value; do
   four_bar 1 2 1 2 "-$angle" 0 "$B" "$C" "$B" 0.6 >model.yaml
   for T in 1e-8 1e-9 1e-10; do
@@ -124,6 +124,6 @@ done <<'END'
 0.01 0.0298 0.01 0.45136384027788584
 END
 
-echo '-- steps that come across what they do not see'
+echo '-- steps that cross a singular configuration without detecting it'
 four_bar 1 2 1 2 -0.5 8 1.3 0.5 1.3 0.2 >model.yaml
 "$COTREE" simulate model.yaml --step 1e-3 --method rk4 --quiet -o out.csv 2>&1 | grep -v '^ '

@@ -35,7 +35,7 @@ done <<'EOF'
 0.1001 20.5 10 0 0.4
 0.11 62.5 10 0 0.4
 EOF
-# Rods as long as the crank at 1e-10: stages beside the position have to be closed down to round-off. Nothing but the kick works here, so with
+# Rods as long as the crank at 1e-10: stages near the singular configuration have to be closed down to round-off. Nothing but the kick works here, so with
 # A(q) = 0.0003 + 0.3 0.05^2 + 0.002 + 0.5 (0.15^2 s^2 + 0.05^2 c^2) + 4 0.4 0.1^2 s^2, s = sin q, c = cos q, A u^2 stays the same before the kick and
 # behind it, and A u less s (0.3 0.05 + 0.5 0.15 + 0.4 0.2) times the frame's speed in it: angles at 2 s by quadrature with 25 digits.
 while read -r q0 u0 kick angle; do
@@ -52,4 +52,4 @@ done <<'EOM'
 0.24265887966818833 47.23529960386989 -1.6714910358721173 32.17350104681078
 0.19468792581637495 -57.48033078285942 8.40934125265155 -193.1884211062351
 EOM
-# Of these the last two are kicked next to the position, which then comes later than had been foreseen.
+# Of these the last two are kicked next to the singular configuration, which then comes later than was predicted.

@@ -30,7 +30,7 @@ for method in radau5 generalized-alpha generalized-alpha-index3 newmark hht; do
     printf '%s %s\n' "$method" "$(sed -n 's/.*"singular_positions_passed": //p' s.json)"
 done
 "$COTREE" simulate parallelogram.yaml --method radau5 --step 0.002 --quiet -o fixed.csv 2>&1 | sed 's/t = [0-9.]*/t = T/'
-# Long steps choose other rows and columns beside a position that they come across: that they have is to be seen all the same.
+# Long steps cross a singular configuration and choose other rows and columns near it: the crossing must be detected all the same.
 echo '-- as many with tolerances of 5e-4 to 1e-8, in 10 s'
 for w in 1 2 3 5; do
     sed "s/u: -1/u: -$w/;s/duration: 4/duration: 10/" parallelogram.yaml >faster.yaml
@@ -123,7 +123,7 @@ for options in '' '--keep-all' '--keep-all --tree absolute'; do
   done
 done
 
-echo '-- moving in line at the start, but as no motion does: what the run says and, a little beside, whether it goes on parallel'
+echo '-- moving in line at the start, but as no motion does: what the run says and, started near it, whether it goes on parallel'
 start 0 | sed 's/{q: 0}/{q: 0, u: 3}/;s/{q: -0, guess: true}/{q: 0, u: -2}/' >moving.yaml
 "$COTREE" simulate moving.yaml --quiet -o moving.csv 2>&1 | grep -o -e 'E3[0-9]*' -e 'note: give the rates of 2 joints'
 start 1e-3 | sed 's/{q: 1e-3}/{q: 1e-3, u: 3}/;s/^outputs: .*/outputs: [A.q, D.q]/' >beside.yaml
@@ -164,7 +164,7 @@ for T in $(awk 'BEGIN { for (i = 24; i <= 60; i++) print 10^(-i/6) }'); do
 done
 
 # Redundant rows may come to depend before all do, and steps choose others on their way: what is passed is to be seen all the same.
-echo '-- the platform with each method: positions, and by how much the rank falls'
+echo '-- the platform with each method: singular configurations, and by how much the rank falls'
 for T in 1e-4 1e-6; do
   for method in auto dopri5 dop853 radau5 generalized-alpha generalized-alpha-index3 newmark hht; do
     "$COTREE" simulate platform.yaml --quiet --tolerance $T --method $method --summary s.json -o platform.csv
@@ -191,14 +191,14 @@ done
 
 # A driver that comes to rest in a singular configuration, or changes its rate or acceleration there, tells nothing of how the motion goes on: that is said.
 # Forces may switch there: singular_switching.sh.
-echo '-- drivers that come to rest in such a position, slowly and at once, and that begin to brake there'
+echo '-- drivers that come to rest in a singular configuration, slowly and at once, and that begin to brake there'
 for motion in '10*t^3 - 15*t^4 + 6*t^5' '3*t^2 - 2*t^3' t '1 + (t - 1) - (t - 1)^2'; do
   case $motion in 1*-*t*) after="1 + (t - 1) - (t - 1)^2" motion=t ;; *) after=1 ;; esac
   sed "s|initial: {q: 0, u: -1}|motion: \"-pi/2*if(t < 1, $motion, $after)\"|" parallelogram.yaml >rests.yaml
-  "$COTREE" simulate rests.yaml --quiet -o rests.csv 2>&1 | grep -o 'something switches there'
+  "$COTREE" simulate rests.yaml --quiet -o rests.csv 2>&1 | grep -o 'a switch changes there'
 done
 
-# Its rows are a thousandth of those of the large loop, whose position is to be seen all the same: the energy within 10 T.
+# Its rows are a thousandth of those of the large loop; its singular configuration must be detected all the same: the energy within 10 T.
 echo '-- a parallelogram of half a millimetre on the crank of one of half a metre'
 cat >small.yaml <<'END'
 cotree: 1
@@ -267,8 +267,8 @@ for method in auto radau5 newmark; do
 done
 echo
 
-# Where a polynomial is not precise enough across the position it is taken again from nearer by, not for a motion that only passes by.
-echo '-- two slider-cranks on one slider, whose dead centres coincide: positions by tolerances from 1e-2 to 1e-6'
+# Where a polynomial is not accurate enough across the configuration it is repeated from nearer by, but not for a motion that only passes near one.
+echo '-- two slider-cranks on one slider, whose dead centres coincide: singular configurations by tolerances from 1e-2 to 1e-6'
 cat >twins.yaml <<'END'
 cotree: 1
 gravity: [0, -9.81, 0]
@@ -298,8 +298,8 @@ for method in auto dopri5 radau5; do
   echo
 done
 
-# Its pivots fall within 3e-3 rad of the position, which steps come across from afar: the form, whose product changes its sign, tells.
-echo '-- cranks of 30 m 0.1 m apart: positions by tolerances from 1e-3 to 1e-6'
+# The pivots of its rows become small within 3e-3 rad of the singular configuration only, and long steps cross it: the sign of the solver's product of pivots shows it.
+echo '-- cranks of 30 m 0.1 m apart: singular configurations by tolerances from 1e-3 to 1e-6'
 cat >slender.yaml <<'END'
 cotree: 1
 gravity: [0, -9.81, 0]
@@ -328,7 +328,7 @@ for options in '' '--keep-all' '--method radau5'; do
   echo
 done
 
-echo '-- speeds that a driver makes jump, far from any position, are not taken for another motion: no step is refused but for its error'
+echo '-- speeds that a driver makes jump, far from any singular configuration, are not taken for another motion: no step is refused but for its error'
 cat >jump.yaml <<'END'
 cotree: 1
 gravity: [0, -9.81, 0]

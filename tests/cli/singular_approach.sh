@@ -42,9 +42,9 @@ for T in 1e-4 1e-6 1e-8 1e-10; do
     "$COTREE" simulate creep.yaml --tolerance $T --quiet -o creep.csv --until 2
     tail -n 1 creep.csv | awk -F, -v T=$T '{ d = $3 - $2; print (d*d < T*T ? "parallel" : d) }'
 done
-echo '-- the end of a run in such a position is no reason to warn'
+echo '-- the end of a run in a singular configuration is no reason to warn'
 "$COTREE" simulate slow.yaml --set w=3 --until "$(awk 'BEGIN { l = sqrt(8/0.175625); x = l/3; print log(x + sqrt(x*x + 1))/l }')" --quiet -o end.csv
-# Seen from far off, where its smallest pivot has only begun to fall, a position seems to be seconds away: crossings that fail there are
+# Seen from far off, where its smallest pivot has only begun to fall, a singular configuration seems to be seconds away: crossings that fail there are
 # none of the one that comes. With six such failures counted against it implicit methods were not carried across any more (E301, E308).
 echo '-- implicit methods on two parallelograms one upon the other, three cranks in a row below, 14 and -11 rad/s'
 cat >upon.yaml <<'END'

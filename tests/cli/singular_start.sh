@@ -78,7 +78,7 @@ slider_crank 0 >stays.yaml
 compare moves 1 13.652527707655057123 -27.305055415310114245 0.37271133442448861246
 compare stays 1 12.886539305156352344 -3.1415926535897932385 0
 
-echo '-- the position is told, and members of a sweep go the same way'
+echo '-- the configuration is reported, and members of a sweep go the same way'
 "$COTREE" simulate anti.yaml --quiet --summary s.json -o out.csv 2>out.txt
 sed -n 's/.*"time": //p' s.json | tr -d , | awk '{ printf "%s%.4f", (NR > 1 ? " " : ""), $1 } END { print "" }'
 "$COTREE" sweep stays.yaml --vary w=0.9:1.1:3 --quiet -o out.csv 2>out.txt

@@ -62,7 +62,7 @@ isosceles -1e-11 12.890285680852767
 isosceles 1e-10 12.890285688267008
 E
 
-# 20 switches in the position: long steps end on some of them where it had not been foreseen, or it is foreseen late. Taylor series of order 30 with 30 digits.
+# 20 switches in the singular configuration: long steps end on some of them before it was predicted, or it is predicted late. Taylor series of order 30 with 30 digits.
 echo '-- 20 in a row'
 four_bar 0.225 0.556 0.225 0.556 0.26663298026471416 -7.593300786639396 -0.266 0.266 0 2 42.9546 -39.4938 >often.yaml
 for T in 1e-4 1e-6 4.64e-7 1e-8 1e-9 5e-10 1e-10; do
@@ -70,8 +70,8 @@ for T in 1e-4 1e-6 4.64e-7 1e-8 1e-9 5e-10 1e-10; do
   tail -n 1 run.csv | awk -F, -v T=$T '{ d = ($2 - 0.37070216673645145)/0.37070216673645145; print T ": " (d*d < 100*T*T ? "within 10 T" : d) }'
 done
 
-# Speeds: the force lets the crank go on beyond the rate, which it has in the position, or holds it there, which is no motion.
-echo '-- at a rate that it has in the position'
+# Speeds: the force lets the crank go on beyond the rate, which it has in the singular configuration, or holds it there, which is no motion.
+echo '-- at a rate that it has in the singular configuration'
 sed 's/if(a.q < beside, 12, -4)/if(a.u < -10.86301531376374, beside, -4)/; s/duration: 2, samples: 41/duration: 0.6, samples: 13/' parallelogram.yaml >rate.yaml
 for T in 1e-4 1e-9; do
   "$COTREE" simulate rate.yaml --set beside=-30 --tolerance $T --quiet -o run.csv || continue
@@ -79,8 +79,8 @@ for T in 1e-4 1e-9; do
   "$COTREE" simulate rate.yaml --set beside=12 --tolerance $T --quiet -o run.csv 2>&1 | grep -o 'E[0-9]*'
 done
 
-# The position is told of once, whether the force switches just before it or behind.
-echo '-- positions passed and switches'
+# The configuration is reported once, whether the force switches just before it or behind.
+echo '-- singular configurations and switches'
 for beside in 0 1e-12 -1e-12 1e-3 -1e-3; do
   "$COTREE" simulate parallelogram.yaml --set "beside=$beside" --quiet -o run.csv --summary s.json
   sed -n 's/.*"\(singular_positions_passed\|events\)": \([0-9]*\).*/\1 \2/p' s.json | tr '\n' ' '

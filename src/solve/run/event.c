@@ -86,8 +86,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
 {
     return ct_error(
         r->ctx, mark, CT_E_DRIVER_JUMP,
-        "the motion '%s' jumps by %.6g at t = %.9g: a place cannot change in no time", name,
-        jump, t);
+        "the motion '%s' jumps by %.6g at t = %.9g: a coordinate cannot change instantaneously",
+        name, jump, t);
 }
 
 // Are all rows still closed after an event? They were before it: an open one belongs to a driver

@@ -143,10 +143,9 @@ static void name_singular_start(struct ct_run *r)
     const double way = r->stats.last_time * ct_vector_max_norm(r->y + r->m->nq, r->m->nu);
     if (r->singular_joints && way < near)
         ct_note(r->ctx, (struct ct_mark){0},
-                "the run began in a singular configuration, where constraints of %s do not "
-                "count and "
-                "several motions go on: start a little beside it, a joint off by 1e-3, on the "
-                "one that is meant",
+                "the run began in a singular configuration, where constraints of %s are "
+                "dependent and several motions are possible: start near it, with a joint off "
+                "by 1e-3, on the wanted motion",
                 r->singular_joints);
 }
 
@@ -201,7 +200,7 @@ static bool has_switched(const struct ct_run *r)
 }
 
 static const char *const let_pass
-    = ", where a driver may not rest: let it pass, or rest beside it";
+    = ", where a driver may not rest: let it move through, or rest near it";
 
 // Have drivers come to rest, compared with the largest speed of the run?
 static bool is_driven_to_rest(const struct ct_run *r)
@@ -223,19 +222,18 @@ static bool is_driven_to_rest(const struct ct_run *r)
 static const char *advise_there(struct ct_run *r)
 {
     if (has_switched(r))
-        return "; something switches there: let it do so, and drivers rest, a little before it "
-               "or behind";
+        return "; a switch changes there: let switches change, and drivers rest, a little "
+               "before or after it";
     if (is_driven_to_rest(r))
         return let_pass;
     // Chosen: a tolerance above `most` is no advice
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
     if (enough > r->o->output_rtol && enough < most)
-        return ct_arena_printf(
-            r->arena,
-            "; round-off is felt there by %.0e: a tolerance of that, or a start "
-            "farther from it, may lead on",
-            enough);
-    return "; a larger tolerance, or a start farther from it, may lead on";
+        return ct_arena_printf(r->arena,
+                               "; round-off has an effect there of %.0e: with a tolerance of "
+                               "that, or a start farther from it, the run may go on",
+                               enough);
+    return "; with a larger tolerance, or a start farther from it, the run may go on";
 }
 
 void ct_run_explain_end(struct ct_run *r)

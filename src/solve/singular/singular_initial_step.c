@@ -253,24 +253,23 @@ static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedo
 {
     ct_error(r->ctx, (struct ct_mark){0}, CT_E_STEP_OPEN,
              "the constraints cannot be met beyond t = 0: the run starts in a singular "
-             "configuration, where constraints of %s do not count "
-             "and several motions go on, and %s",
+             "configuration, where constraints of %s are dependent and several motions are "
+             "possible, and %s",
              r->joints,
              misfit > speed_misfit_tolerance
                  ? "the speeds belong to none of them"
                  : "none that has these speeds is found to this tolerance");
     if (misfit > speed_misfit_tolerance)
         ct_note(r->ctx, (struct ct_mark){0},
-                "give the rates of %d joints there, as one motion through the position has "
-                "them together: those of now miss that by "
-                "%.2g of their squares; or start a little beside it, a joint off by 1e-3, on "
-                "the motion that is meant",
+                "give the rates of %d joints there, as they belong to one motion through the "
+                "configuration: the present ones violate its condition by "
+                "%.2g of their squares; or start near the configuration, with a joint off by "
+                "1e-3, on the wanted motion",
                 freedoms, misfit);
     else
-        ct_note(
-            r->ctx, (struct ct_mark){0},
-            "a larger tolerance may do; or start a little beside it, a joint off by 1e-3, on "
-            "the motion that is meant");
+        ct_note(r->ctx, (struct ct_mark){0},
+                "a larger tolerance may help; or start near the configuration, with a joint "
+                "off by 1e-3, on the wanted motion");
     return false;
 }
 
@@ -287,12 +286,11 @@ static void return_to_start(struct ct_singular_start *r)
 // singular configuration.
 static void warn_of_rounding(struct ct_singular_start *r, double unknown)
 {
-    ct_warning(
-        r->ctx, (struct ct_mark){.file = r->file}, 0,
-        "the run starts so near to a singular configuration that round-off leaves places and "
-        "speeds that are not given known to %.1g: start in the position itself, or "
-        "farther from it",
-        unknown);
+    ct_warning(r->ctx, (struct ct_mark){.file = r->file}, 0,
+               "the run starts so near to a singular configuration that, because of round-off, "
+               "coordinates and speeds which are not given are known only to %.1g: start in "
+               "the singular configuration itself, or farther from it",
+               unknown);
 }
 
 // Begins half a step before the singular configuration, if there is a step that crosses it.
@@ -339,9 +337,8 @@ static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *
     if (r->is_fixed)
         return ct_error(
             r->ctx, (struct ct_mark){0}, CT_E_STEP_REFUSED,
-            "the run starts in a singular configuration, where constraints of %s do not "
-            "count: steps of fixed size do not lead "
-            "away from it; leave out 'step'",
+            "the run starts in a singular configuration, where constraints of %s are "
+            "dependent: steps of fixed size do not lead away from it; leave out 'step'",
             r->joints);
     const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
     set_largest_error(l, r->rtol, 1);
