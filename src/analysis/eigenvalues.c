@@ -192,7 +192,7 @@ static bool factor_stiffness(double *L, const double *K, int n)
 // that their round-off is relative to themselves and not to the fastest mode. Does so for the
 // modes below the geometric mean of the slowest and the fastest frequency. L: Cholesky factor
 // of K; M (n x n).
-static void sharpen_slow(struct ct_arena *a, const double *M, const double *L, struct basis *s)
+static void refine_slow(struct ct_arena *a, const double *M, const double *L, struct basis *s)
 {
     const int n = s->n;
     double *H = CT_NEWN(a, double, n *n + 1), *value = CT_NEWN(a, double, n + 1),
@@ -225,7 +225,7 @@ double ct_stiffness_least(struct ct_arena *a, const struct ct_linear *l, double 
         return INFINITY;
     double *L = CT_NEWN(a, double, (size_t)s.n *(size_t)s.n + 1);
     if (factor_stiffness(L, l->Kr, s.n))
-        sharpen_slow(a, l->Mr, L, &s);
+        refine_slow(a, l->Mr, L, &s);
     else
         clear_zeros(&s);
     memcpy(y, s.V, (size_t)s.n * sizeof *y);
@@ -515,7 +515,7 @@ bool ct_modes_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_line
         if (!has_speeds && !l->is_moving && s.is_held && ct_linear_is_symmetric(a, l->Kr, f)) {
             *how = "symmetric";
             if (is_positive)
-                sharpen_slow(a, l->Mr, L, &s);
+                refine_slow(a, l->Mr, L, &s);
             add_symmetric(&list, &s);
         } else if (!s.n0) {
             *how = "general";

@@ -191,7 +191,7 @@ static void speed_slopes(struct ct_linear *l, double *D, const double *u)
 
 // A state z of the model takes the place of a position: the coefficient of z' moves from M to
 // C, and that of z from C to K (nu x nu).
-static void take_states_as_places(const struct ct_equations *e, double *K, double *C, double *M)
+static void states_as_coordinates(const struct ct_equations *e, double *K, double *C, double *M)
 {
     for (size_t k = e->nmotion; k < e->nu; k++)
         ct_state_take_as_place(K + e->nu * k, C + e->nu * k, M + e->nu * k, e->nu);
@@ -218,7 +218,7 @@ static bool slopes(struct ct_linear *l)
         return ct_error(l->ctx, (struct ct_mark){.file = m->model->file}, CT_E_SINGULAR,
                         "the equations have no finite derivatives at this configuration");
     const double *value = ct_evaluator_scatter(m, l->K, l->C, l->M);
-    take_states_as_places(m->e, l->K, l->C, l->M);
+    states_as_coordinates(m->e, l->K, l->C, l->M);
     value = scatter(l->D, nrow, nu, f->dv, f->ndv, value);
     memset(l->J, 0, nrow * nu * sizeof *l->J);
     for (size_t i = 0; i < m->e->nJ; i++)

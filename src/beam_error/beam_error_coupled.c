@@ -38,13 +38,13 @@ struct ct_beam_error_coupled_run {
     double *value, *work, *out, *q, *u; // q, u: of all beam models in turn
     double *rate, *du;                  // q', u' of their last steps
     double largest;                     // |eta|
-    double quick; // factor on frequencies of clamped shapes for a base that yields
-    bool is_lost;
+    double frequency_factor; // factor on frequencies of clamped shapes for a base that yields
+    bool has_failed;
 };
 
-// ---- the scene with rigid beams -----------------------------------------------------------------
+// ---- the system with rigid beams ----------------------------------------------------------------
 
-static struct ct_build *rigid_scene(struct ct_build *b)
+static struct ct_build *rigid_system(struct ct_build *b)
 {
     const struct ct_formulate_options o = {.tree = CT_TREE_JOINTS, .rigid = true};
     struct ct_tree_report unused = {0};
@@ -109,23 +109,23 @@ struct outputs {
     int n;
 };
 
-static void push(struct outputs *o, ct_ex e)
+static void add_output(struct outputs *o, ct_ex e)
 {
     o->e[o->n++] = e;
 }
 
-static void push_base(struct ct_build *r, const struct ct_flexible *f, struct outputs *o)
+static void add_base_outputs(struct ct_build *r, const struct ct_flexible *f, struct outputs *o)
 {
     struct ct_exs *x = r->x;
     ct_ex3 base[3];
     ct_flexible_base_motion(r, f, base);
     for (int k = 0; k < BASE; k++)
-        push(o, base[k / 3].e[k % 3]);
+        add_output(o, base[k / 3].e[k % 3]);
     for (int k = 0; k < MOTION; k++)
-        push(o, ct_build_rate(r, base[k / 3].e[k % 3]));
+        add_output(o, ct_build_rate(r, base[k / 3].e[k % 3]));
     for (size_t j = 0; j < r->eqs->nu; j++)
         for (int k = 0; k < MOTION; k++)
-            push(o, ct_ex_diff(x, base[k / 3].e[k % 3], r->eqs->u[j].symbol));
+            add_output(o, ct_ex_diff(x, base[k / 3].e[k % 3], r->eqs->u[j].symbol));
 }
 
 static void compile(struct ct_build *r, const struct outputs *o,
@@ -153,7 +153,7 @@ const struct ct_beam_error_coupled *ct_beam_error_coupled_create(struct ct_build
 {
     const unsigned known = 1u << CT_SYM_TIME | 1u << CT_SYM_PARAM | 1u << CT_SYM_Q
                          | 1u << CT_SYM_U | 1u << CT_SYM_SWITCH;
-    struct ct_build *r = rigid_scene(b);
+    struct ct_build *r = rigid_system(b);
     if (!r || !is_smooth(r))
         return NULL;
     const struct ct_equations *e = r->eqs;
@@ -171,20 +171,20 @@ const struct ct_beam_error_coupled *ct_beam_error_coupled_create(struct ct_build
     for (size_t i = 0; i < e->nM; i++) {
         p->row[i] = e->M[i].row;
         p->column[i] = e->M[i].column;
-        push(&o, e->M[i].value);
+        add_output(&o, e->M[i].value);
     }
     for (size_t i = 0; i < e->nu; i++)
-        push(&o, e->Q[i]);
+        add_output(&o, e->Q[i]);
     for (size_t i = 0; i < e->nq; i++)
-        push(&o, e->q[i].rate);
+        add_output(&o, e->q[i].rate);
     const int base = o.n;
-    push_base(r, ct_flexible_of(r, f->body), &o);
+    add_base_outputs(r, ct_flexible_of(r, f->body), &o);
     for (int k = 0; k < BASE; k++)
         p->is_free
             |= (ct_ex_kinds(r->x, o.e[base + k]) & (1u << CT_SYM_Q | 1u << CT_SYM_U)) != 0;
     p->nmode = (int)e->nswitch;
     for (size_t i = 0; i < e->nswitch; i++)
-        push(&o, e->switches[i].g);
+        add_output(&o, e->switches[i].g);
     for (int i = 0; i < o.n; i++)
         if (ct_ex_kinds(r->x, o.e[i]) & ~known)
             return NULL;
@@ -225,13 +225,13 @@ ct_beam_error_coupled_run_create(struct ct_arena *a, const struct ct_beam_error_
 
 // ---- a step -------------------------------------------------------------------------------------
 
-struct scene { // the multibody system of one beam model at one instant
+struct system_state { // the multibody system of one beam model at one instant
     const double *Q, *rate, *base, *bias, *B;
 };
 
 // Evaluate the system; switches have their values at time t.
-static struct scene look(struct ct_beam_error_coupled_run *r, double t, const double *q,
-                         const double *u)
+static struct system_state evaluate_system(struct ct_beam_error_coupled_run *r, double t,
+                                           const double *q, const double *u)
 {
     const struct ct_beam_error_coupled *p = r->p;
     const double *g = r->out + p->nout - p->nmode;
@@ -250,7 +250,7 @@ static struct scene look(struct ct_beam_error_coupled_run *r, double t, const do
             r->value[p->switch_slot[i]] = now;
         }
     }
-    struct scene s = {.Q = r->out + p->nentry};
+    struct system_state s = {.Q = r->out + p->nentry};
     s.rate = s.Q + p->nu;
     s.base = s.rate + p->nq;
     s.bias = s.base + BASE;
@@ -307,7 +307,7 @@ struct middle { // midpoint of a step
 
 // Accelerations at the midpoint m of a step h from u, x: m->du, m->dv.
 static bool accelerate(struct ct_beam_error_coupled_run *r, const struct ct_beam_error_modal *s,
-                       int model, double h, const struct scene *now, const double x[][2],
+                       int model, double h, const struct system_state *now, const double x[][2],
                        struct middle *m)
 {
     const struct ct_beam_error_coupled *p = r->p;
@@ -337,14 +337,14 @@ static bool accelerate(struct ct_beam_error_coupled_run *r, const struct ct_beam
         = {now->base[0], A[0], now->base[1] * now->base[2]};
     for (int i = 0; i < s->n; i++) {
         const struct ct_beam_mode *shape = &s->shape[i];
-        const double more
-            = ct_beam_mode_stiffening(shape, now->base) - shape->omega2 * shape->axial * along,
-            drawn = model == CT_BEAM_MODEL_LINEAR ? 0 : shape->shortening,
-            curved = model == CT_BEAM_MODEL_EXACT ? shape->curvature : 0,
-            q2 = m->x[i][0] * m->x[i][0],
-            W = shape->omega2 - ct_beam_mode_softening(shape->is_z, now->base)
-              + (model == CT_BEAM_MODEL_LINEAR ? 0 : more) + drawn * m->x[i][1] * m->x[i][1]
-              + 2 * curved * q2;
+        const double more = ct_beam_mode_stiffening(shape, now->base)
+                          - shape->omega2 * shape->eta_by_acceleration * along,
+                     drawn = model == CT_BEAM_MODEL_LINEAR ? 0 : shape->shortening,
+                     curved = model == CT_BEAM_MODEL_EXACT ? shape->curvature : 0,
+                     q2 = m->x[i][0] * m->x[i][0],
+                     W = shape->omega2 - ct_beam_mode_softening(shape->is_z, now->base)
+                       + (model == CT_BEAM_MODEL_LINEAR ? 0 : more)
+                       + drawn * m->x[i][1] * m->x[i][1] + 2 * curved * q2;
         if (model == CT_BEAM_MODEL_LINEAR)
             r->largest = fmax(r->largest, fabs(more) / shape->omega2);
         for (int j = 0; j < nu; j++)
@@ -365,8 +365,9 @@ static bool accelerate(struct ct_beam_error_coupled_run *r, const struct ct_beam
 }
 
 // Relative change of the velocities of a step h in the last iteration.
-static double unsettled(const struct ct_beam_error_coupled *p, int n, const struct middle *m,
-                        const struct middle *before, const double *u, double h)
+static double relative_change(const struct ct_beam_error_coupled *p, int n,
+                              const struct middle *m, const struct middle *before,
+                              const double *u, double h)
 {
     double change = 0, size = 0;
     for (int i = 0; i < p->nu; i++) {
@@ -408,7 +409,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
         m.x[i][1] = x[i][1];
     }
     for (int pass = 0; pass < PASSES && !(left <= settled); pass++) {
-        const struct scene now = look(r, t + 0.5 * h, q_mid, m.u);
+        const struct system_state now = evaluate_system(r, t + 0.5 * h, q_mid, m.u);
         const struct middle before = m;
         if (!accelerate(r, s, model, h, &now, (const double(*)[2])x, &m))
             return false;
@@ -422,7 +423,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
             m.x[i][1] = x[i][1] + 0.5 * h * m.dv[i];
             m.x[i][0] = x[i][0] + 0.5 * h * m.x[i][1];
         }
-        left = unsettled(p, s->n, &m, &before, u, h);
+        left = relative_change(p, s->n, &m, &before, u, h);
     }
     for (int i = 0; i < p->nu; i++) {
         du[i] = m.du[i];
@@ -438,8 +439,9 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
 }
 
 // How far the base yields to the shapes: sum of p' B M^-1 B' p, which is near 1 for a light base.
-static double yield(const struct ct_beam_error_coupled_run *r,
-                    const struct ct_beam_error_modal *s, const struct scene *now)
+static double base_compliance(const struct ct_beam_error_coupled_run *r,
+                              const struct ct_beam_error_modal *s,
+                              const struct system_state *now)
 {
     const int n = r->p->nu;
     double M[MOST * MOST] = {0}, G[MOST], x[MOST], sum = 0;
@@ -471,20 +473,20 @@ void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
         memcpy(r->q + m * p->nq, p->start, (size_t)p->nq * sizeof *r->q);
         memcpy(r->u + m * p->nu, p->start + p->nq, (size_t)p->nu * sizeof *r->u);
     }
-    const struct scene now = look(r, 0, r->q, r->u);
+    const struct system_state now = evaluate_system(r, 0, r->q, r->u);
     memcpy(s->base, now.base, sizeof s->base);
     memset(r->rate, 0, (size_t)(CT_BEAM_MODELS * p->nq) * sizeof *r->rate);
     memset(r->du, 0, (size_t)(CT_BEAM_MODELS * p->nu) * sizeof *r->du);
     r->largest = 0;
-    r->is_lost = false;
-    r->quick = 1 / sqrt(1 - fmin(most, yield(r, s, &now)));
+    r->has_failed = false;
+    r->frequency_factor = 1 / sqrt(1 - fmin(most, base_compliance(r, s, &now)));
     s->t = 0;
     s->has_begun = true;
     ct_beam_error_modal_record(s);
 }
 
 // Shortest useful step: faster motion need not be resolved.
-static double finest(const struct ct_beam_error_modal *s)
+static double shortest_step(const struct ct_beam_error_modal *s)
 {
     // Derived: the midpoint rule lowers a frequency by the part (2 pi/256)^2/12 = 5e-5
     const double per_period = 256;
@@ -495,20 +497,21 @@ static double finest(const struct ct_beam_error_modal *s)
 }
 
 void ct_beam_error_coupled_advance(struct ct_beam_error_coupled_run *r,
-                                   struct ct_beam_error_modal *s, double t, double glance)
+                                   struct ct_beam_error_modal *s, double t, double interval)
 {
     const double from
         = s->t,
         // Derived: 1e-9 exceeds the round-off of times: a whole number of steps stays it
-        asked = ceil((t - from) / fmax(glance / r->quick, finest(s)) * (1 - 1e-9)),
+        asked = ceil((t - from) / fmax(interval / r->frequency_factor, shortest_step(s))
+                     * (1 - 1e-9)),
         n = fmin(asked, MOST_STEPS);
-    for (double i = 0; i < n && !r->is_lost; i++) {
+    for (double i = 0; i < n && !r->has_failed; i++) {
         for (int m = 0; m < CT_BEAM_MODELS; m++)
-            r->is_lost |= !step(r, s, m, from + i / n * (t - from), (t - from) / n);
+            r->has_failed |= !step(r, s, m, from + i / n * (t - from), (t - from) / n);
         ct_beam_error_modal_record(s);
     }
     s->t = t;
-    if (r->is_lost
+    if (r->has_failed
         && !(s->error[CT_BEAM_MODEL_LINEAR] > CT_ESTIMATED_ERROR_LIMIT * s->deflection))
         s->deflection = NAN;
 }

@@ -38,10 +38,10 @@ ct_beam_error_coupled_run_create(struct ct_arena *a, const struct ct_beam_error_
 /// Set base and shapes to their start; x, x' are those in s.
 void ct_beam_error_coupled_begin(struct ct_beam_error_coupled_run *r,
                                  struct ct_beam_error_modal *s);
-/// Advance to the time t in steps of `glance`, or shorter ones for a light base, but not more than
-/// 100 steps. Errors are NAN once the base is too stiff for such steps.
+/// Advance to the time t in steps of `interval`, or shorter ones for a light base, but not more
+/// than 100 steps. Errors are NAN once the base is too stiff for such steps.
 void ct_beam_error_coupled_advance(struct ct_beam_error_coupled_run *r,
-                                   struct ct_beam_error_modal *s, double t, double glance);
+                                   struct ct_beam_error_modal *s, double t, double interval);
 /// Largest |eta| of the first shapes so far.
 double ct_beam_error_coupled_indicator(const struct ct_beam_error_coupled_run *r);
 

@@ -96,7 +96,8 @@ double ct_beam_mode_stiffening(const struct ct_beam_mode *s, const double b[9])
 {
     const double *w = b, *v = b + 3;
     const double pull = w[1] * v[2] - w[2] * v[1] - b[6];
-    return s->omega2 * (s->turning * (w[1] * w[1] + w[2] * w[2]) - s->axial * pull);
+    return s->omega2
+         * (s->eta_by_rate * (w[1] * w[1] + w[2] * w[2]) - s->eta_by_acceleration * pull);
 }
 
 // off (2) += deflection of a model at a place along the beam, by plane.
@@ -134,29 +135,29 @@ static struct ct_beam_mode_base_rotation turn_of(const double from[9], const dou
 
 double ct_beam_mode_coupling(const struct ct_beam_error_modal *s, int i,
                              const struct ct_beam_mode_base_rotation *w,
-                             const double beside[][2])
+                             const double other_plane[][2])
 {
     const struct ct_beam_mode *shape = &s->shape[i];
     const double sign = shape->is_z ? -1 : 1;
     double F = 0;
     for (int j = 0; j < s->n; j++)
         F += shape->coupling[j]
-           * (sign * (2 * w->rate * beside[j][1] + w->change * beside[j][0])
-              - w->across * beside[j][0]);
+           * (sign * (2 * w->rate * other_plane[j][1] + w->change * other_plane[j][0])
+              - w->across * other_plane[j][0]);
     return F;
 }
 
-// Advance shape i of a model; beside: all shapes of each model.
+// Advance shape i of a model; other_plane: all shapes of each model.
 static void move_shape(struct ct_beam_error_modal *s, int i, double h, const double to[9],
                        const struct ct_beam_mode_base_rotation *w,
-                       double beside[][CT_BENDING_SHAPES][2])
+                       double other_plane[][CT_BENDING_SHAPES][2])
 {
     const struct ct_beam_mode *shape = &s->shape[i];
     const double given
         = ct_beam_mode_base_momentum(shape, s->base) - ct_beam_mode_base_momentum(shape, to);
     double joined[CT_BEAM_MODELS];
     for (int m = 0; m < CT_BEAM_MODELS; m++)
-        joined[m] = ct_beam_mode_coupling(s, i, w, (const double(*)[2])beside[m]);
+        joined[m] = ct_beam_mode_coupling(s, i, w, (const double(*)[2])other_plane[m]);
     if (h <= 0) {
         for (int m = 0; m < CT_BEAM_MODELS; m++)
             s->x[m][i][1] += given + joined[m];
@@ -173,7 +174,7 @@ static void move_shape(struct ct_beam_error_modal *s, int i, double h, const dou
                    + ct_beam_mode_softening(shape->is_z, to)),
         more
         = 0.5 * (ct_beam_mode_stiffening(shape, s->base) + ct_beam_mode_stiffening(shape, to))
-        - shape->omega2 * shape->axial * (to[3] - s->base[3]) / h;
+        - shape->omega2 * shape->eta_by_acceleration * (to[3] - s->base[3]) / h;
     for (int m = 0; m < CT_BEAM_MODELS; m++)
         step_nonlinear(s->x[m][i], h, m == CT_BEAM_MODEL_LINEAR ? W : W + more, shape->damping,
                        F + joined[m], m == CT_BEAM_MODEL_LINEAR ? 0 : shape->shortening,
@@ -186,18 +187,18 @@ static void move_shapes(struct ct_beam_error_modal *s, double h, const double to
 {
     const struct ct_beam_mode_base_rotation w = turn_of(s->base, to, h);
     const bool meet = w.rate != 0 || w.change != 0 || w.across != 0;
-    double beside[CT_BEAM_MODELS][CT_BENDING_SHAPES][2],
+    double other_plane[CT_BEAM_MODELS][CT_BENDING_SHAPES][2],
         start[CT_BEAM_MODELS][CT_BENDING_SHAPES][2];
     memcpy(start, s->x, sizeof start);
-    memcpy(beside, s->x, sizeof beside);
+    memcpy(other_plane, s->x, sizeof other_plane);
     for (int pass = meet && h > 0 ? 0 : 1; pass < 2; pass++) {
         for (int i = 0; i < s->n; i++)
-            move_shape(s, i, h, to, &w, beside);
+            move_shape(s, i, h, to, &w, other_plane);
         if (pass)
             continue;
         for (int m = 0; m < CT_BEAM_MODELS; m++)
             for (int i = 0; i < 2 * s->n; i++)
-                beside[m][i / 2][i % 2]
+                other_plane[m][i / 2][i % 2]
                     = 0.5 * (start[m][i / 2][i % 2] + s->x[m][i / 2][i % 2]);
         memcpy(s->x, start, sizeof start);
     }

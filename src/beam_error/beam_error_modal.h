@@ -72,10 +72,10 @@ double ct_beam_mode_base_momentum(const struct ct_beam_mode *s, const double V[6
 double ct_beam_mode_softening(bool is_z, const double base[9]);
 /// Geometric stiffening omega^2 eta, without the part of v_x'.
 double ct_beam_mode_stiffening(const struct ct_beam_mode *s, const double base[9]);
-/// Force on shape i by the shapes of the other plane, at `beside`.
+/// Force on shape i by the shapes of the other plane, at `other_plane`.
 double ct_beam_mode_coupling(const struct ct_beam_error_modal *s, int i,
                              const struct ct_beam_mode_base_rotation *w,
-                             const double beside[][2]);
+                             const double other_plane[][2]);
 /// Record the largest errors and deflections.
 void ct_beam_error_modal_record(struct ct_beam_error_modal *s);
 

@@ -13,7 +13,7 @@
 enum { POINTS = 8, MOST_ITERATIONS = 200 };
 // Derived: the error of a frequency is the square of that of the shape (Rayleigh quotient), which
 // is then 1e-6
-static const double arrived = 1e-12; // relative change of a frequency
+static const double frequency_tolerance = 1e-12; // relative change of a frequency
 // Derived: 50^2 at 50 times the first frequency: the dynamic part of such a shape is 1/2500 of
 // its static part
 static const double farthest
@@ -30,11 +30,11 @@ struct line {
     const struct ct_flexible *f;
     int plane; // 0: along y, 1: along z
     int n,
-        band;           // number of freedoms in this plane; half bandwidth of its matrices
-    int *number;        // by freedom; -1: fixed, or not in this plane
-    double *K, *M;      // lower triangles, A(i, j) at i - j + (band + 1) j
-    double *Kg[2];      // geometric stiffness with P1, P2
-    double *carried[2]; // int shape m dx, int shape m x dx
+        band;      // number of freedoms in this plane; half bandwidth of its matrices
+    int *number;   // by freedom; -1: fixed, or not in this plane
+    double *K, *M; // lower triangles, A(i, j) at i - j + (band + 1) j
+    double *Kg[2]; // geometric stiffness with P1, P2
+    double *base_coupling[2]; // int shape m dx, int shape m x dx
     // by element and one more: int m x and int m from its start to the end of the beam (2 x)
     double *beyond;
     double *value; // of symbols
@@ -136,15 +136,16 @@ static void add(struct line *s, double *A, int e, int j, int k, double v)
 
 // Add the coupling of a mass at x in element e to the motion of the base; place: shape functions
 // there.
-static void carry(struct line *s, int e, double mass, double x, const double place[4])
+static void add_base_coupling(struct line *s, int e, double mass, double x,
+                              const double place[4])
 {
     for (int j = 0; j < 4; j++) {
         const int p = s->f->element[e].freedom[(s->plane ? 6 : 2) + j];
         if (p < 0)
             continue;
         const double share = (s->plane && j % 2 ? -mass : mass) * place[j]; // dw/dx = -ry
-        s->carried[0][s->number[p]] += share;
-        s->carried[1][s->number[p]] += share * x;
+        s->base_coupling[0][s->number[p]] += share;
+        s->base_coupling[1][s->number[p]] += share * x;
     }
 }
 
@@ -194,7 +195,7 @@ static void add_mass(struct line *s, int e)
             place[j] = ct_shape_value(&s->f->shape.deflection[j], xi[i], h);
             turn[j] = ct_shape_value(&s->f->shape.rotation[j], xi[i], h);
         }
-        carry(s, e, m, number(s, span->start) + xi[i] * h, place);
+        add_base_coupling(s, e, m, number(s, span->start) + xi[i] * h, place);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++)
                 add(s, s->M, e, j, k, m * place[j] * place[k] + J * turn[j] * turn[k]);
@@ -229,7 +230,7 @@ static void add_lumps(struct line *s)
         const double h = number(s, s->f->element[e].span.length);
         for (int j = 0; j < 4; j++)
             place[j] = ct_shape_value(&s->f->shape.deflection[j], xi, h);
-        carry(s, e, s->lump[i].mass, s->lump[i].x, place);
+        add_base_coupling(s, e, s->lump[i].mass, s->lump[i].x, place);
         for (int j = 0; j < 4; j++)
             for (int k = 0; k < 4; k++)
                 add(s, s->M, e, j, k, s->lump[i].mass * place[j] * place[k]);
@@ -312,7 +313,7 @@ static double next_shape(const struct line *s, const double *L, struct found *al
         for (int i = 0; i < n; i++)
             v[i] /= moved;
         const double omega2 = apply(s, y, s->K, v);
-        if (fabs(omega2 - last) <= arrived * omega2) {
+        if (fabs(omega2 - last) <= frequency_tolerance * omega2) {
             apply(s, y, s->M, v);
             return omega2;
         }
@@ -334,7 +335,7 @@ static bool build_plane(struct line *s)
     for (size_t i = 0; i < COUNT(matrix); i++)
         *matrix[i] = CT_NEWN(a, double, (s->band + 1) * s->n);
     for (int i = 0; i < 2; i++)
-        s->carried[i] = CT_NEWN(a, double, s->n);
+        s->base_coupling[i] = CT_NEWN(a, double, s->n);
     s->value = CT_NEWN(a, double, b->model->x->nsym + 1);
     memcpy(s->value, b->value, b->model->x->nsym * sizeof *s->value);
     list_lumps(s);
@@ -346,7 +347,7 @@ static bool build_plane(struct line *s)
 }
 
 // Freedom i of the plane, two per node, in the numbering of its element.
-static int place_of(int i, int plane, int *element)
+static int position_of(int i, int plane, int *element)
 {
     *element = i < 2 ? 0 : i / 2 - 1;
     return (plane ? 6 : 2) + (i < 2 ? i : 2 + i % 2);
@@ -358,7 +359,7 @@ static void project(struct ct_build *b, const struct line *s, const double *y, c
     struct ct_exs *x = b->x;
     for (int i = 0; i < 2 * (s->f->beam->nelement + 1); i++) {
         int e;
-        const int j = place_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
+        const int j = position_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
         if (p < 0)
             continue;
         const double share = y[s->number[p]];
@@ -375,7 +376,7 @@ static void project_start(struct ct_build *b, const struct line *s, const double
     for (int k = 0; k < beam->nstart; k++)
         for (int i = 0; i < 2 * (beam->nelement + 1); i++) {
             int e;
-            const int j = place_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
+            const int j = position_of(i, s->plane, &e), p = s->f->element[e].freedom[j];
             if (p >= 0)
                 start[beam->start[k].is_rate]
                     += y[s->number[p]]
@@ -400,7 +401,7 @@ static double along(const struct line *s, int e, double xi, const struct ct_shap
 }
 
 // Integral of the squared slope over element e up to xi.
-static double drawn_in(const struct line *s, int e, double xi, const double *v)
+static double foreshortening(const struct line *s, int e, double xi, const double *v)
 {
     const double h = number(s, s->f->element[e].span.length);
     double sum = 0;
@@ -423,9 +424,10 @@ static void find_amplitudes(const struct line *s, const double *v, struct ct_bea
         turn[j] = ct_shape_slope(&s->f->shape.rotation[j]);
     for (int e = 0; e < beam->nelement; e++) {
         const double h = number(s, s->f->element[e].span.length);
-        before[e + 1] = before[e] + drawn_in(s, e, 1, v);
+        before[e + 1] = before[e] + foreshortening(s, e, 1, v);
         for (int i = 0; i < POINTS; i++) {
-            const double S = before[e] + drawn_in(s, e, s->xi[i], v), w = s->weight[i] * h,
+            const double S = before[e] + foreshortening(s, e, s->xi[i], v),
+                         w = s->weight[i] * h,
                          bend = along(s, e, s->xi[i], turn, v)
                               * along(s, e, s->xi[i], s->f->shape.slope, v);
             out->shortening += w * profile(s, beam->mass_per_length, e, s->xi[i]) * S * S;
@@ -435,7 +437,7 @@ static void find_amplitudes(const struct line *s, const double *v, struct ct_bea
     for (size_t i = 0; i < s->nlump; i++) {
         double xi;
         const int e = element_at(s, s->lump[i].x, &xi);
-        const double S = before[e] + drawn_in(s, e, xi, v);
+        const double S = before[e] + foreshortening(s, e, xi, v);
         out->shortening += s->lump[i].mass * S * S;
     }
 }
@@ -470,13 +472,14 @@ static void fill_shape(struct line *s, const struct found *all, int k, double om
     double *const y = CT_NEWN(s->b->ctx->scratch, double, s->n);
     const double elastic = apply(s, y, s->K, v);
     *out = (struct ct_bending_shape){
-        .mode = {.is_z = s->plane,
-                 .omega2 = omega2,
-                 .damping
-                 = number(s, beam->damping_mass) + number(s, beam->damping_stiffness) * omega2,
-                 .turning = apply(s, y, s->Kg[0], v) / elastic,
-                 .axial = apply(s, y, s->Kg[1], v) / elastic,
-                 .mass = {dot(s->carried[0], v, s->n), dot(s->carried[1], v, s->n)}}};
+        .mode
+        = {.is_z = s->plane,
+           .omega2 = omega2,
+           .damping
+           = number(s, beam->damping_mass) + number(s, beam->damping_stiffness) * omega2,
+           .eta_by_rate = apply(s, y, s->Kg[0], v) / elastic,
+           .eta_by_acceleration = apply(s, y, s->Kg[1], v) / elastic,
+           .mass = {dot(s->base_coupling[0], v, s->n), dot(s->base_coupling[1], v, s->n)}}};
     for (int i = 0; i < CT_BEAM_MODE_STATIONS; i++) {
         double xi;
         const int e = element_at(s, length * (i + 1) / CT_BEAM_MODE_STATIONS, &xi);

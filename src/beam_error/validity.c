@@ -18,8 +18,8 @@ static ct_ex indicator(struct ct_exs *x, const struct ct_base *m, const struct c
 {
     const ct_ex turning
         = ct_ex_add(x, ct_ex_mul(x, m->w.e[1], m->w.e[1]), ct_ex_mul(x, m->w.e[2], m->w.e[2]));
-    return ct_ex_sub(x, ct_ex_scale(x, s->turning, turning),
-                     ct_ex_scale(x, s->axial, m->a.e[0]));
+    return ct_ex_sub(x, ct_ex_scale(x, s->eta_by_rate, turning),
+                     ct_ex_scale(x, s->eta_by_acceleration, m->a.e[0]));
 }
 
 static bool is_of_time(const struct ct_exs *x, ct_ex e)
@@ -39,7 +39,7 @@ bool ct_validity_derive(struct ct_build *b, const struct ct_flexible *f,
         return false;
     ct_bending_modes_couple(out->shape, out->nshape);
     const struct ct_beam_mode *first = &out->shape[0].mode, *other = &out->shape[ny].mode;
-    if (out->nshape > ny && other->turning > first->turning)
+    if (out->nshape > ny && other->eta_by_rate > first->eta_by_rate)
         first = other;
     const struct ct_base m = ct_flexible_base(b, f, CT_FULL);
     out->omega = sqrt(first->omega2);
@@ -105,7 +105,7 @@ struct prospect {
 
 enum { ETA, BASE, NOUT = BASE + 9 };
 
-struct ahead { // simulation of the modes before the run
+struct prediction { // simulation of the modes before the run
     struct ct_build *b;
     const struct ct_tape *tape; // eta and the base's motion
     double *value, *work;       // of symbols
@@ -113,7 +113,7 @@ struct ahead { // simulation of the modes before the run
     struct ct_beam_error_modal swings;
 };
 
-static void prepare(struct ahead *p, const struct ct_validity *v)
+static void prepare(struct prediction *p, const struct ct_validity *v)
 {
     struct ct_arena *a = p->b->ctx->scratch;
     const struct ct_exs *x = p->b->x;
@@ -137,7 +137,7 @@ static void prepare(struct ahead *p, const struct ct_validity *v)
 
 // Advance to the time t, with the switches as they are there and the jumps of rates that come with
 // them. False if the switches are not known.
-static bool advance_modes(struct ahead *p, double t)
+static bool advance_modes(struct prediction *p, double t)
 {
     struct ct_beam_error_modal *s = &p->swings;
     const bool is_kept
@@ -181,7 +181,7 @@ static bool simulate_coupled(struct ct_build *b, const struct ct_validity *v,
 static bool simulate_modes(struct ct_build *b, const struct ct_validity *v, int n,
                            struct prospect *out)
 {
-    struct ahead p = {.b = b};
+    struct prediction p = {.b = b};
     double start[2 * CT_BENDING_SHAPES] = {0};
     for (int i = 0; i < 2 * v->nshape; i++)
         start[i] = v->shape[i / 2].start[i % 2];
@@ -215,8 +215,8 @@ static bool is_alike(double a, double b)
 // Predict indicator and error for the whole run. NULL, or a text that says why they are unknown. If
 // the run is too long for the sampling interval, two simulations with different instants must
 // agree.
-static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
-                              struct prospect *out)
+static const char *predict_error(struct ct_build *b, const struct ct_validity *v,
+                                 struct prospect *out)
 {
     const double wanted = b->model->simulation.duration / ct_validity_interval(v);
     struct prospect other;
@@ -230,7 +230,7 @@ static const char *look_ahead(struct ct_build *b, const struct ct_validity *v,
     return "automatic: its motion is too fast to be simulated beforehand in so long a run";
 }
 
-static const char *figure(struct ct_arena *a, double error)
+static const char *error_text(struct ct_arena *a, double error)
 {
     return error > CT_ESTIMATED_ERROR_LIMIT ? "beyond 1" : ct_arena_printf(a, "%.3g", error);
 }
@@ -243,10 +243,10 @@ static const char *estimated_error(struct ct_build *b, const struct prospect *p)
         return "";
     const char *one_frame
         = other > CT_VALIDITY_LIMIT ? ct_arena_printf(
-              b->arena, "; a foreshortened one's in one frame: %s", figure(b->arena, other))
+              b->arena, "; a foreshortened one's in one frame: %s", error_text(b->arena, other))
                                     : "";
-    return ct_arena_printf(b->arena, "; a linear beam's error: %s%s", figure(b->arena, linear),
-                           one_frame);
+    return ct_arena_printf(b->arena, "; a linear beam's error: %s%s",
+                           error_text(b->arena, linear), one_frame);
 }
 
 // The error of the linear beam is below the limit, or less than that of a foreshortened beam.
@@ -274,7 +274,7 @@ static bool stays_linear(struct ct_build *b, struct ct_flexible *f, bool *is_dri
         return true;
     }
     *is_driven &= v.estimates_error && (!v.coupled || ct_beam_error_coupled_is_free(v.coupled));
-    f->why = look_ahead(b, &v, &p);
+    f->why = predict_error(b, &v, &p);
     if (f->why)
         return false;
     f->why = ct_arena_printf(b->arena, "automatic: validity indicator %.3g, limit %.3g%s",

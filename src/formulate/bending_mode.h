@@ -15,9 +15,10 @@ enum { CT_BEAM_MODE_STATIONS = 4 };
 
 /// A bending mode with shape phi, normalised to unit modal mass.
 struct ct_beam_mode {
-    bool is_z;                    // the deflection is along z; else along y
-    double omega2, damping;       // [1/s^2], [1/s]
-    double turning, axial;        // eta per w^2, and per acceleration along x  [s^2], [s^2/m]
+    bool is_z;              // the deflection is along z; else along y
+    double omega2, damping; // [1/s^2], [1/s]
+    double eta_by_rate,
+        eta_by_acceleration;      // eta per w^2, per acceleration along x  [s^2], [s^2/m]
     double mass[2];               // int phi m dx, int phi m x dx
     double shortening, curvature; // b, g
     double deflection[CT_BEAM_MODE_STATIONS]; // phi at the stations

@@ -11,8 +11,8 @@ static struct ct_beam_error_modal one_plane(double damping)
     return (struct ct_beam_error_modal){.n = 1,
                                         .shape = {{.omega2 = 4,
                                                    .damping = damping,
-                                                   .turning = 0.3,
-                                                   .axial = 0.05,
+                                                   .eta_by_rate = 0.3,
+                                                   .eta_by_acceleration = 0.05,
                                                    .mass = {1.5, 2.5},
                                                    .deflection = {0, 0, 0, 1}}}};
 }

@@ -27,9 +27,9 @@ struct search {
     const struct ct_build *b;
     struct ct_arena *a;
     struct entries axes, slides;
-    int *turning; // clusters that rotate a link of the current path
-    size_t nturning;
-    bool *is_turning; // by cluster
+    int *rotating; // clusters that rotate a link of the current path
+    size_t nrotating;
+    bool *is_rotating; // by cluster
 };
 
 static void add(struct search *s, struct entries *l, int cluster, int index)
@@ -48,20 +48,21 @@ static void add_axes(struct search *s, int cluster, int other)
 // Extends the path by a vector that rotates with a cluster and so with its inboard clusters.
 static void enter(struct search *s, int cluster)
 {
-    for (int c = cluster; c > 0 && !s->is_turning[c]; c = s->b->kinematics->cluster[c].parent) {
-        s->is_turning[c] = true;
-        s->turning[s->nturning++] = c;
-        for (size_t i = 0; i < s->nturning; i++) {
-            add_axes(s, c, s->turning[i]);
-            add_axes(s, s->turning[i], c);
+    for (int c = cluster; c > 0 && !s->is_rotating[c];
+         c = s->b->kinematics->cluster[c].parent) {
+        s->is_rotating[c] = true;
+        s->rotating[s->nrotating++] = c;
+        for (size_t i = 0; i < s->nrotating; i++) {
+            add_axes(s, c, s->rotating[i]);
+            add_axes(s, s->rotating[i], c);
         }
     }
 }
 
-static void leave(struct search *s, size_t nturning)
+static void leave(struct search *s, size_t nrotating)
 {
-    while (s->nturning > nturning)
-        s->is_turning[s->turning[--s->nturning]] = false;
+    while (s->nrotating > nrotating)
+        s->is_rotating[s->rotating[--s->nrotating]] = false;
 }
 
 static int compare_enter(const void *context, const void *a, const void *b)
@@ -79,7 +80,7 @@ static void walk(struct search *s, const struct ct_composite_sums *sums)
     int *order = CT_NEWN(s->a, int, b->kinematics->nanchor),
         *path = CT_NEWN(s->a, int, b->kinematics->nanchor);
     size_t *before = CT_NEWN(s->a, size_t, b->kinematics->nanchor),
-           depth = 0; // nturning by depth of the path
+           depth = 0; // nrotating by depth of the path
     for (size_t i = 0; i < b->kinematics->nanchor; i++)
         order[i] = (int)i;
     ct_sort(s->a, order, b->kinematics->nanchor, sizeof *order, compare_enter,
@@ -88,18 +89,18 @@ static void walk(struct search *s, const struct ct_composite_sums *sums)
         const int a = order[i];
         while (depth > 0 && !ct_anchor_is_outboard(b, path[depth - 1], a))
             leave(s, before[--depth]);
-        before[depth] = s->nturning;
+        before[depth] = s->nrotating;
         path[depth++] = a;
         if (a > 0)
             enter(s, b->kinematics->anchor[a].cluster);
         if (b->kinematics->anchor[a].ntranslation_axis) {
-            for (size_t k = 0; k < s->nturning; k++)
-                add(s, &s->slides, s->turning[k], a);
+            for (size_t k = 0; k < s->nrotating; k++)
+                add(s, &s->slides, s->rotating[k], a);
             for (int k = sums->first_pair[a]; k >= 0; k = sums->pair[k].next)
                 add(s, &s->slides, sums->pair[k].cluster, a);
         }
         for (int k = sums->first[a]; k >= 0; k = sums->next[k]) {
-            const size_t here = s->nturning;
+            const size_t here = s->nrotating;
             enter(s, b->dynamics.masses.augmented_body[k].cluster);
             leave(s, here);
         }
@@ -135,8 +136,8 @@ const struct ct_couplings *ct_couplings_find(const struct ct_composite_sums *sum
 {
     const struct ct_build *b = sums->b;
     struct search s = {.b = b, .a = b->ctx->scratch};
-    s.turning = CT_NEWN(s.a, int, b->kinematics->ncluster);
-    s.is_turning = CT_NEWN(s.a, bool, b->kinematics->ncluster);
+    s.rotating = CT_NEWN(s.a, int, b->kinematics->ncluster);
+    s.is_rotating = CT_NEWN(s.a, bool, b->kinematics->ncluster);
     for (size_t c = 1; c < b->kinematics->ncluster;
          c++) // inertia couples a cluster with its inboard clusters
         for (int in = (int)c; in > 0; in = b->kinematics->cluster[in].parent) {

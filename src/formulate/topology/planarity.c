@@ -67,15 +67,15 @@ static bool holds_axes(const struct ct_edge_info *e)
 }
 
 // Edges that define orientations, in an order that propagates them from known nodes to others.
-// turning: only edges with rotation.
-static int *spread_axes(struct ct_build *b, bool turning, bool *known, int *n)
+// with_rotation: only edges with rotation.
+static int *spread_axes(struct ct_build *b, bool with_rotation, bool *known, int *n)
 {
     const struct ct_graph g
         = {(int)b->topology->nnode, (int)b->topology->nedge, b->topology->wiring};
     bool *usable = CT_NEWN(b->arena, bool, b->topology->nedge + 1);
     for (size_t i = 0; i < b->topology->nedge; i++)
         usable[i] = holds_axes(&b->topology->edge[i])
-                 && (!turning || b->topology->edge[i].has_rotation);
+                 && (!with_rotation || b->topology->edge[i].has_rotation);
     int *order = CT_NEWN(b->arena, int, b->topology->nnode);
     *n = ct_graph_spread(b->arena, &g, usable, known, order);
     return order;
@@ -109,7 +109,7 @@ static ct_ex33 **upright_axes(struct ct_build *b)
 }
 
 // Out-of-plane component of the vector of an arm or a joint [m]. Coordinates do not change it.
-static ct_ex reach_out(struct ct_build *b, int edge, const ct_ex33 *U)
+static ct_ex normal_component(struct ct_build *b, int edge, const ct_ex33 *U)
 {
     const struct ct_edge_info *e = &b->topology->edge[edge];
     const ct_ex zero[CT_MAX_COORD] = {{0}};
@@ -144,7 +144,7 @@ static void find_layers(struct ct_build *b, struct ct_topology *t, ct_ex33 *cons
     const int *order = spread_axes(b, false, known, &n);
     for (int k = 0; k < n; k++) {
         const int tail = t->wiring[order[k]].tail, head = t->wiring[order[k]].head;
-        const ct_ex up = reach_out(b, order[k], U[tail]);
+        const ct_ex up = normal_component(b, order[k], U[tail]);
         if (placed[tail])
             t->layer[head] = ct_ex_add(b->x, t->layer[tail], up);
         else
@@ -170,7 +170,7 @@ static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *
         const int tail = t->wiring[i].tail, head = t->wiring[i].head;
         if (!holds_axes(e))
             continue;
-        const ct_ex end = ct_ex_add(b->x, t->layer[tail], reach_out(b, (int)i, U[tail]));
+        const ct_ex end = ct_ex_add(b->x, t->layer[tail], normal_component(b, (int)i, U[tail]));
         if (fabs(ct_ex_value(b->x, end, b->value) - ct_ex_value(b->x, t->layer[head], b->value))
             > allowed)
             return false;

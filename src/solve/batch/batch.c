@@ -368,11 +368,11 @@ void ct_lane_limit_turn(struct ct_batch *s, int l, double t, const double *y)
     struct ct_lane *lane = &s->lane[l];
     // Derived: the root of the unit round-off, and more
     const double small_part = 1e-6; // of the run, or [s]
-    const double turning = ct_memory_turning(s->m, ct_time_just_before(t, lane->events.pending),
-                                             y, small_part * fmin(1, lane->t1));
+    const double angle_rate = ct_memory_angle_rate(
+        s->m, ct_time_just_before(t, lane->events.pending), y, small_part * fmin(1, lane->t1));
     ct_evaluator_set(s->m, t, y);
-    if (turning > 0)
-        lane->control.h = fmin(lane->control.h, ct_lane_most_turn / turning / 2);
+    if (angle_rate > 0)
+        lane->control.h = fmin(lane->control.h, ct_lane_most_turn / angle_rate / 2);
 }
 
 static void start_take(struct ct_batch *s, int l, const struct ct_run_options *o)

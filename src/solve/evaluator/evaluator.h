@@ -96,7 +96,7 @@ struct ct_evaluator {
     double *
         at_rest; // > 0: g rests on zero, and is zero up to this times ct_switches_size (nswitch)
     bool has_rest;                  // one did when the sides were set
-    double *turned, *ahead, *moved; // for ct_memory_turning (nmemory, nq + nu + 1, nu)
+    double *turned, *ahead, *moved; // for ct_memory_angle_rate (nmemory, nq + nu + 1, nu)
     long evaluations;
     struct ct_program *added; // ct_evaluator_add_program
     enum ct_backend requested_backend;
@@ -222,6 +222,6 @@ void ct_memory_update(struct ct_evaluator *m);
 bool ct_memory_limits(const struct ct_equations *e);
 /// How fast those turn at t, y [rad/s], the largest, from a difference over dt. 0 where there are
 /// none.
-double ct_memory_turning(struct ct_evaluator *m, double t, const double *y, double dt);
+double ct_memory_angle_rate(struct ct_evaluator *m, double t, const double *y, double dt);
 
 #endif

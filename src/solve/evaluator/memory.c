@@ -73,7 +73,7 @@ bool ct_memory_limits(const struct ct_equations *e)
     return false;
 }
 
-double ct_memory_turning(struct ct_evaluator *m, double t, const double *y, double dt)
+double ct_memory_angle_rate(struct ct_evaluator *m, double t, const double *y, double dt)
 {
     const size_t n = m->e->nmemory;
     double most = 0, *now = m->turned;

@@ -105,7 +105,7 @@ bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_a
     s->is_assembled = is_assembled;
     enum ct_eval e = ct_run_rhs(r, t, r->y, r->dy);
     ct_switches_start(r->m, t, r->y, e == CT_EVAL_OK ? r->dy : NULL, NULL);
-    ct_run_note_turning(r, t, r->y);
+    ct_run_store_angle_rate(r, t, r->y);
     return ct_run_settle_switches(r, t, r->y, NULL) != CT_EVAL_FATAL;
 }
 

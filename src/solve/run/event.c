@@ -221,7 +221,7 @@ static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, c
 {
     ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
     set_sides(r, t, y, dy, crossed);
-    ct_run_note_turning(r, t, y);
+    ct_run_store_angle_rate(r, t, y);
     return CT_EVAL_OK;
 }
 
@@ -253,7 +253,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
         return e;
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
     ct_run_monitor_impulse(r, t, y);
-    ct_run_note_turning(r, t, y);
+    ct_run_store_angle_rate(r, t, y);
     // with an event of time the forces have changed at once, and a root may go back
     e = ct_run_settle_switches(r, t, y, is_time ? NULL : r->crossed);
     if (e == CT_EVAL_OK && m->nrow && r->o->step == 0)

@@ -68,7 +68,7 @@ static bool advance_to(struct ct_run *r, double t, double t1, double *y)
 {
     const double least = 1e-9; // Limit: part of the interval; shorter steps are an error
     double h = t1 - t, *next = r->next;
-    ct_run_note_turning(r, t, y);
+    ct_run_store_angle_rate(r, t, y);
     while (t < t1) {
         h = fmin(h, ct_run_longest_step(r));
         const double end = h >= t1 - t ? t1 : t + h;

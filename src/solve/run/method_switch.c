@@ -66,10 +66,10 @@ static double find_vibration_effect(struct ct_run *r, double t, const double *y)
         return 1;
     if (!ct_stiffness_find_vibration(r->stiffness, t, y, r->method->order, &e, &later))
         return 0;
-    const double felt
+    const double change
         = hypot(change_of_outputs(r, before, y, e), change_of_outputs(r, before, y, later));
     ct_evaluator_set(r->m, before, y);
-    return fmin(felt, 1);
+    return fmin(change, 1);
 }
 
 // No change of the method right after an event or near a singular configuration.
@@ -149,7 +149,8 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                              .end = io->t1,
                              .has_to_damp = r->stiffness->is_far && !r->stiffness->is_dead};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
-    const double pending = r->pending, turning = r->turning, t_turning = r->t_turning;
+    const double pending = r->pending, angle_rate = r->angle_rate,
+                 t_angle_rate = r->t_angle_rate;
     const struct ct_rank_monitor singular = *r->singular; // no configuration is near
     double *y = CT_NEWN(r->arena, double, r->ny), *input = CT_NEWN(r->arena, double, m->ninput);
     memcpy(y, r->y, r->ny * sizeof *y);
@@ -165,8 +166,8 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     r->ctx->ndiagnostic = ndiagnostic;
     r->ctx->nerror = nerror;
     r->pending = pending;
-    r->turning = turning;
-    r->t_turning = t_turning;
+    r->angle_rate = angle_rate;
+    r->t_angle_rate = t_angle_rate;
     *r->singular = singular;
     ct_rank_monitor_set_crossing(r->singular, false);
     memcpy(m->input, input, m->ninput * sizeof *input);

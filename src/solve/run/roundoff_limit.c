@@ -36,12 +36,12 @@ static double part_of(size_t i)
 }
 
 struct roundoff {
-    double *speed; // (nu) in so many round-off errors, after damping
-    double *share; // (nu) omega/(the largest omega)
+    double *speed;           // (nu) in so many round-off errors, after damping
+    double *frequency_share; // (nu) omega/(the largest omega)
     // (nu) factor of the accumulation: n errors of random sign add up to sqrt(n); n is the number
     // of steps whose errors are not damped yet
     double *sum;
-    double place; // largest, in so many round-off errors
+    double position; // largest, in so many round-off errors
 };
 
 // Of speeds, at r->y. omega is the root of the answer to a change of places; noise is omega times
@@ -55,26 +55,26 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
         return false;
     memcpy(f0, f, nu * sizeof *f);
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
-    e->place = 0;
+    e->position = 0;
     for (size_t i = 0; i < nq; i++) {
         const double change = perturbation_units * DBL_EPSILON / 2 * part_of(i) * fabs(r->y[i]);
-        e->place = fmax(e->place, change);
+        e->position = fmax(e->position, change);
         r->stage[i] += change;
     }
-    if (!(e->place > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
+    if (!(e->position > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
         return false;
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     for (size_t k = 0; k < nu; k++) {
-        e->speed[k] = sqrt(fabs(f[k] - f0[k]) * e->place);
-        e->share[k] = e->speed[k] / e->place;
-        most = fmax(most, e->share[k]);
+        e->speed[k] = sqrt(fabs(f[k] - f0[k]) * e->position);
+        e->frequency_share[k] = e->speed[k] / e->position;
+        most = fmax(most, e->frequency_share[k]);
         r->stage[nq + k] += e->speed[k];
     }
     if (ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
         return false;
     for (size_t k = 0; k < nu; k++) {
-        const double omega = e->share[k], damping = fabs(f[k] - f0[k]) / e->speed[k];
-        e->share[k] = most > 0 ? omega / most : 0;
+        const double omega = e->frequency_share[k], damping = fabs(f[k] - f0[k]) / e->speed[k];
+        e->frequency_share[k] = most > 0 ? omega / most : 0;
         e->speed[k] *= damping > omega ? omega / damping : 1;
     }
     return true;
@@ -82,22 +82,22 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
 
 // What is damped forgets the round-off errors of steps before 1/damping; each speed is changed
 // alone, as what turns answers with the others, undamped. f (nu) at r->y is in r->scratch.
-static bool remember(struct ct_run *r, double t, struct roundoff *e)
+static bool find_accumulation(struct ct_run *r, double t, struct roundoff *e)
 {
     const size_t nq = r->m->nq, nu = r->m->nu;
     const double steps = (double)r->report->explicit_steps;
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     for (size_t k = 0; k < nu; k++) {
-        double remembered = steps;
+        double undamped_steps = steps;
         if (e->speed[k] > 0) {
             r->stage[nq + k] += e->speed[k];
             if (ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
                 return false;
             r->stage[nq + k] = r->y[nq + k];
             const double damping = (r->scratch[k] - r->dy[nq + k]) / e->speed[k];
-            remembered /= fmax(1, damping * t);
+            undamped_steps /= fmax(1, damping * t);
         }
-        e->sum[k] = sqrt(fmax(remembered, 1));
+        e->sum[k] = sqrt(fmax(undamped_steps, 1));
     }
     return true;
 }
@@ -122,20 +122,20 @@ static bool evaluate_change(struct ct_run *r, double t, const double *d, const d
 // Sums of round-off errors, (8.18), that results feel as parts of their largest values (nresult,
 // out).
 static bool find_output_changes(struct ct_run *r, double t, const struct roundoff *e,
-                                const double *at, double *felt)
+                                const double *at, double *output_change)
 {
     const size_t nu = r->m->nu, n = r->e->nresult;
     double *d = CT_NEWN(r->arena, double, nu + 1), *u = CT_NEWN(r->arena, double, nu + 1),
            *speeds = CT_NEWN(r->arena, double, n + 1);
     for (size_t k = 0; k < nu; k++) {
-        d[k] = e->place * e->share[k] * e->sum[k];
-        u[k] = e->speed[k] * e->share[k] * e->sum[k];
+        d[k] = e->position * e->frequency_share[k] * e->sum[k];
+        u[k] = e->speed[k] * e->frequency_share[k] * e->sum[k];
     }
-    if (!evaluate_change(r, t, d, NULL, at, felt)
+    if (!evaluate_change(r, t, d, NULL, at, output_change)
         || !evaluate_change(r, t, NULL, u, at, speeds))
         return false;
     for (size_t i = 0; i < n; i++)
-        felt[i] = hypot(felt[i], speeds[i]);
+        output_change[i] = hypot(output_change[i], speeds[i]);
     return true;
 }
 
@@ -147,13 +147,14 @@ static double small_output(const struct ct_run *r)
 
 // The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing
 // but round-off is zero.
-static int find_worst(const struct ct_run *r, const double *felt, double *most)
+static int find_largest_change(const struct ct_run *r, const double *output_change,
+                               double *most)
 {
     int worst = -1;
     for (size_t i = 0; i < r->e->nresult; i++)
-        if (felt[i] > *most && felt[i] < 1 && r->largest[i] > small_output(r)
+        if (output_change[i] > *most && output_change[i] < 1 && r->largest[i] > small_output(r)
             && !ct_controlled_outputs_is_check(r->e, r->e->result[i].value)) {
-            *most = felt[i];
+            *most = output_change[i];
             worst = (int)i;
         }
     return worst;
@@ -161,36 +162,37 @@ static int find_worst(const struct ct_run *r, const double *felt, double *most)
 
 // Where no single round-off is too much, those of all steps may be. First as if nothing damped
 // them, which costs little.
-static void add_up(struct ct_run *r, double t, struct roundoff *e, const double *at,
-                   double wanted, struct ct_roundoff_limit *b)
+static void find_accumulated_roundoff(struct ct_run *r, double t, struct roundoff *e,
+                                      const double *at, double wanted,
+                                      struct ct_roundoff_limit *b)
 {
     const double steps = (double)r->report->explicit_steps;
-    double *felt = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
+    double *output_change = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
     for (size_t k = 0; k < r->m->nu; k++)
         e->sum[k] = sqrt(steps);
-    if (!find_output_changes(r, t, e, at, felt)
-        || (b->output < 0 && find_worst(r, felt, &most) < 0)
-        || !remember(r, r->report->stats.last_time, e)
-        || !find_output_changes(r, t, e, at, felt))
+    if (!find_output_changes(r, t, e, at, output_change)
+        || (b->output < 0 && find_largest_change(r, output_change, &most) < 0)
+        || !find_accumulation(r, r->report->stats.last_time, e)
+        || !find_output_changes(r, t, e, at, output_change))
         return;
     most = wanted;
     if (b->output < 0) {
-        b->output = find_worst(r, felt, &most);
+        b->output = find_largest_change(r, output_change, &most);
         b->one = most / sqrt(steps);
     }
-    if (b->output >= 0 && felt[b->output] > b->one)
-        b->sum = felt[b->output];
+    if (b->output >= 0 && output_change[b->output] > b->one)
+        b->sum = output_change[b->output];
 }
 
 // out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places
 // changed by `side` times many round-off errors.
-static void solve_perturbed(struct ct_run *r, double t, int side, size_t look, double *out)
+static void solve_perturbed(struct ct_run *r, double t, int side, size_t sample, double *out)
 {
     const struct ct_evaluator *m = r->m;
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     for (size_t i = 0; i < m->nq; i++)
-        r->stage[i]
-            += side * perturbation_units * DBL_EPSILON / 2 * part_of(i + look) * fabs(r->y[i]);
+        r->stage[i] += side * perturbation_units * DBL_EPSILON / 2 * part_of(i + sample)
+                     * fabs(r->y[i]);
     ct_evaluator_set(r->m, t, r->stage);
     ct_program_run(&r->m->solved, m->input);
     memcpy(out, m->solved.out, (2 * m->nu + m->nq) * sizeof *out);
@@ -207,33 +209,33 @@ struct cancellation {
 // left is round-off: the sum with weights 1, 1 and -2 has root 6 times one error.
 static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
 {
-    enum { LOOKS = 8 }; // Chosen: samples of a mean; its accuracy against their time
+    enum { SAMPLES = 8 }; // Chosen: samples of a mean; its accuracy against their time
     const size_t nu = r->m->nu, n = 2 * nu + r->m->nq, pivots = nu + r->m->nq;
-    double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *LOOKS),
+    double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *SAMPLES),
            *behind = CT_NEWN(r->arena, double, n);
     solve_perturbed(r, t, 0, 0, here);
-    for (size_t look = 0; look < LOOKS; look++) {
-        double *sum = ahead + look * n;
-        solve_perturbed(r, t, 1, look, sum);
-        solve_perturbed(r, t, -1, look, behind);
+    for (size_t sample = 0; sample < SAMPLES; sample++) {
+        double *sum = ahead + sample * n;
+        solve_perturbed(r, t, 1, sample, sum);
+        solve_perturbed(r, t, -1, sample, behind);
         for (size_t i = 0; i < n; i++)
             sum[i] += behind[i] - 2 * here[i];
         for (size_t k = 0; k < nu; k++)
             g->part[k]
-                = hypot(g->part[k], sum[pivots + k] / here[pivots + k] / sqrt(6 * LOOKS));
+                = hypot(g->part[k], sum[pivots + k] / here[pivots + k] / sqrt(6 * SAMPLES));
     }
     for (size_t k = 0; k < nu; k++)
         if (g->part[k] * fabs(here[k]) > g->part[g->worst] * fabs(here[g->worst]))
             g->worst = k;
     g->noise = ahead;
-    for (size_t look = 1; look < LOOKS; look++)
-        if (fabs(ahead[look * n + g->worst]) > fabs(g->noise[g->worst]))
-            g->noise = ahead + look * n;
+    for (size_t sample = 1; sample < SAMPLES; sample++)
+        if (fabs(ahead[sample * n + g->worst]) > fabs(g->noise[g->worst]))
+            g->noise = ahead + sample * n;
 }
 
 // The time for which an error of speed k lasts until damping removes it, at most t. f (nu) at r->y
 // is in r->scratch.
-static double remembered(struct ct_run *r, double t, size_t k)
+static double decay_time(struct ct_run *r, double t, size_t k)
 {
     const size_t nq = r->m->nq;
     const double change = perturbation_units * DBL_EPSILON * fabs(r->y[nq + k]);
@@ -253,7 +255,7 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
     const size_t nu = r->m->nu;
     struct cancellation g = {.part = CT_NEWN(r->arena, double, nu + 1)};
     double *u = CT_NEWN(r->arena, double, nu + 1),
-           *felt = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
+           *output_change = CT_NEWN(r->arena, double, r->e->nresult + 1), most = wanted;
     if (!r->e->solution || ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
         return;
     memcpy(r->scratch, r->dy + r->m->nq, nu * sizeof *r->scratch);
@@ -261,12 +263,12 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
     const size_t k = g.worst;
     if (!(g.part[k] > largest_cancellation && g.part[k] < 1) || g.noise[k] == 0)
         return;
-    const double error = g.part[k] * fabs(r->scratch[k]) * remembered(r, t, k) / 2;
+    const double error = g.part[k] * fabs(r->scratch[k]) * decay_time(r, t, k) / 2;
     for (size_t i = 0; i < nu; i++)
         u[i] = perturbation_units * error * g.noise[i] / g.noise[k];
-    if (!evaluate_change(r, t, NULL, u, at, felt))
+    if (!evaluate_change(r, t, NULL, u, at, output_change))
         return;
-    b->output = find_worst(r, felt, &most);
+    b->output = find_largest_change(r, output_change, &most);
     b->one = NAN;
     b->sum = b->output < 0 ? NAN : most;
 }
@@ -278,19 +280,20 @@ struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double hel
     const size_t nu = r->m->nu, n = r->e->nresult;
     struct roundoff e = {CT_NEWN(r->arena, double, nu + 1), CT_NEWN(r->arena, double, nu + 1),
                          CT_NEWN(r->arena, double, nu + 1), 0};
-    double *at = CT_NEWN(r->arena, double, n + 1), *felt = CT_NEWN(r->arena, double, n + 1);
+    double *at = CT_NEWN(r->arena, double, n + 1),
+           *output_change = CT_NEWN(r->arena, double, n + 1);
     struct ct_roundoff_limit b
         = {.output = -1, .one = held / fewest_roundoff_errors, .sum = NAN};
     if (r->output_error)
         b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, held,
                                                   small_output(r), &b.one);
     if (!find_roundoff(r, time, &e) || ct_run_results(r, t, r->y, at) != CT_EVAL_OK
-        || !evaluate_change(r, t, NULL, e.speed, at, felt))
+        || !evaluate_change(r, t, NULL, e.speed, at, output_change))
         return b;
-    const int slow = find_worst(r, felt, &b.one);
+    const int slow = find_largest_change(r, output_change, &b.one);
     b.output = slow >= 0 ? slow : b.output;
     if (r->report->explicit_steps > 0)
-        add_up(r, t, &e, at, wanted, &b);
+        find_accumulated_roundoff(r, t, &e, at, wanted, &b);
     if (b.output < 0)
         find_phase_error(r, t, at, wanted, &b);
     return b;

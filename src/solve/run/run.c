@@ -87,36 +87,37 @@ static double sensitive_output_error(void *user, double t, const double *y, cons
 // half a turn. Derived: steps aim at two thirds of what is accepted, and that is below pi.
 static const double aimed_turn = 2, most_turn = 3; // [rad]
 
-static double turning(struct ct_run *r, double t, const double *y)
+static double angle_rate(struct ct_run *r, double t, const double *y)
 {
     // Time over which angles are compared, part of the run, or [s].
     // Chosen: half the digits, for a difference of which no angle turns far.
     const double small_part = 1e-6;
     const double dt = small_part * (r->o ? fmin(1, r->o->duration) : 1);
-    return ct_memory_turning(r->m, ct_run_time_before_event(r, t), y, dt > 0 ? dt : small_part);
+    return ct_memory_angle_rate(r->m, ct_run_time_before_event(r, t), y,
+                                dt > 0 ? dt : small_part);
 }
 
-void ct_run_note_turning(struct ct_run *r, double t, const double *y)
+void ct_run_store_angle_rate(struct ct_run *r, double t, const double *y)
 {
-    r->turning = turning(r, t, y);
-    r->t_turning = t;
+    r->angle_rate = angle_rate(r, t, y);
+    r->t_angle_rate = t;
 }
 
 double ct_run_longest_step(void *user)
 {
     const struct ct_run *r = user;
-    return r->turning > 0 ? aimed_turn / r->turning : INFINITY;
+    return r->angle_rate > 0 ? aimed_turn / r->angle_rate : INFINITY;
 }
 
 bool ct_run_turns_are_followed(struct ct_run *r, double t, const double *y)
 {
     if (!r->has_turns)
         return true;
-    const double now = turning(r, t, y);
-    if ((t - r->t_turning) * fmax(now, r->turning) > most_turn)
+    const double now = angle_rate(r, t, y);
+    if ((t - r->t_angle_rate) * fmax(now, r->angle_rate) > most_turn)
         return false;
-    r->turning = now;
-    r->t_turning = t;
+    r->angle_rate = now;
+    r->t_angle_rate = t;
     return true;
 }
 
@@ -124,7 +125,7 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
                              bool is_across)
 {
     struct ct_run *r = user;
-    const double turning_before = r->turning, t_before = r->t_turning;
+    const double angle_rate_before = r->angle_rate, t_before = r->t_angle_rate;
     if (!r->m->nrow && !r->has_turns) { // most often
         if (r->output_error)
             ct_output_error_accept(r->output_error);
@@ -135,8 +136,8 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     r->singular->retains_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
     const struct ct_rank_monitor_step step = {r->o->step > 0, is_across};
     if (!ct_rank_monitor_predict(r->singular, t, y, dy, &step)) {
-        r->turning = turning_before;
-        r->t_turning = t_before;
+        r->angle_rate = angle_rate_before;
+        r->t_angle_rate = t_before;
         return CT_EVAL_RETRY;
     }
     if (r->output_error)
@@ -752,7 +753,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
         return false;
     ct_switches_start(r->m, 0, r->y, r->dy, NULL);
     ct_run_monitor_start(r, 0, r->y);
-    ct_run_note_turning(r, 0, r->y);
+    ct_run_store_angle_rate(r, 0, r->y);
     if (ct_run_settle_switches(r, 0, r->y, NULL) == CT_EVAL_FATAL)
         return false;
     if (!ct_run_start_steps(r))

@@ -51,8 +51,8 @@ struct ct_run {
     struct ct_singular_dense_output *singular_dense_output;
     struct ct_input_sampling input_sampling;
     double pending; // time of the next event; INFINITY: there is none
-    double turning,
-        t_turning; // rate of angles that are counted over turns [rad/s], and its time
+    double angle_rate,
+        t_angle_rate; // rate of angles that are counted over turns [rad/s], and its time
     double t0; // time of the first step; before 0 if the start is near a singular configuration
     bool started;
     // the choice of the method
@@ -98,7 +98,7 @@ double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y);
 
 /// Angles that are counted over several turns may change by less than half a turn in a step: store
 /// their rate at t, y.
-void ct_run_note_turning(struct ct_run *r, double t, const double *y);
+void ct_run_store_angle_rate(struct ct_run *r, double t, const double *y);
 /// The longest step that this allows.
 double ct_run_longest_step(void *user);
 /// False if the step to t, y was too long for it; else store the rate there.

@@ -175,12 +175,12 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     move(p, scratch, way);
     evaluate(p);
     find_rank(p, 0);
-    const double beside = fabs(p->A[0]);
+    const double row_size = fabs(p->A[0]);
     size_rows(p, p->x);
     p->largest = ct_vector_largest(p->x, p->m->nrow);
     memcpy(p->y, y, ny * sizeof *y);
     evaluate(p);
-    return find_rank(p, fmax(rank_loss_tolerance * beside, p->m->rank_tolerance));
+    return find_rank(p, fmax(rank_loss_tolerance * row_size, p->m->rank_tolerance));
 }
 
 // Rank of J near y, at the largest distance at which it is above `here`; if there is none,
