@@ -1,4 +1,4 @@
-// Members come and go: see batch.h. What happens to them is in the other files of batch_internal.h.
+// Creation of a batch, and start and end of its members; see batch.h and batch_internal.h.
 #include "solve/batch/batch_internal.h"
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
@@ -69,7 +69,7 @@ const char *ct_batch_obstacle(const struct ct_run_options *o)
     return NULL;
 }
 
-// Beyond their ends tables have no values: a run alone says so.
+// Do all tables reach to the end of the run? If not a single run reports the error.
 static bool tables_reach(const struct ct_exs *x, double end)
 {
     for (size_t i = 0; i < x->ntable; i++)
@@ -192,8 +192,8 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 
 // ---- forms --------------------------------------------------------------------------------------
 
-// Large systems have very many choices, and take long to get a form: only that of the start has
-// one.
+// Large systems have very many choices of rows and columns, and a solver takes long to compile:
+// only the choice of the start gets one.
 static bool is_allowed(const struct ct_batch *s)
 {
     // Chosen: time to compile against time to run.
@@ -204,7 +204,8 @@ static bool is_allowed(const struct ct_batch *s)
                 && s->solver[0]->solver->operations < LARGE_PROGRAM));
 }
 
-// Made where the file's own values start, a form is the same whoever needs it first.
+// The order of pivots is sought at the start with the file's own values, so that the solver does
+// not depend on the member that needs it first.
 static struct ct_lane_solver *make_solver(struct ct_batch *s, const struct ct_partition_sets *p)
 {
     struct ct_evaluator *m = s->m;
@@ -221,7 +222,7 @@ static struct ct_lane_solver *make_solver(struct ct_batch *s, const struct ct_pa
     f->solver
         = ct_solver_create(s->arena, m, p, ct_partition_operations(s->partition), NULL, NULL);
     if (f->solver
-        && f->solver->kind == &ct_solver_symbolic_kkt) { // lanes judge by B and its pivots
+        && f->solver->kind == &ct_solver_symbolic_kkt) { // lanes need B and its pivots
         const double cost = f->solver->cost;
         ct_solver_destroy(m, f->solver);
         f->solver
@@ -236,8 +237,8 @@ static struct ct_lane_solver *make_solver(struct ct_batch *s, const struct ct_pa
         make_program(s, &f->checked, f->code.checked);
         make_program(s, &f->closing, f->code.closing);
         prepare_solver(f, s->input);
-        s->solver_has_power = f->code.has_power; // a matter of the equations
-    } else { // none, or one of another kind: what has been tried is not tried again
+        s->solver_has_power = f->code.has_power; // depends on the equations only
+    } else {                                     // no symbolic solver: not tried again
         f->solver = CT_NEW(s->arena, struct ct_solver);
         f->solver->arena = s->arena;
         ct_solver_set_partition(f->solver, p);
@@ -300,7 +301,7 @@ bool ct_lane_choose(struct ct_batch *s, int l)
     return true;
 }
 
-// Of the member that the run has been started with.
+// Choice of rows and columns of the member with which the run was started.
 static void compare_at_start(struct ct_batch *s, int l)
 {
     for (size_t i = 0; i < s->nsolver; i++)
@@ -342,7 +343,7 @@ static void take_method(struct ct_batch *s, const struct ct_method *method)
 
 // ---- members come and go ------------------------------------------------------------------------
 
-// The step to begin with, from y and its derivative in one_dy.
+// First step size, from y and its derivative in one_dy.
 static bool first_step(struct ct_batch *s, int l, const double *y)
 {
     struct ct_lane *lane = &s->lane[l];
@@ -405,8 +406,8 @@ static void start_lane(struct ct_batch *s, struct ct_lane *lane, const struct ct
     lane->nstiff = lane->nother = 0;
 }
 
-// The member that the run has been started with into lane l; also into lanes that never had one,
-// which run beside it for finite numbers.
+// Copies the member with which the run was started into lane l, and into lanes that never had one,
+// so that their numbers are finite.
 static void fill(struct ct_batch *s, int l, const double *y)
 {
     for (int i = 0; i < W; i++)
@@ -421,12 +422,11 @@ static void fill(struct ct_batch *s, int l, const double *y)
     prepare_all(s);
 }
 
-// Are there rows that depend on others at the start and not elsewhere? Such a start is left alone.
+// Are rows dependent at the start only? Such a member is run alone.
 static bool is_singular_start(const struct ct_batch *s)
 {
     // Derived: half the digits
-    const double changed
-        = 1e-6; // rows that see speeds by round-off alone make a projection change them
+    const double changed = 1e-6; // below this a projection changes speeds by round-off
     const struct ct_partition *partition = ct_run_partition(s->run);
     const double *u = ct_run_assembled(s->run) + s->nq, *now = ct_run_state(s->run) + s->nq;
     const double largest = ct_vector_largest(u, s->m->nu);

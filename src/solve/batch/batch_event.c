@@ -13,7 +13,7 @@ enum { MOST_TRIES = CT_EVENT_CORRECTIONS + 1 };
 
 // ---- root functions -----------------------------------------------------------------------------
 
-// In lanes, of which one is looked at.
+// Evaluated for all lanes; one of them is used.
 static enum ct_eval root(void *user, double t, const double *y, double *g)
 {
     const struct ct_lane_user *of = user;
@@ -51,7 +51,7 @@ static void cubic(const struct ct_problem *p, double h, double theta, const doub
     ct_stepper_hermite(out, theta, h, y, d->dy, y1, d->dend, p->ny);
 }
 
-// What all lanes are asked side by side follows what the watch knows of this one.
+// Copies the state of event location of this lane to the arrays for all lanes.
 static void share(struct ct_batch *s, int l)
 {
     const struct ct_event_location *w = &s->lane[l].events.location;
@@ -221,7 +221,7 @@ static enum ct_lane_found refine(struct ct_batch *s, int l)
         v->h += dt;
         return CT_LANE_AGAIN;
     }
-    lane->error = v->error; // that of the whole step is what step control goes by
+    lane->error = v->error; // step control uses the error of the whole step
     return settle(s, l, lane->h, true);
 }
 
@@ -242,7 +242,8 @@ void ct_lane_plan_again(struct ct_batch *s, int l)
 
 // ---- the event ----------------------------------------------------------------------------------
 
-// As the run alone does it. False: that has to say what is wrong, or to watch switches at rest.
+// Handles the event as a single run does. False: the member must be run alone, which reports the
+// error or treats switches at rest.
 static bool handle(struct ct_batch *s, int l, bool is_time)
 {
     struct ct_lane *lane = &s->lane[l];

@@ -26,15 +26,15 @@ static inline mask may_dip(vec a, vec b, vec c)
          & (2 * bend * b - slope * slope <= 2 * ct_event_location_margin * bend * bend);
 }
 
-// Lanes of `wanted` in which root functions may have changed sign, looked at where event_location.c
-// looks; those with values that are not finite are taken out of it.
+// Lanes of `wanted` in which root functions may have changed sign, evaluated at the points of
+// event_location.c. Lanes with values that are not finite are removed from it.
 static inline set suspects(struct ct_batch *s, vec end, set *wanted)
 {
     // Limit: of the search within a step
     enum { PROBES = 4 };
     // Derived: half the digits of g
     const double ahead
-        = 1e-6; // of the way from one to the next: what is about to vanish is searched for, too
+        = 1e-6; // of the distance between points: a root just behind a point is searched for, too
     vec odd = {0};
     mask hit = {0};
     copy(s->g, s->g0, s->nroot);
@@ -61,8 +61,8 @@ static inline set suspects(struct ct_batch *s, vec end, set *wanted)
     return *wanted & (set_of(hit) | s->unsettled);
 }
 
-// The tries of these lanes that may be accepted; those that are taken again, to an event, come into
-// `again`.
+// Returns the lanes whose steps may be accepted; those whose steps are repeated up to an event are
+// added to `again`.
 static inline set locate_events(struct ct_batch *s, vec end, set wanted, set *again)
 {
     *again = 0;

@@ -1,4 +1,4 @@
-// What the files of lanes share: numbers of all lanes at once, and the lanes themselves. See
+// Data that the files of this folder share: values of all lanes, and the state of each lane. See
 // batch.h.
 //
 //     batch.c        members come and go
@@ -19,11 +19,11 @@
 
 enum { W = CT_LANES };
 
-// One number of each lane; arenas align to 16 bytes only.
+// One value of each lane; arenas align to 16 bytes only.
 typedef double vec __attribute__((vector_size(W * sizeof(double)), aligned(8), may_alias));
-// Bits of such: all or none where something holds.
+// A mask by lane: all bits set, or none.
 typedef long long mask __attribute__((vector_size(W * sizeof(long long)), may_alias));
-// Some of the lanes: bit l is lane l.
+// A set of lanes: bit l is lane l.
 typedef unsigned set;
 
 // A generated program for all lanes at once.
@@ -40,10 +40,10 @@ struct ct_lane_outputs {
     struct ct_lane_program program; // empty if there are none
     bool needs_lam;
     vec *at, *probed;                      // (n)
-    double *one_at, *one_probed, *one_off; // of a single lane
+    double *one_at, *one_probed, *one_off; // of one lane
 };
 
-// A closed form for one choice of rows and columns, and the lanes that have made it.
+// The symbolic solver of one choice of rows and columns, and the lanes with that choice.
 struct ct_lane_solver {
     struct ct_solver *solver;
     struct ct_solver_code code;
@@ -51,14 +51,14 @@ struct ct_lane_solver {
     set lanes;
 };
 
-// The stages of a method without the zeros of its table: sum over i of a[i] k[at[i]].
+// A stage of a method without the zeros of its tableau: sum over i of a[i] k[at[i]].
 struct ct_lane_sum {
     int n;
     size_t at[CT_MOST_DENSE_STAGES]; // in the vectors of all stages, as doubles
     double a[CT_MOST_DENSE_STAGES];
 };
 
-// What is taken over runs, by the functions that are its outputs; see integrate/take.h.
+// Extreme values and other functions over a run; see integrate/take.h.
 struct ct_lane_takes {
     size_t n;                       // 0: nothing
     struct ct_lane_program program; // (n)
@@ -70,71 +70,72 @@ struct ct_lane_takes {
     double *one; // values of one lane  (n)
 };
 
-// A lane as the user of a problem: its root functions.
+// A lane as user data of a problem: its root functions.
 struct ct_lane_user {
     struct ct_batch *s;
     int lane;
 };
 
-// Events of one member. A step with a state event is taken again, to where the root function should
-// vanish, until it does.
+// Events of one member. A step with a state event is repeated up to the estimated root until the
+// root function vanishes there.
 struct ct_lane_events {
     struct ct_run_options options;
     struct ct_arena *arena; // of the member's times
-    double *time;           // of events by time alone  (ntime)
+    double *time;           // of time events (ntime)
     size_t ntime;
     double pending; // the next of them; INFINITY
     struct ct_input_sampling input_sampling;
     struct ct_problem problem;
     struct ct_lane_user user;
     struct ct_event_location location;
-    double *dy, *dend; // of the step that is searched  (ny)
-    double whole;      // its length; 0: none is searched
+    double *dy, *dend; // of the step in which a root is located (ny)
+    double whole;      // its length; 0: no root is located
     double whole_end, error;
     double h;      // of the next try
     int tries;     // of it
-    bool is_event; // a state event ends this try
+    bool is_event; // a state event ends this step
 };
 
-// What belongs to one member and is not computed in lanes.
+// Data of one member that is not computed in lanes.
 struct ct_lane {
     enum ct_lane_state state;
     double t1; // end of the run
     struct ct_step_control control;
-    double h;       // of this try as step control has planned it
-    double end;     // time at the end of this try
+    double h;       // of this step as step control planned it
+    double end;     // time at the end of this step
     double error;   // of it
     double longest; // step
     double scale;   // as in partition.h
     double *unit;
     bool has_units;
     double kappa_chosen, sigma_chosen, sigma_best;
-    double pivot_last, pivot_time; // see foresee_singular
-    struct ct_strength strength;   // of its form
+    double pivot_last, pivot_time; // see predict_singular
+    struct ct_strength strength;   // of its solver
     struct ct_output_error_record outputs[CT_OUTPUT_KINDS];
     int *row, *dependent, *independent; // as in partition.h
     struct ct_periodic_tolerance periodic;
-    struct ct_tolerance tolerance; // before repeats count
+    struct ct_tolerance
+        tolerance; // before it is tightened for many periods (periodic_tolerance.h)
     double least_rtol;
     long steps;
     struct ct_lane_events events;
-    bool is_watched; // for stiffness
+    bool is_watched; // stiffness detection is on
     int nstiff, nother;
 };
 
 struct ct_batch {
     const struct ct_equations *e;
-    struct ct_run *run; // for what is done one by one
+    struct ct_run *run; // for computations of one lane at a time
     struct ct_evaluator *m;
     struct ct_partition *partition;
     struct ct_arena *arena;
     int nq, nu, nrow, ny, rank;
     bool is_solved, has_power, needs_lam, has_quaternion, is_used; // needs_lam: the power does
-    int whose; // the lane whose parameters the run has for matrices; -1: not known
+    int whose; // the lane whose parameters the run has; -1: not known
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
     struct ct_lane_outputs output[CT_OUTPUT_KINDS];
     struct ct_lane_takes take;
-    struct ct_lane_program root; // of all modes
+    struct ct_lane_program root; // of all switches
     struct ct_lane lane[W];
     struct ct_batch_counts count;
     const struct ct_method *method;
@@ -142,28 +143,28 @@ struct ct_batch {
     const struct ct_groups *groups;          // of states, for the error
     vec *group_size;
     int *coordinate_of; // of the coordinate that a speed moves (nu); without quaternions
-    // closed forms: their orders of pivots are those of the file's own values
+    // symbolic solvers; their orders of pivots are those of the file's own values
     struct ct_lane_solver **solver;
     size_t nsolver, solver_cap;
-    double *origin;        // the evaluator's input there; NULL: there are no forms
-    bool solver_has_power; // beside the accelerations
-    set needs_refinement;  // the last check found the form not good enough
+    double *origin;        // the evaluator's input there; NULL: there are no symbolic solvers
+    bool solver_has_power; // in addition to the accelerations
+    set needs_refinement;  // the last check found the solver not accurate enough
     set near_singular; // near a singular configuration: pivots are sought at every evaluation,
     set alike;         // if strength and sigma are not known to fall alike
-    vec low, high, strength; // of the forms: sound between, and now
-    vec slope;               // sigma for their strength where both fall alike, else 0
+    vec low, high, strength; // of solvers: bounds of validity, and the present strength
+    vec slope;               // sigma over strength where both fall alike, else 0
     vec kappa, sigma;        // as in partition.h
     vec pivot_most;          // the largest sigma so far
-    vec t, h, joint;         // of this try: from, how far, the error of its states
+    vec t, h, joint;         // of this step: start, length, error of its states
     vec before;         // the last time of evaluation before the next event by time; INFINITY
-    int nroot;          // state modes
-    const int *root_of; // (nroot) their places among the modes
+    int nroot;          // switches of the state
+    const int *root_of; // (nroot) their indices among the switches
     vec *side, *g0,
         // of them: see event_location.h, at the start and, extrapolated a little, at the end of the
         // step
         *g;
     vec *g_before;  // and a probe before that
-    set unsettled;  // lanes in which one rests on zero or has just fired
+    set unsettled;  // lanes in which a root function rests on zero or has just changed sign
     vec rtol, atol; // of the steps
     vec *input;
     // states (ny), stages (ny x stages), with those of the interpolant
@@ -175,7 +176,7 @@ struct ct_batch {
 
 static const set ct_all_lanes = (1u << W) - 1;
 
-// Lanes that cannot use their forms now.
+// Lanes that cannot use their symbolic solvers now.
 static inline set ct_batch_lanes_without_solver(const struct ct_batch *s)
 {
     return s->needs_refinement | (s->near_singular & ~s->alike);
@@ -198,52 +199,53 @@ static inline void ct_lane_run(struct ct_lane_program *p, const vec *input)
 
 // ---- batch.c ------------------------------------------------------------------------------------
 
-/// Take numbers (n) of a lane out of vectors, or put them there.
+/// Copy numbers (n) of a lane out of vectors, or into them.
 void ct_lane_take(double *out, const vec *v, int lane, size_t n);
 void ct_lane_put(vec *v, int lane, const double *in, size_t n);
-/// The lane takes the choice of rows and columns that the run has now, and the form for it. False
-/// if there is none.
+/// Copies the run's choice of rows and columns to the lane and selects its solver. False if there
+/// is none.
 bool ct_lane_choose(struct ct_batch *s, int lane);
-/// The next step of the lane, which the run has become at t, y, follows what turns.
+/// Limits the next step of the lane, whose state the run has at t, y, so that followed angles stay
+/// within half a turn.
 void ct_lane_limit_turn(struct ct_batch *s, int lane, double t, const double *y);
 
 // ---- batch_event.c ------------------------------------------------------------------------------
 
-/// Room for the events of all lanes.
+/// Allocates the data of events of all lanes.
 void ct_lane_make_events(struct ct_batch *s);
-/// The run has been started with the member of this lane, which has these options: the sides it is
-/// on. False: the motion cannot begin.
+/// Sets the sides of switches of this lane, with whose member and options the run was started.
+/// False: the motion cannot begin.
 bool ct_lane_begin_events(struct ct_batch *s, int lane, const struct ct_run_options *o);
 /// At t, y, where a member begins or an event has put it. False: roots cannot be evaluated.
 bool ct_lane_take_bearings(struct ct_batch *s, int lane, double t, const double *y,
                            const double *dy);
-/// Where steps must end next.
+/// Plans the time at which steps must end next.
 double ct_lane_stop(const struct ct_lane *lane);
-/// A try of a step that has an event in it.
+/// A step with an event in it.
 void ct_lane_plan_again(struct ct_batch *s, int lane);
-/// The try ends in s->end at lane->end. It may be accepted, then with an event at its end if
-/// events.is_event; it is refused; or it is taken again, to an event.
+/// The step ends in s->end at lane->end. It is accepted (with an event at its end if
+/// events.is_event), rejected, or repeated up to an event.
 enum ct_lane_found {
     CT_LANE_GOES_ON,
     CT_LANE_REFUSED,
     CT_LANE_AGAIN
 } ct_lane_search(struct ct_batch *s, int lane);
-/// The lane has come to t, y, which ends the try: what the event there changes, if there is one. It
-/// may be given up.
+/// Handles the event at t, y, the end of an accepted step, if there is one. The lane may be given
+/// up.
 void ct_lane_pass(struct ct_batch *s, int lane);
 
 // ---- batch_single.c -----------------------------------------------------------------------------
 
-/// The run gets parameters, memories and choices of a lane, and its state y at t; for matrices, or
-/// for everything.
+/// Copies parameters, memories, choices and the state y at t of a lane to the run, for evaluation
+/// by matrices, or completely.
 void ct_lane_load_run_whole(struct ct_batch *s, int lane, double t, const vec *y);
 void ct_lane_load_run(struct ct_batch *s, int lane, double t, const vec *y);
-/// dy by matrices at (t, y), the power if forms have it, and what they say of kappa and sigma.
-/// False: not there.
+/// dy by matrices at (t, y), the power if solvers have it, and kappa and sigma. False if it cannot
+/// be computed.
 bool ct_lane_solve(struct ct_batch *s, int lane, double t, const vec *y, vec *dy);
-/// The lane of y onto the constraints at t by matrices; may give it up.
+/// Projects y of the lane onto the constraints at t by matrices; may give the lane up.
 bool ct_lane_project(struct ct_batch *s, int lane, double t, vec *y);
-/// Rows and columns anew at (t, y).
+/// Chooses rows and columns anew at (t, y).
 void ct_lane_renew(struct ct_batch *s, int lane, double t, const vec *y);
 /// ct_partition_pivot at (t, y).
 double ct_lane_pivot(struct ct_batch *s, int lane, double t, const vec *y);
@@ -256,7 +258,8 @@ void ct_lane_find_constrained_outputs(struct ct_batch *s, enum ct_output_kind ki
 /// alone, where steps are held back: less than a fifth of a turn, as the step that follows may be
 /// five times as long.
 static const double ct_lane_most_turn = 1;
-/// The strength of the lane's form belongs to its sigma, found by matrices just now.
+/// Records the strength of the lane's solver together with its sigma, which was just computed by
+/// matrices.
 void ct_lane_compare(struct ct_batch *s, int lane);
 void ct_lane_give_up(struct ct_batch *s, int lane);
 

@@ -1,5 +1,5 @@
-// Closed forms in lanes: accelerations, projections, and whether the forms are still good; see
-// partition_solver.c for the same of a run alone. Included by batch_step.c.
+// Symbolic solvers in lanes: accelerations, projections and checks of the solvers; see
+// partition_solver.c for a single run. Included by batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_SOLVER_H
 #define CT_SOLVE_BATCH_BATCH_SOLVER_H
 
@@ -14,7 +14,7 @@ static inline void set_input(struct ct_batch *s, vec t, const vec *y)
 
 // ---- accelerations ------------------------------------------------------------------------------
 
-// Strengths from pivots in the lanes `here`; where the form is sound there.
+// Strengths from pivots in the lanes `here`. Returns the lanes whose solver is sound.
 static inline mask judge_pivots(struct ct_batch *s, const struct ct_solver_code *c,
                                 const vec *pivot, set here)
 {
@@ -28,8 +28,8 @@ static inline mask judge_pivots(struct ct_batch *s, const struct ct_solver_code 
     return is_sound;
 }
 
-// q', u' into dy by the forms of lanes in `wanted`, and the power where they have it. Returns the
-// lanes where they are sound.
+// q', u' into dy by the solvers of lanes in `wanted`, and the power if they have it. Returns the
+// lanes whose solver is sound.
 static inline set solve_by_solvers(struct ct_batch *s, vec *dy, set wanted)
 {
     const set able = wanted & ~ct_batch_lanes_without_solver(s);
@@ -47,8 +47,7 @@ static inline set solve_by_solvers(struct ct_batch *s, vec *dy, set wanted)
         for (size_t i = 0; i < c->nfree; i++)
             is_sound &= inertia[i] > 0;
         const set good = set_of(is_sound & judge_pivots(s, c, pivot, here));
-        if (good == wanted
-            || !done) { // of other lanes nobody takes anything, or they come later
+        if (good == wanted || !done) { // results of other lanes are not used, or computed later
             copy(dy, rate, s->nq);
             copy(dy + s->nq, a, s->nu);
             dy[s->ny - 1] = c->has_power ? *power : (vec){0};
@@ -114,7 +113,7 @@ static inline void check_solvers(struct ct_batch *s, set wanted)
 
 // ---- projection ---------------------------------------------------------------------------------
 
-// Phi, v and corrections by the form. Returns lanes of `here` where it is sound.
+// Phi, v and corrections by the solver. Returns the lanes of `here` where it is sound.
 static inline set evaluate_closing(struct ct_batch *s, struct ct_lane_solver *f, vec t,
                                    const vec *y, set here)
 {
@@ -149,8 +148,8 @@ static inline void add_speeds(struct ct_batch *s, vec *y, const vec *du, set lan
         y[s->nq + k] = choose(m, y[s->nq + k] + du[k], y[s->nq + k]);
 }
 
-// Lanes whose correction of speeds is so large that its round-off counts; else one is enough, as v
-// is linear in u.
+// Lanes whose correction of speeds is so large that its round-off matters; else one correction is
+// enough, since v is linear in u.
 static inline set large_speeds(const struct ct_batch *s, const vec *du)
 {
     vec most = {0};
@@ -159,8 +158,8 @@ static inline set large_speeds(const struct ct_batch *s, const vec *du)
     return set_of(most > ct_small_change);
 }
 
-// What a Newton iteration does next in each active lane: arrived, lost (also taken out of
-// `wanted`), or another step, which is what is returned.
+// Next step of a Newton iteration in each active lane: converged, diverged (removed from `wanted`),
+// or another correction. Returns the lanes with another correction.
 static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *before,
                         set active, set *wanted)
 {
@@ -183,8 +182,8 @@ static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *be
     return active;
 }
 
-// Lanes of `formed` onto the constraints by the form. Returns those that are there; the others go
-// on by matrices, or are taken out of `wanted` when they are lost.
+// Projects the lanes of `formed` onto the constraints by the solver. Returns the converged ones;
+// the others continue by matrices, or are removed from `wanted` if they diverge.
 static inline set project_by_solver(struct ct_batch *s, struct ct_lane_solver *f, vec t, vec *y,
                                     set formed, set *wanted)
 {

@@ -1,6 +1,6 @@
-// A try in all lanes at once: see batch.h. The steps are those of integrate/driver.c, the
-// derivative and the projection those of run.c and projection.c, so that a lane ends where a run
-// alone ends, to round-off.
+// One step in all lanes at once: see batch.h. Steps are those of integrate/driver.c, derivative and
+// projection those of run.c and projection.c, so that the result of a lane is that of a single run,
+// to round-off.
 #include "integrate/stepper.h"
 #include "solve/batch/batch_event_location.h"
 #include "solve/batch/batch_take.h"
@@ -9,14 +9,14 @@
 #include <limits.h>
 #include <math.h>
 #include <string.h>
-// Where h times the rate of the fastest motions is beyond the first in so many steps, with fewer
-// than so many others between, the run is stiff; values of the program DOPRI5 for the stage before
-// the last.
+// The run is stiff if h times the rate of the fastest motion exceeds the first value in so many
+// steps, with fewer than so many other steps between. Values of the program DOPRI5 for the stage
+// before the last.
 // Definition: boundary of stability of DOPRI5 on the negative real axis, key hairer1996
 static const double stiff_step = 3.25;
 // Definition: of that test, key hairer1996
 enum { MOST_STIFF = 15, FEW_OTHERS = 6 };
-// Limit: the member is left to a single run then
+// Limit: beyond it the member is run alone
 enum { MOST_STEPS = 100000000 };
 
 // ---- projection, as in projection.c -------------------------------------------------------------
@@ -31,7 +31,8 @@ static void normalise(struct ct_batch *s, vec *y, set lanes)
         }
 }
 
-// Lanes for which sigma was found by matrices just now; their forms' strength at the same place.
+// Records, for lanes whose sigma was just computed by matrices, the strength of their solvers at
+// the same state.
 static void compare_solvers(struct ct_batch *s, vec t, const vec *y, set lanes)
 {
     const vec sigma = s->sigma;
@@ -54,8 +55,8 @@ static void renew(struct ct_batch *s, vec t, const vec *y, set lanes)
             ct_lane_renew(s, l, t[l], y);
 }
 
-// Lanes of y in `wanted` onto the constraints at t. Returns those that could be; some may be given
-// up.
+// Projects y of the lanes in `wanted` onto the constraints at t. Returns those that succeeded; some
+// may be given up.
 static set project(struct ct_batch *s, vec t, vec *y, set wanted)
 {
     normalise(s, y, wanted);
@@ -75,8 +76,8 @@ static set project(struct ct_batch *s, vec t, vec *y, set wanted)
 
 // ---- the derivative, as in run.c ----------------------------------------------------------------
 
-// dy, finite, but for the power, which some forms know, at the input, (t, y): by forms where they
-// are sound, else by matrices, one by one.
+// dy without the power (which some solvers give) at the input, (t, y): by solvers where they are
+// sound, else by matrices, one lane at a time. Only finite values.
 static set solve(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
 {
     const set done = solve_by_solvers(s, dy, wanted), rest = wanted & ~done;
@@ -89,8 +90,8 @@ static set solve(struct ct_batch *s, vec t, const vec *y, vec *dy, set wanted)
     return done | found;
 }
 
-// Multipliers into the input, for the power of motions and for outputs. Forms know those of kept
-// rows.
+// Multipliers into the input, for the power of motions and for outputs. Solvers give those of the
+// retained rows.
 static void find_multipliers(struct ct_batch *s, vec t, const vec *y, const vec *dy, set wanted)
 {
     const int n = s->nu + s->rank;
@@ -212,7 +213,7 @@ static void find_weights(struct ct_batch *s)
 // Root mean square of e against the tolerance.
 static vec norm(const struct ct_batch *s, const vec *e)
 {
-    const int n = s->has_power ? s->ny : s->ny - 1; // the work is as good as the states
+    const int n = s->has_power ? s->ny : s->ny - 1; // the work has the accuracy of the states
     vec sum = {0};
     for (int i = 0; i < n; i++) {
         const vec part = e[i] * s->weight[i];
@@ -244,8 +245,8 @@ static const vec *outputs(struct ct_batch *s, enum ct_output_kind kind, vec t, c
     return o->program.out;
 }
 
-// The error of this lane's outputs, as in output_error.c: off (n) at y + e. Are round-off errors,
-// `probed`, known now?
+// The error of this lane's outputs, as in output_error.c, from values off (n) at y + e. probed:
+// values for the measurement of round-off, if it is made now.
 static double judge_lane(struct ct_batch *s, enum ct_output_kind kind, int l, const vec *off,
                          bool is_probed)
 {
@@ -265,7 +266,7 @@ static double judge_lane(struct ct_batch *s, enum ct_output_kind kind, int l, co
                                     o->one_off, &tolerance, s->joint[l]);
 }
 
-// What errors e of the states at the end of the step mean for outputs, in these lanes: as
+// Errors of outputs by errors e of the states at the end of the step, in these lanes: as
 // ct_output_error_of_step.
 static void judge_outputs(struct ct_batch *s, enum ct_output_kind kind, const vec *e, set lanes)
 {
@@ -293,7 +294,7 @@ static void judge_outputs(struct ct_batch *s, enum ct_output_kind kind, const ve
         const double error = judge_lane(s, kind, l, off, is_probed);
         if (is_probed || error <= 1) {
             lane->error = fmax(lane->error, error);
-        } else { // no step is refused for its round-off
+        } else { // no step is rejected for its round-off
             lane->outputs[kind].skip = lane->outputs[kind].without_measurement = 0;
             again |= 1u << l;
         }
@@ -312,8 +313,8 @@ static vec join(vec e5, vec e3)
     return choose(e5 > 0, e5 / root, e5);
 }
 
-// Lanes of `wanted` whose outputs of this kind are to be looked at now; the others' error is
-// foreseen.
+// Lanes of `wanted` whose outputs of this kind are evaluated now; the error of the others is
+// extrapolated.
 static set find_due(struct ct_batch *s, enum ct_output_kind kind, set wanted)
 {
     set due = 0;
@@ -373,7 +374,7 @@ static set take_stages(struct ct_batch *s, set wanted)
     return wanted;
 }
 
-// end, dend = y1, dy1 on the constraints.
+// Projects the end of the step: end, dend = y1, dy1 on the constraints.
 static set project_end(struct ct_batch *s, vec t, set wanted)
 {
     const int n = s->ny;
@@ -426,10 +427,10 @@ static void adapt(struct ct_batch *s, set tried, set wanted)
 
 // The stage before the last and the end of the step are at the same time: their difference shows
 // the fastest motions, as in DOPRI5 by Hairer, Norsett and Wanner (1993), IV.2 of the second
-// volume, key hairer1996. A stiff run is one for a run alone, which can change its method.
+// volume, key hairer1996. A stiff member is run alone, with a change of method.
 static void detect_stiffness(struct ct_batch *s, set wanted)
 {
-    const int n = s->ny - 1; // the work feeds nothing back
+    const int n = s->ny - 1; // nothing depends on the work
     const vec *late = s->k + (s->method->tableau->stages - 2) * s->ny;
     vec rates = {0}, states = {0};
     for (int i = 0; i < n; i++) {
@@ -454,8 +455,8 @@ static void detect_stiffness(struct ct_batch *s, set wanted)
 
 // ---- what is taken over the step ----------------------------------------------------------------
 
-// Further stages and corrections of the interpolant; the step ends on the constraints. Returns the
-// lanes that have it.
+// Further stages and corrections of the interpolant, for a step whose end is projected. Returns the
+// lanes that succeeded.
 static set prepare_dense(struct ct_batch *s, set wanted)
 {
     const struct ct_dense_tableau *d = s->method->dense_tableau;
@@ -470,7 +471,7 @@ static set prepare_dense(struct ct_batch *s, set wanted)
     return wanted;
 }
 
-// The functions at (t, y).
+// The functions over the run at (t, y).
 static void evaluate_takes(struct ct_batch *s, vec t, const vec *y, set lanes)
 {
     struct ct_lane_takes *k = &s->take;
@@ -489,8 +490,8 @@ static void evaluate_takes(struct ct_batch *s, vec t, const vec *y, set lanes)
     ct_lane_run(&k->program, s->input);
 }
 
-// Over the steps of these lanes, which are accepted and end at `end`. A lane for which that cannot
-// be done is given up.
+// Scans the accepted steps of these lanes, which end at `end`. A lane for which this fails is given
+// up.
 static void take_over_step(struct ct_batch *s, vec end, set wanted)
 {
     set begun = 0, lost = 0;
@@ -517,7 +518,7 @@ static void take_over_step(struct ct_batch *s, vec end, set wanted)
 
 // ---- after a try --------------------------------------------------------------------------------
 
-// Lanes in which something turns too fast to be followed by steps of this length.
+// Lanes in which a followed angle turns too fast for steps of this length.
 static void give_up_fast(struct ct_batch *s, const vec *memory, set wanted)
 {
     for (size_t i = 0; i < s->e->nmemory; i++) {
@@ -556,13 +557,13 @@ static void follow(struct ct_batch *s, vec t, const vec *y, set wanted)
     }
 }
 
-// Where the pivots have become small they are looked at after every step, and a singular
-// configuration that comes within reach is for a run alone.
+// Small pivots are tested after every step; a member that comes near a singular configuration is
+// run alone.
 static void predict_singular(struct ct_batch *s, vec t, const vec *y, set wanted)
 {
     if (!s->rank)
         return;
-    // with a single row sigma is 1 everywhere, but the strength of the form falls
+    // with a single row sigma is always 1, but the strength of the solver falls
     vec pivot = s->sigma;
     if (s->rank == 1)
         pivot = s->strength * larger(all_lanes(1), s->kappa);
@@ -629,8 +630,8 @@ static void commit(struct ct_batch *s, set wanted)
     }
 }
 
-// Lanes whose error is small enough; where the step is refused for something else the error says
-// nothing.
+// Lanes whose error is small enough. The error of a step that is rejected for another reason has no
+// meaning.
 static set accept(struct ct_batch *s, set wanted)
 {
     const set is_finite = finite(s->y1, s->ny);

@@ -1,5 +1,5 @@
-// What is taken over steps in lanes: interpolants of all of them, and functions where the scan of
-// any lane asks for them. Included by batch_step.c.
+// Functions over the run in lanes: interpolants of all lanes, evaluated where the scan of any lane
+// asks for it. Included by batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_TAKE_H
 #define CT_SOLVE_BATCH_BATCH_TAKE_H
 
@@ -21,7 +21,8 @@ static inline void interpolate_step(struct ct_batch *s, vec theta, vec *out)
     }
 }
 
-// The times that scans of these lanes want next, in t (inout). Returns those that want one.
+// The next times at which scans of these lanes need values, in t (inout). Returns the lanes that
+// need one.
 static inline set ask_scans(const struct ct_batch *s, set lanes, vec *t)
 {
     set asked = 0;
@@ -35,7 +36,8 @@ static inline set ask_scans(const struct ct_batch *s, set lanes, vec *t)
     return asked;
 }
 
-// Functions into the scans of the lanes that have asked. Returns those where they are not finite.
+// Passes values of the functions to the scans of these lanes. Returns the lanes with values that
+// are not finite.
 static inline set answer_scans(struct ct_batch *s, set asked)
 {
     set lost = 0;

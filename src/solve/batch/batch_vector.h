@@ -44,7 +44,7 @@ static inline vec magnitude(vec v)
     return (vec)((mask)v & ~sign);
 }
 
-// max(a, |v|), number by number; what is no number in v does not count.
+// max(a, |v|) by lane; NaN in v is ignored.
 static inline vec larger(vec a, vec v)
 {
     const vec size = magnitude(v);
@@ -72,7 +72,7 @@ static inline set finite(const vec *v, int n)
     return set_of(is_finite(v, n));
 }
 
-// to (n) = from in these lanes.
+// Copies from (n) to `to` in these lanes.
 static inline void put(vec *to, const vec *from, int n, set lanes)
 {
     const mask m = mask_of(lanes);

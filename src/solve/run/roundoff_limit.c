@@ -36,16 +36,16 @@ static double part_of(size_t i)
 }
 
 struct roundoff {
-    double *speed;           // (nu) in so many round-off errors, after damping
+    double *speed;           // (nu) in units of perturbation_units, after damping
     double *frequency_share; // (nu) omega/(the largest omega)
     // (nu) factor of the accumulation: n errors of random sign add up to sqrt(n); n is the number
     // of steps whose errors are not damped yet
     double *sum;
-    double position; // largest, in so many round-off errors
+    double position; // largest one of positions, in the same units
 };
 
-// Of speeds, at r->y. omega is the root of the answer to a change of places; noise is omega times
-// places, and less where damping is more than omega.
+// Round-off of speeds at r->y. omega^2 is the change of an acceleration over that of positions. The
+// round-off of a speed is omega times that of positions, and less if its damping exceeds omega.
 static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
 {
     const size_t nq = r->m->nq, nu = r->m->nu;
@@ -80,8 +80,9 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
     return true;
 }
 
-// What is damped forgets the round-off errors of steps before 1/damping; each speed is changed
-// alone, as what turns answers with the others, undamped. f (nu) at r->y is in r->scratch.
+// Damping removes the round-off errors of steps before the last time 1/damping. Each speed is
+// changed alone, since a rotating motion couples it with others without damping it. f (nu) at r->y
+// is in r->scratch.
 static bool find_accumulation(struct ct_run *r, double t, struct roundoff *e)
 {
     const size_t nq = r->m->nq, nu = r->m->nu;
@@ -102,8 +103,8 @@ static bool find_accumulation(struct ct_run *r, double t, struct roundoff *e)
     return true;
 }
 
-// What outputs change by for a change of places, d (nu), and for one of speeds, u (nu): in
-// round-off errors, of their largest values.
+// Changes of outputs, relative to their largest values, by one unit of perturbation_units: for a
+// change of positions d (nu) and of speeds u (nu).
 static bool evaluate_change(struct ct_run *r, double t, const double *d, const double *u,
                             const double *at, double *part)
 {
@@ -119,8 +120,8 @@ static bool evaluate_change(struct ct_run *r, double t, const double *d, const d
     return true;
 }
 
-// Sums of round-off errors, (8.18), that results feel as parts of their largest values (nresult,
-// out).
+// Changes of results by the accumulated round-off errors (8.18), relative to their largest values
+// (nresult, out).
 static bool find_output_changes(struct ct_run *r, double t, const struct roundoff *e,
                                 const double *at, double *output_change)
 {
@@ -139,14 +140,14 @@ static bool find_output_changes(struct ct_run *r, double t, const struct roundof
     return true;
 }
 
-// What is smaller than this at all samples is zero, whatever its digits: what a loop keeps so.
+// An output below this at all samples counts as zero, for example one that a loop keeps at zero.
 static double small_output(const struct ct_run *r)
 {
     return r->o->rtol > 0 ? r->o->output_rtol * (r->o->atol / r->o->rtol) : 0;
 }
 
-// The one of the results that feels most, more than *most (in, out); -1: none. One that is nothing
-// but round-off is zero.
+// The result with the largest change, if it is above *most (in, out); -1: none. A result that
+// consists of round-off only does not count.
 static int find_largest_change(const struct ct_run *r, const double *output_change,
                                double *most)
 {
@@ -160,8 +161,8 @@ static int find_largest_change(const struct ct_run *r, const double *output_chan
     return worst;
 }
 
-// Where no single round-off is too much, those of all steps may be. First as if nothing damped
-// them, which costs little.
+// If no single round-off error is too large, the sum over all steps may be. The sum without damping
+// is tested first, since it costs little.
 static void find_accumulated_roundoff(struct ct_run *r, double t, struct roundoff *e,
                                       const double *at, double wanted,
                                       struct ct_roundoff_limit *b)
@@ -184,8 +185,8 @@ static void find_accumulated_roundoff(struct ct_run *r, double t, struct roundof
         b->sum = output_change[b->output];
 }
 
-// out (nu, nq, nu; out): u', q' and the inertias that u' is found with in closed form, with places
-// changed by `side` times many round-off errors.
+// out (nu, nq, nu; out): u', q' and the pivots (inertias) of the solution in closed form, with
+// positions changed by `side` times perturbation_units round-off errors.
 static void solve_perturbed(struct ct_run *r, double t, int side, size_t sample, double *out)
 {
     const struct ct_evaluator *m = r->m;
@@ -205,8 +206,8 @@ struct cancellation {
     size_t worst; // the speed whose acceleration errs most
 };
 
-// In the second difference of inertias over changed coordinates all that is linear cancels. What is
-// left is round-off: the sum with weights 1, 1 and -2 has root 6 times one error.
+// Round-off of the inertias from their second difference over changed coordinates, in which linear
+// changes cancel: a sum with weights 1, 1 and -2 has root 6 times one error.
 static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
 {
     enum { SAMPLES = 8 }; // Chosen: samples of a mean; its accuracy against their time
