@@ -13,23 +13,23 @@
 enum {
     MOST = CT_BEAM_ERROR_COUPLED_MOST,
     SIZE = MOST + CT_BENDING_SHAPES,
-    MOST_BODIES = 40, // Limit: of the time of an estimate; larger systems: beam alone
-    MOST_MODES = 16,  // Limit: the same
-    MOST_STEPS = 100, // Limit: steps of one call of ct_beam_error_coupled_advance
-    PASSES = 4,       // Limit: fixed-point iterations of the midpoint rule
+    MOST_BODIES = 40,   // Limit: of the time of an estimate; larger systems: beam alone
+    MOST_SWITCHES = 16, // Limit: the same
+    MOST_STEPS = 100,   // Limit: steps of one call of ct_beam_error_coupled_advance
+    PASSES = 4,         // Limit: fixed-point iterations of the midpoint rule
     BASE = 9,  // Definition: angular velocity, velocity, weight per mass; axes of the beam
     MOTION = 6 // Definition: their rates
 };
 
 struct ct_beam_error_coupled {
-    int nq, nu, nshape, nmode, nentry;
+    int nq, nu, nshape, nswitch, nentry;
     bool is_free;               // the motion of the base depends on more than time
     const struct ct_tape *tape; // M, Q, q', base, V' with u' = 0, B (6 x nu), g of the modes
     int nout;
     int row[MOST * (MOST + 1) / 2], column[MOST * (MOST + 1) / 2]; // of M
     double *value;                                                 // of symbols at the start
-    size_t nvalue, time, *q_slot, *u_slot, switch_slot[MOST_MODES];
-    enum ct_op switch_op[MOST_MODES];
+    size_t nvalue, time, *q_slot, *u_slot, switch_slot[MOST_SWITCHES];
+    enum ct_op switch_op[MOST_SWITCHES];
     double *start; // q, u
 };
 
@@ -55,7 +55,7 @@ static struct ct_build *rigid_system(struct ct_build *b)
     if (!ct_build_choose_trees(&r, &o, &unused) || !(r->is_derived || ct_build_derive(r, true)))
         return NULL;
     if (r->eqs->nrow || r->eqs->nstate || r->eqs->nu > MOST || r->eqs->nmemory
-        || r->eqs->nswitch > MOST_MODES)
+        || r->eqs->nswitch > MOST_SWITCHES)
         return NULL;
     ct_dynamics_derive(r);
     return b->rigid = r;
@@ -182,7 +182,7 @@ const struct ct_beam_error_coupled *ct_beam_error_coupled_create(struct ct_build
     for (int k = 0; k < BASE; k++)
         p->is_free
             |= (ct_ex_kinds(r->x, o.e[base + k]) & (1u << CT_SYM_Q | 1u << CT_SYM_U)) != 0;
-    p->nmode = (int)e->nswitch;
+    p->nswitch = (int)e->nswitch;
     for (size_t i = 0; i < e->nswitch; i++)
         add_output(&o, e->switches[i].g);
     for (int i = 0; i < o.n; i++)
@@ -234,17 +234,17 @@ static struct system_state evaluate_system(struct ct_beam_error_coupled_run *r, 
                                            const double *q, const double *u)
 {
     const struct ct_beam_error_coupled *p = r->p;
-    const double *g = r->out + p->nout - p->nmode;
+    const double *g = r->out + p->nout - p->nswitch;
     r->value[p->time] = t;
     for (int i = 0; i < p->nq; i++)
         r->value[p->q_slot[i]] = q[i];
     for (int i = 0; i < p->nu; i++)
         r->value[p->u_slot[i]] = u[i];
     bool again = true;
-    for (int pass = 0; again && pass <= p->nmode; pass++) {
+    for (int pass = 0; again && pass <= p->nswitch; pass++) {
         again = false;
         ct_tape_eval(p->tape, r->value, r->out, r->work);
-        for (int i = 0; i < p->nmode && !again; i++) {
+        for (int i = 0; i < p->nswitch && !again; i++) {
             const double now = ct_op_apply(p->switch_op[i], g[i], 0, 0);
             again = now != r->value[p->switch_slot[i]];
             r->value[p->switch_slot[i]] = now;

@@ -78,13 +78,13 @@ static bool record(struct ct_exported *w, double t, const double *y)
 static void record_elsewhere(struct ct_exported *w, const double *y)
 {
     struct ct_evaluator *m = ct_run_evaluator(w->sim->run);
-    double *mode = m->input + m->at_switch;
-    const double *before = copy(w->sim->own.scratch, mode, m->e->nswitch);
+    double *side = m->input + m->at_switch;
+    const double *before = copy(w->sim->own.scratch, side, m->e->nswitch);
     ct_evaluator_set(m, 0, y);
     ct_switches_start(m, 0, y, NULL, NULL);
     record(w, 0, y);
     if (m->e->nswitch)
-        memcpy(mode, before, m->e->nswitch * sizeof *mode);
+        memcpy(side, before, m->e->nswitch * sizeof *side);
 }
 
 // Records the start, the start with doubled and with reversed speeds and, for open systems,

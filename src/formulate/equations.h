@@ -10,7 +10,7 @@
 // needs no special case.
 //
 // What always holds: M holds its lower triangle, J its nonzeros, both in row order; all expressions
-// live in x and use symbols of kind TIME, PARAM, Q, U, A, LAM, MODE, MEMORY, WORK only. A and LAM
+// live in x and use symbols of kind TIME, PARAM, Q, U, A, LAM, SWITCH, MEMORY, WORK only. A and LAM
 // occur in outputs and in the power alone.
 #ifndef CT_FORMULATE_EQUATIONS_H
 #define CT_FORMULATE_EQUATIONS_H

@@ -245,8 +245,8 @@ static void add_row(double *y, double c, const double *x, size_t n)
         y[k] += c * x[k];
 }
 
-// A (nu x nu, out) from slopes of r, and by r_k (1 - k_k)^-1 those of inner values; R: the values
-// of dk.
+// A (nu x nu, out) from slopes of r, and by r_k (1 - k_k)^-1 those of auxiliary unknowns; R: the
+// values of dk.
 static void scatter_slopes(const struct ct_evaluator *m, double *A, const struct ct_slope *s,
                            size_t n, const double *value, const double *R)
 {
@@ -260,7 +260,7 @@ static void scatter_slopes(const struct ct_evaluator *m, double *A, const struct
             A[s[i].row + nu * s[i].direction] = value[i];
         else
             m->auxiliary[nu * (s[i].row - nu) + s[i].direction] = value[i];
-    size_t first = 0; // row of inner values
+    size_t first = 0; // row of the auxiliary unknowns
     while (first < f->ndk && f->dk[first].row < nu)
         first++;
     for (size_t i = first; i < f->ndk; i++)

@@ -53,7 +53,7 @@ void ct_input_sampling_sample(struct ct_arena *a, struct ct_evaluator *m, double
         find_range(c, i);
 }
 
-// Between the values; place in pieces.
+// Linear interpolation between the values; `place` in pieces.
 static double at(const double *value, double place)
 {
     const double k = fmin(floor(place), CT_INPUT_SAMPLES - 1);
@@ -61,7 +61,7 @@ static double at(const double *value, double place)
     return v[0] + (place - k) * (v[1] - v[0]);
 }
 
-// Does a step over these places pass over a change? Of what is not finite nothing is known.
+// Does a step between these places pass over a change? False if values are not finite.
 static bool passes_over(const double *value, double from, double to, size_t nseen,
                         double negligible_change)
 {
@@ -78,10 +78,9 @@ double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
                                     const struct ct_method *method, double t, double h,
                                     double negligible_change)
 {
-    t = fmax(
-        t,
-        // a start in a singular configuration is led in to from before: nothing is known of that
-        0);
+    t = fmax(t,
+             // steps from a singular start begin before t = 0, where there are no values
+             0);
     const size_t nseen = method->order > 2 ? COUNT(stage_times) : 1;
     for (size_t i = 0; i < c->n; i++) {
         const double *value = c->value + i * (CT_INPUT_SAMPLES + 1);

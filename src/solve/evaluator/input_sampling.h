@@ -1,5 +1,5 @@
-// Input sampling: what loads and drivers do by time alone, looked at before a run: steps must not
-// pass over it unseen.
+// Input sampling: functions of time alone in loads and drivers are sampled before a run, so that
+// steps do not pass over pulses.
 #ifndef CT_SOLVE_EVALUATOR_INPUT_SAMPLING_H
 #define CT_SOLVE_EVALUATOR_INPUT_SAMPLING_H
 
@@ -17,15 +17,16 @@ struct ct_input_sampling {
     double *range; // of each function's values (n)
 };
 
-/// Those of the equations up to the end of a run, with the parameters that the evaluator's input
-/// has. c is zero, or of this machine from before, whose memory in a is used again.
+/// Samples the functions of the equations up to the end of a run, with the parameters of the
+/// evaluator's input. c is zero, or was filled for this evaluator before; its memory in a is then
+/// used again.
 void ct_input_sampling_sample(struct ct_arena *a, struct ct_evaluator *m, double end,
                               struct ct_input_sampling *c);
 
-/// The longest of h, h/2, h/4 ... such that of no function the largest change within a step from t
-/// is more than twice the largest at times where the method evaluates, and more than the part
-/// `negligible_change` of its range. Changes that come and go within end/CT_INPUT_SAMPLES may be
-/// missed, and steps of up to four such pieces are not looked at.
+/// The longest of h, h/2, h/4 ... for which each function is resolved: its largest change within a
+/// step from t is at most twice that at the method's stages, or at most the part
+/// `negligible_change` of its range. Pulses shorter than end/CT_INPUT_SAMPLES may be missed, and
+/// steps of up to four such pieces are not tested.
 double ct_input_sampling_limit_step(const struct ct_input_sampling *c,
                                     const struct ct_method *method, double t, double h,
                                     double negligible_change);

@@ -25,16 +25,16 @@ static void evaluate(struct ct_evaluator *m, double t, const double *y, const do
     memcpy(m->input + m->at_q, y, n * sizeof *y);
 }
 
-// Switches may stand inside the g of others; so many levels are settled.
+// Switches may occur in the g of others; so many levels are evaluated.
 // Limit: as docs/format.md says
 enum { MOST_LEVELS = 4 };
 
-// g is zero when it is round-off beside its change in a second.
+// g is zero if it is below this part of its change in a second.
 // Derived: 4500 units of round-off.
 static const double zero = 1e-12;
 
-// A g at rest counts as zero up to this part of the largest state: what round-off makes of a g that
-// is zero by symmetry.
+// A g at rest counts as zero up to this part of the largest state: round-off of a g that is zero by
+// symmetry.
 // Default: forces that round-off makes against small ones that are meant. Test: rest_at_zero.
 static const double roundoff = 64 * DBL_EPSILON;
 
@@ -53,8 +53,8 @@ static double largest(const double *v, size_t n)
     return most;
 }
 
-// The sum of all |dg_i/dy_k| at t, y, by differences: with the size of the states and `roundoff` it
-// bounds what round-off of states makes of g_i. Cost: 1 + nq + nu evaluations of g.
+// The sum of all |dg_i/dy_k| at t, y, by differences. Times the size of the states and `roundoff`
+// it bounds the effect of round-off of states on g_i. Cost: 1 + nq + nu evaluations of g.
 static double sensitivity(struct ct_evaluator *m, size_t i, double t, const double *y)
 {
     const double spacing = sqrt(DBL_EPSILON);
@@ -84,7 +84,7 @@ static bool is_rate_zero(const struct ct_evaluator *m, size_t i, const double *y
     return fabs(rate) <= m->at_rest[i] * fmax(ct_switches_size(m, y), ct_switches_size(m, dy));
 }
 
-// Are g_i at t, y and its rate zero but for round-off? Notes so in at_rest.
+// Are g_i at t, y and its rate zero to round-off? Records it in at_rest.
 static bool find_rest(struct ct_evaluator *m, size_t i, double t, const double *y,
                       const double *dy, double g, double rate)
 {
@@ -101,7 +101,7 @@ void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const 
                        const signed char *crossed)
 {
     const double ahead = ahead_of(t);
-    double *mode = m->input + m->at_switch;
+    double *side = m->input + m->at_switch;
     memset(m->at_rest, 0, m->e->nswitch * sizeof *m->at_rest);
     m->has_rest = false;
     for (size_t level = 0; level < MOST_LEVELS && level < m->e->nswitch; level++) {
@@ -111,13 +111,13 @@ void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const 
             const enum ct_op op = m->e->switches[i].op;
             const double now = m->g[0][i], later = m->g[1][i], rate = (later - now) / ahead;
             const bool is_zero = fabs(now) <= zero * fmax(1, fabs(rate));
-            mode[i] = side_of(op, is_zero ? later : now);
+            side[i] = side_of(op, is_zero ? later : now);
             m->at_rest[i] = 0;
             if (crossed && crossed[i])
-                mode[i] = side_of(op, crossed[i]);
+                side[i] = side_of(op, crossed[i]);
             else if (is_zero && dy && !m->e->switches[i].is_time
                      && find_rest(m, i, t, y, dy, now, rate))
-                mode[i] = side_of(op, 0);
+                side[i] = side_of(op, 0);
         }
     }
 }
@@ -125,7 +125,7 @@ void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const 
 int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double *y,
                                   const double *dy)
 {
-    const double *mode = m->input + m->at_switch;
+    const double *side = m->input + m->at_switch;
     // near: of the way that g goes meanwhile. Derived: events are located to a thousandth of ahead
     const double ahead = ahead_of(t), near = 1e-3;
     evaluate(m, t, y, dy, 0, m->g[0]);
@@ -134,7 +134,7 @@ int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double
         const double now = m->g[0][i], later = m->g[1][i], rate = (later - now) / ahead;
         const bool rests = m->at_rest[i] > 0 && is_rate_zero(m, i, y, dy, rate);
         if (!m->e->switches[i].is_time && !rests && fabs(now) < near * fabs(later - now)
-            && side_of(m->e->switches[i].op, later) != mode[i])
+            && side_of(m->e->switches[i].op, later) != side[i])
             return (int)i;
     }
     return -1;

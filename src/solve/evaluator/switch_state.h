@@ -17,7 +17,7 @@ double ct_switches_size(const struct ct_evaluator *m, const double *y);
 /// The sign of g for which switch i has this value, 0 or 1; 0 if g is at rest.
 int ct_switches_side(const struct ct_evaluator *m, size_t i, double value);
 
-/// t into the input, and the switches of time as they are then.
+/// Sets t and the switches of time at t in the input.
 void ct_switches_of_time(struct ct_evaluator *m, double t);
 
 /// A switch of the state whose g is zero here and that the motion along dy leaves to the side that
@@ -30,14 +30,14 @@ void ct_switches_follow(struct ct_evaluator *m, size_t i);
 /// Are the knots of a table kinks for methods of this order? Those of linear tables are, and of
 /// cubic ones, whose third derivative jumps, for high orders.
 bool ct_table_has_kinks(const struct ct_table *table, int order);
-/// All times in (t0, t1] at which something changes by time alone: modes of time, knots of tables
-/// that are kinks for methods of this order. Ascending; the list lives in a. Changes closer than
-/// (t1 - t0)/4096 to each other may be missed in pairs.
+/// All time events in (t0, t1]: changes of switches of time, and knots of tables that are kinks for
+/// methods of this order. Ascending; the list lives in a. Two changes closer to each other than (t1
+/// - t0)/4096 may both be missed.
 size_t ct_time_events(struct ct_arena *a, struct ct_evaluator *m, int order, double t0,
                       double t1, double **time);
 
-/// t, but before an event that is pending what holds before it counts, also at its very instant:
-/// the knots of linear tables have no modes that could hold their slopes.
+/// t, or the last double before it if a time event is pending at t: up to and at an event the state
+/// before it counts, since slopes of linear tables are not held by switches.
 double ct_time_just_before(double t, double pending);
 
 #endif

@@ -23,7 +23,7 @@ void ct_tangent_lanes_use(struct ct_arena *a, struct ct_tangent_lanes *t, bool n
 void ct_tangent_lanes_prepare(struct ct_tangent_lanes *t, const double *input);
 /// slope (out): values of the slopes dq, du, da, dk, dv of the residual at an input.
 void ct_tangent_lanes_run(struct ct_tangent_lanes *t, const double *input, double *slope);
-/// Operations of all evaluations, lanes counted by what they cost.
+/// Operations of all evaluations, lanes counted by their cost.
 double ct_tangent_lanes_operations(const struct ct_tangent_lanes *t);
 size_t ct_tangent_lanes_code_size(const struct ct_tangent_lanes *t);
 

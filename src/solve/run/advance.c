@@ -19,7 +19,7 @@ struct ct_advance {
     struct ct_arena *events; // the list of time events
     bool has_time_events, is_assembled;
     double horizon; // up to which they are known
-    double *mode;   // sides of switches, while they are sought
+    double *side;   // sides of switches, while they are sought
     double h;
 };
 
@@ -44,16 +44,16 @@ struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
     s->call.scratch = ct_arena_create_under(a);
     s->events = ct_arena_create_under(a);
     s->has_time_events = has_time_events(r->e);
-    s->mode = CT_NEWN(a, double, r->e->nswitch + 1);
+    s->side = CT_NEWN(a, double, r->e->nswitch + 1);
     for (size_t i = 0; i < r->ny; i++)
         watched[i] = i + 1 < r->ny || r->has_power;
-    r->output_error = NULL; // outputs are as good as states make them
+    r->output_error = NULL; // no error control of outputs
     r->o = &s->o;
     r->method = o->method;
     r->report = &s->report;
     ct_run_monitor_start(r, 0, r->y);
     ct_run_pose(r, &s->p, watched);
-    s->p.input_limited_step = NULL; // steps are the owner's, and short
+    s->p.input_limited_step = NULL; // the owner's steps are short
     return s;
 }
 
@@ -72,16 +72,16 @@ void ct_advance_set_next_step(struct ct_advance *s, double h)
     s->h = h;
 }
 
-// What happens by time alone in (t, until], without a change of the sides of switches.
+// Finds the time events in (t, until]. Sides of switches do not change.
 static void look_for_events(struct ct_advance *s, double t, double until)
 {
     struct ct_run *r = s->r;
-    double *mode = r->m->input + r->m->at_switch;
-    const size_t bytes = r->e->nswitch * sizeof *mode;
-    memcpy(s->mode, mode, bytes);
+    double *side = r->m->input + r->m->at_switch;
+    const size_t bytes = r->e->nswitch * sizeof *side;
+    memcpy(s->side, side, bytes);
     ct_arena_clear(s->events);
     r->nevent = ct_time_events(s->events, r->m, s->o.method->order, t, until, &r->event);
-    memcpy(mode, s->mode, bytes);
+    memcpy(side, s->side, bytes);
     s->horizon = until;
 }
 
@@ -114,7 +114,7 @@ bool ct_advance_refresh(struct ct_advance *s, double t)
     struct ct_run *r = s->r;
     s->horizon = t;
     if (!r->e->nswitch || ct_run_rhs(r, t, r->y, r->dy) != CT_EVAL_OK)
-        return true; // what cannot be evaluated is said by the step
+        return true; // the step reports the error
     ct_switches_start(r->m, t, r->y, r->dy, NULL);
     return ct_run_settle_switches(r, t, r->y, NULL) != CT_EVAL_FATAL;
 }

@@ -1,11 +1,10 @@
 // A run that is advanced call by call: each call integrates from the present state to a later time.
 //
 //     start -> to t1 -> to t2 -> [the owner changes state, parameters or time] -> start -> ...
-//
-// What always holds: programs, choices of rows and columns, sides of switches and the size of steps
-// stay from call to call; each call integrates from where the state is with first derivatives found
-// anew, since inputs may have changed. Memory of a call is used again by the next one. Errors are
-// controlled in the states; there are no samples.
+// What always holds: programs, choices of rows and columns, sides of switches and the step size
+// persist from call to call. Each call starts from the present state with new first derivatives,
+// since inputs may have changed. Memory of a call is reused by the next one. Errors are controlled
+// in the states; there are no samples.
 #ifndef CT_SOLVE_ADVANCE_H
 #define CT_SOLVE_ADVANCE_H
 
@@ -21,12 +20,12 @@ struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
 /// is_assembled: it is the state of ct_run_begin or ct_run_restart, at t = 0.
 /// Errors: CT_E_STUCK, CT_E_SINGULAR, CT_E_STEP_OPEN, into the run's context.
 bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_assembled);
-/// Values of parameters have changed at t: switches may be on other sides, and change at other
-/// times. Errors: CT_E_STUCK, into the run's context.
+/// To be called after a change of parameters at t: sides of switches and time events are found
+/// anew. Errors: CT_E_STUCK, into the run's context.
 bool ct_advance_refresh(struct ct_advance *s, double t);
-/// From t0, where the state is, to t1 > t0, exactly. *t (out): the time that was reached. False
-/// with a diagnostic in the context of the run or in `said`, whose texts are gone with the next
-/// call.
+/// Integrates from t0, the time of the state, exactly to t1 > t0. *t (out): the time that was
+/// reached. False with a diagnostic in the context of the run or in `said`, whose texts live until
+/// the next call.
 bool ct_advance_to(struct ct_advance *s, double t0, double t1, double *t, struct ct_ctx **said);
 /// The state, (ny).
 double *ct_advance_state(struct ct_advance *s);

@@ -96,7 +96,7 @@ static void advance_error(const struct ct_validity *v, struct ct_validity_report
         report->error_beyond_since = t;
 }
 
-// Is beam i looked at now?
+// Is the error of beam i estimated at this time?
 static bool is_due(const struct ct_run *r, size_t i, double t, enum ct_monitor_when how)
 {
     const struct ct_validity *v = &r->e->validity[i];
@@ -109,7 +109,7 @@ void ct_run_monitor_base(struct ct_run *r, double t, const double *y, enum ct_mo
 {
     bool any = false;
     if (!r->m->base_motion.nout
-        || r->trial) // a trial meets events of a motion that starts again
+        || r->trial) // a trial integrates a part of the motion that is repeated later
         return;
     for (size_t i = 0; i < r->e->nvalidity; i++)
         any |= is_due(r, i, t, how);

@@ -13,7 +13,7 @@ enum ct_eval ct_run_root(void *user, double t, const double *y, double *g)
     ct_program_run(&r->m->root, r->m->input);
     for (int i = 0; i < r->nroot; i++)
         g[i] = r->m->root.out[r->root_of[i]];
-    if (r->m->has_rest) { // what round-off makes of them
+    if (r->m->has_rest) { // g at rest with its round-off
         const double size = ct_switches_size(r->m, y);
         for (int i = 0; i < r->nroot; i++)
             if (fabs(g[i]) <= r->m->at_rest[r->root_of[i]] * size)
@@ -25,10 +25,10 @@ enum ct_eval ct_run_root(void *user, double t, const double *y, double *g)
 void ct_run_sides(void *user, signed char *side)
 {
     const struct ct_run *r = user;
-    const double *mode = r->m->input + r->m->at_switch;
+    const double *value = r->m->input + r->m->at_switch;
     for (int i = 0; i < r->nroot; i++)
         side[i]
-            = (signed char)ct_switches_side(r->m, (size_t)r->root_of[i], mode[r->root_of[i]]);
+            = (signed char)ct_switches_side(r->m, (size_t)r->root_of[i], value[r->root_of[i]]);
 }
 
 double ct_run_next_event(void *user, double t)
@@ -90,8 +90,8 @@ bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark,
         name, jump, t);
 }
 
-// Are all rows still closed after an event? They were before it: an open one belongs to a driver
-// that jumps, in a joint that is a chord of the tree.
+// Are all rows still closed after an event? They were before it: an open row belongs to a joint
+// that is a chord and whose driver jumps.
 bool ct_run_chords_are_closed(struct ct_run *r, double t)
 {
     const struct ct_row *row = r->e->row;
@@ -108,7 +108,7 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
     return true;
 }
 
-// After an impulse: speeds have jumped, and may have passed roots of switches.
+// Sides of switches after an impulse: speeds have jumped, possibly over roots of switches.
 static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const double *y)
 {
     const enum ct_eval e = ct_run_rhs(r, t, y, r->dy);
@@ -118,7 +118,8 @@ static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const doubl
     return e;
 }
 
-// Driven values after a change of modes; impulse or not, the speeds must fit the new rates.  (8.5)
+// Driven values after a change of switches. With an impulse or without, the speeds must fit the new
+// rates. (8.5)
 static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const double *before,
                                   const double *momentum)
 {
@@ -145,8 +146,8 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const d
     return e == CT_EVAL_OK ? switch_at_new_speeds(r, t, y) : e;
 }
 
-// A force that on both sides of its switch i leads back to it (dry friction at rest) has no motion
-// that f describes.
+// Reports that on both sides of switch i the force leads back to it (dry friction at rest): f
+// describes no such motion.
 static enum ct_eval report_held(struct ct_run *r, double t, int i)
 {
     const struct ct_switch *held = &r->e->switches[i];
@@ -160,13 +161,14 @@ static enum ct_eval report_held(struct ct_run *r, double t, int i)
 }
 
 // The sides were chosen for the derivative before they changed. A switch that the derivative with
-// the new sides contradicts goes to the other side; one that is contradicted there too holds the
-// motion. One that has just crossed has come from its other side, where the motion leads here.
+// the new sides contradicts goes to the other side; if it is contradicted there, too, it holds the
+// motion. A switch that has just crossed has come from its other side, from where the motion leads
+// here.
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed)
 {
-    // Derived: one visit goes to the other side, the second comes back, and between these two other
-    // switches at the same place may have changed
+    // Derived: the first visit goes to the other side, the second comes back; between them other
+    // switches with a root here may have changed
     enum { VISITS = 3 };
     if (!r->nroot)
         return CT_EVAL_OK;
@@ -203,8 +205,8 @@ static enum ct_eval look_ahead(struct ct_run *r, double t, const double *y)
     return CT_EVAL_OK;
 }
 
-// Sides at y, whose derivative is dy: a crossed root tells its own; the rest follow from where the
-// motion leads.
+// Sides at y, whose derivative is dy: that of a crossed root is known; the others follow from the
+// direction of the motion.
 static void set_sides(struct ct_run *r, double t, const double *y, const double *dy,
                       const signed char *crossed)
 {
@@ -214,8 +216,8 @@ static void set_sides(struct ct_run *r, double t, const double *y, const double 
     ct_switches_start(r->m, t, y, dy, r->crossed);
 }
 
-// After an event while a singular configuration is crossed. The motion of drivers is known
-// beforehand, and no speed jumps.
+// Sides after an event on a crossing of a singular configuration. The motion of drivers is known in
+// advance, and no speed jumps.
 static enum ct_eval switch_in_gap(struct ct_run *r, double t, const double *y, const double *dy,
                                   const signed char *crossed)
 {
@@ -254,7 +256,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;
     ct_run_monitor_impulse(r, t, y);
     ct_run_store_angle_rate(r, t, y);
-    // with an event of time the forces have changed at once, and a root may go back
+    // at a time event forces jump, and a root function may reverse
     e = ct_run_settle_switches(r, t, y, is_time ? NULL : r->crossed);
     if (e == CT_EVAL_OK && m->nrow && r->o->step == 0)
         e = look_ahead(r, t, y);

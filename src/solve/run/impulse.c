@@ -1,16 +1,15 @@
 // Impulses: speeds after the rates of drivers have jumped. See run_internal.h.
-//
-// Both kinds of jump are the same problem with another form, half u' W u + ...: the speeds that J
-// allows then and whose change is smallest in it. For an impulse it is the kinetic energy, and W is
-// M. For `continuous` it is `kept` of the equations: speeds of joints and beams, which no tree has
-// a part in.  (8.5)
+// Both kinds of jump solve the same problem with different quadratic forms, half u' W u + ...: find
+// the speeds that J allows and whose change is smallest in that form. For an impulse it is the
+// kinetic energy, and W is M. For `continuous` it is `continuity` of the equations: speeds of
+// joints and beams, which do not depend on the trees. (8.5)
 #include "solve/run/run_internal.h"
 
 #include <string.h>
 
-// Where joints do not tell how something moves, as with what floats, momentum does. So much of the
-// kinetic energy is added: joints then keep their speeds but for that part, and but for a higher
-// power of it each time they are asked again. Derived: the third power is below the unit round-off.
+// This part of the kinetic energy is added, since speeds of joints do not determine the motion of a
+// floating body. Joints then keep their speeds up to that part, and up to a higher power of it with
+// each repetition. Derived: the third power is below the unit round-off.
 static const double share_of_momentum = 1e-6;
 enum { TIMES = 3 };
 
@@ -44,7 +43,7 @@ static double trace(const double *A, size_t n)
     return sum;
 }
 
-// W (nu x nu): the gradient of `kept` is linear in u.
+// W (nu x nu): the gradient of `continuity` is linear in u.
 static void find_quadratic_form(struct ct_evaluator *m, double *W, const double *u)
 {
     const size_t n = m->nu;
@@ -92,7 +91,7 @@ static enum ct_eval apply_continuous(struct ct_run *r, const double *before, dou
         momentum[i] = w[i] + share * momentum[i];
     enum ct_eval e = ct_partition_impulse(r->s, j->W, momentum, u);
     for (int i = 1; i < TIMES && e == CT_EVAL_OK;
-         i++) { // what the first time was momentum stays
+         i++) { // the right side of the first iteration is kept
         memcpy(momentum, w, n * sizeof *w);
         add_product(momentum, share, m->M, u, n);
         e = ct_partition_impulse(r->s, j->W, momentum, u);

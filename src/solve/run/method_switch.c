@@ -86,7 +86,7 @@ bool ct_run_suspects_stiffness(struct ct_run *r, double t, const double *y)
     const bool is_suspect = ct_stiffness_detect(s, t, y, r->o->duration);
     if (ct_stiffness_has_tested(s))
         r->vibration_effect = find_vibration_effect(r, t, y);
-    // before the trial that a test asks for, steps are those it is to be compared with
+    // steps after a positive test are those that the trial is compared with
     r->resolves_vibrations
         = (s->step > wanted_step(r) || (ct_stiffness_is_unstable(s) && !is_suspect))
        && r->problem->longest_step != accurate_step;
@@ -186,7 +186,7 @@ static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
         ct_evaluator_add_residual(r->arena, r->m);
         p->dae = ct_dae_create(r->arena, r->s);
     }
-    r->method = r->o->stiff_method; // what follows a step depends on it
+    r->method = r->o->stiff_method; // the functions called after a step depend on the method
     r->s->nearness = 1;
     r->implicit.cost = find_cost(r);
     r->explicit_pace = ct_stiffness_pace(r->stiffness, &r->implicit.cost);

@@ -1,5 +1,5 @@
-// Round-off limit: at the end of a run, find outputs that cannot have the digits that are asked
-// for, however small the steps are.
+// Round-off limit: at the end of a run, find outputs that cannot reach the wanted accuracy, however
+// small the steps are.
 //
 // Some outputs are functions that amplify the round-off of states (output_sensitivity.h). Others
 // are inaccurate as the states are: with stiff forces the round-off of coordinates, eps q, gives

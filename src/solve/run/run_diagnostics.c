@@ -6,7 +6,7 @@
 #include <float.h>
 #include <string.h>
 
-// Of the first row that is marked.
+// Source position of the first marked row.
 static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
 {
     const int joint = r->e->row[row].joint;
@@ -40,7 +40,7 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// The part of the run by which a state a little later or before is computed.
+// Time offset to a state shortly after or before, relative to the duration.
 // Chosen: far enough for a contradiction of drivers to be more than round-off.
 static const double small_part = 1e-3;
 
@@ -66,7 +66,7 @@ static void name_open_row(struct ct_run *r)
             r->e->row[worst].name, fabs(r->m->phi[worst]), t);
 }
 
-// left (nu, out): what inertia carries the small coordinates at the evaluator's input.
+// left (nu, out): inertia of each speed at the evaluator's input, with the others free to follow.
 static bool find_left(struct ct_run *r, double *left)
 {
     ct_evaluator_constraint(r->m);
@@ -74,15 +74,15 @@ static bool find_left(struct ct_run *r, double *left)
     return ct_partition_inertias(r->s, r->e->is_small, left);
 }
 
-// The speed that carries small coordinates whose inertia has shrunk most against what it is with
-// these at zero; *part (out) of it is left. -1: none has lost much.
+// The speed whose inertia has decreased most from its value with all small coordinates at zero;
+// *part (out) of it is left. -1: none has decreased much.
 static int lost_speed(struct ct_run *r, double *part)
 {
     const size_t nu = r->m->nu;
     double *now = CT_NEWN(r->arena, double, nu + 1),
            *straight = CT_NEWN(r->arena, double, nu + 1);
     int lost = -1;
-    *part = 0.1; // more is no reason to stop: steps shorten with its root
+    *part = 0.1; // with more the run does not stop: steps shorten with the root of the inertia
     ct_evaluator_set(r->m, r->stats.last_time, r->y);
     if (!find_left(r, now))
         return -1;
@@ -99,8 +99,8 @@ static int lost_speed(struct ct_run *r, double *part)
     return lost;
 }
 
-// Equations that are cut to first order have lost an inertia, which leaves no step: whose, and what
-// to do.
+// Note if equations that are cut to first order have lost an inertia, so that steps become too
+// short: whose, and the cure.
 static bool name_lost(struct ct_run *r)
 {
     double part;
@@ -158,12 +158,12 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
     for (size_t i = 0; i < r->e->ndriver && n < MOST; i++) {
         const struct ct_driver *d = &r->e->driver[i];
         if (r->m->driver.out[2 * i + 1] == 0)
-            continue; // it holds still
+            continue; // it does not move
         ct_note(r->ctx, d->mark, "'%s' is driven here, to %.6g at t = %.6g",
                 r->model->joint[d->joint].name, r->m->driver.out[2 * i], t);
         n++;
     }
-    // drivers of joints that are chords stand in rows
+    // drivers of joints that are chords are rows
     for (size_t i = 0; i < r->model->njoint && n < MOST; i++) {
         const struct ct_instance *joint = &r->model->joint[i];
         bool is_known = !joint->cls->motion || !ct_instance_value(joint, "motion")->given;
