@@ -24,7 +24,7 @@ void ct_input_sampling_sample(struct ct_arena *a, struct ct_evaluator *m, double
                               struct ct_input_sampling *c);
 
 /// The longest of h, h/2, h/4 ... for which each function is resolved: its largest change within a
-/// step from t is at most twice that at the method's stages, or at most the part
+/// step from t is at most 2.4 times that at the method's stages, or at most the part
 /// `negligible_change` of its range. Pulses shorter than end/CT_INPUT_SAMPLES may be missed, and
 /// steps of up to four such pieces are not tested.
 double ct_input_sampling_limit_step(const struct ct_input_sampling *c,

@@ -4,6 +4,7 @@
 #include "numeric/dense.h"
 #include "solve/constraint/partition_conditioning.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -61,23 +62,10 @@ struct local {
     size_t nB;         // m, but for rows that are nearly dependent
     double *B;         // nB vectors: the rows, orthonormal
     double *J;         // m x n: the rows
-    double *force, *v; // along the rows (n); of a motion (n)
-    double *k,
-        // derivatives of the energy and their directions (n, n x n): those along the rows first
-        *shape;
+    double *force;     // (n)
+    size_t ntangent;   // directions along the rows
+    double *k, *shape; // their stiffness, ascending, and they (n x ntangent)
 };
-
-// out = x without its part across the rows
-static void along_rows(const struct ct_static_residual *s, const struct local *l, double *x)
-{
-    for (size_t i = 0; i < l->nB; i++) {
-        double part = 0;
-        for (size_t k = 0; k < s->n; k++)
-            part += l->B[k + s->n * i] * x[k];
-        for (size_t k = 0; k < s->n; k++)
-            x[k] -= part * l->B[k + s->n * i];
-    }
-}
 
 static void row_directions(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
 {
@@ -115,46 +103,45 @@ static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
         s->lam[s->row[i]] = b[i];
 }
 
-// Forces, and eigenvalues and directions of the stiffness along the rows. False if they are not
+// Forces, and eigenvalues and directions of the stiffness Z' K Z along the rows. False if they are not
 // found.
 static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
 {
-    // Stiffness across the constraint rows over that of the stiffest direction.
-    // Chosen: directions across the rows come last among the eigenvectors, with few digits lost.
-    const double across = 1e3;
     const size_t n = s->n;
-    double *work = CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)n));
     ct_static_residual_choose_rows(s, a);
     row_directions(s, a, l);
     find_multipliers(s, a, l);
     ct_static_residual_evaluate(s);
     ct_static_residual_fill(s);
     l->force = CT_NEWN(a, double, n + 1);
-    l->v = CT_NEWN(a, double, n + 1);
-    l->k = CT_NEWN(a, double, n + 1);
-    l->shape = CT_NEWN(a, double, n *n + 1);
     memcpy(l->force, s->values.out, n * sizeof *l->force);
-    along_rows(s, l, l->force);
-    const size_t size = n + s->nlam;
-    for (int transposed = 0; transposed < 2; transposed++) // P H P, column by column
-        for (size_t k = 0; k < n; k++) {
-            double *column = CT_NEWN(a, double, n + 1);
-            for (size_t i = 0; i < n; i++)
-                column[i] = transposed ? l->shape[k + n * i]
-                                       : -0.5 * (s->A[i + size * k] + s->A[k + size * i]);
-            along_rows(s, l, column);
-            if (!transposed)
-                memcpy(l->shape + n * k, column, n * sizeof *column);
-            else
-                for (size_t i = 0; i < n; i++)
-                    l->shape[k + n * i] = column[i];
-        }
-    for (size_t r = 0; r < l->nB; r++)
-        for (size_t k = 0; k < n; k++)
-            for (size_t i = 0; i < n; i++)
-                l->shape[i + n * k]
-                    += across * s->stiffness * l->B[i + n * r] * l->B[k + n * r];
-    return n && ct_symmetric_eigen(l->k, l->shape, (int)n, (int)n, work);
+    // Z: the basis goes on with what unit vectors have beyond the rows
+    struct ct_basis basis = {n, l->nB, l->B};
+    double *v = CT_NEWN(a, double, n + 1);
+    for (size_t k = 0; k < n; k++) {
+        memset(v, 0, n * sizeof *v);
+        v[k] = 1;
+        ct_basis_extend(&basis, v);
+    }
+    const size_t size = n + s->nlam, nt = basis.count - l->nB;
+    const double *Z = l->B + n * l->nB;
+    l->ntangent = nt;
+    if (!nt)
+        return true;
+    double *K = CT_NEWN(a, double, n *n + 1), *KZ = CT_NEWN(a, double, n *n + 1),
+           *direction = CT_NEWN(a, double, n *n + 1);
+    for (size_t k = 0; k < n; k++)
+        for (size_t i = 0; i < n; i++)
+            K[i + n * k] = -0.5 * (s->A[i + size * k] + s->A[k + size * i]);
+    ct_matrix_multiply(KZ, K, Z, (int)n, (int)n, (int)nt);
+    ct_matrix_multiply_transposed(direction, Z, KZ, (int)nt, (int)n, (int)nt);
+    l->k = CT_NEWN(a, double, nt + 1);
+    l->shape = CT_NEWN(a, double, n *n + 1);
+    if (!ct_symmetric_eigen(l->k, direction, (int)nt, (int)nt,
+                            CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)nt))))
+        return false;
+    ct_matrix_multiply(l->shape, Z, direction, (int)n, (int)nt, (int)nt);
+    return true;
 }
 
 static void step_by(struct ct_static_residual *s, const double *d, double part)
@@ -165,29 +152,27 @@ static void step_by(struct ct_static_residual *s, const double *d, double part)
     ct_evaluator_retract(s->m, s->y, s->step);
 }
 
-static void limit(double *d, size_t n, double most)
+// No entry is more than 1 m or rad, beyond which derivatives of rotations say nothing.
+static void limit(double *d, size_t n)
 {
     double size = 0;
     for (size_t k = 0; k < n; k++)
         size = fmax(size, fabs(d[k]));
-    for (size_t k = 0; k < n && size > most; k++)
-        d[k] *= most / size;
+    for (size_t k = 0; k < n && size > 1; k++)
+        d[k] /= size;
 }
 
 // Close the independent rows by minimum-norm steps.
 static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
 {
     enum { MOST_CLOSINGS = 20 }; // Limit: of iterations; an open row is found by is_good
-    // Residual that ends the iteration, largest step [m or rad].
-    // Chosen: a digit below what is_good accepts; iterations against a jump elsewhere.
-    const double closed = 1e-10, longest = 0.2;
     const size_t n = s->n;
     for (int i = 0; i < MOST_CLOSINGS; i++) {
         struct local l = {0};
         size_t row = 0;
         ct_static_residual_choose_rows(s, a);
         row_directions(s, a, &l);
-        if (ct_closure_continuation_remaining(s, &row) < closed || !s->nlam)
+        if (ct_closure_continuation_remaining(s, &row) < ct_rank_tolerance || !s->nlam)
             return;
         const size_t m = s->nlam;
         double *b = CT_NEWN(a, double, n + m + 1);
@@ -196,7 +181,7 @@ static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
         for (size_t r = 0; r < m; r++)
             b[r] = -s->values.out[n + (size_t)s->row[r]];
         ct_lstsq(b, l.J, (int)m, (int)n, (int)m, ct_rank_tolerance, iwork, work);
-        limit(b, n, longest);
+        limit(b, n);
         step_by(s, b, 1);
     }
 }
@@ -222,27 +207,24 @@ static void keep(struct ct_static_residual *s, struct saved_state *k, bool back)
 // halved while the forces at its end push back with more than half. Returns its size.
 static double descend(struct ct_static_residual *s, struct ct_arena *a, const struct local *l)
 {
-    // Largest step [m or rad]; least stiffness that a force is divided by, over the largest one.
-    // Chosen: iterations against a jump elsewhere; digits of the stiffness.
-    const double longest = 0.2, flat = 1e-12;
-    enum { MOST = 10 }; // Chosen: halvings, to a thousandth; the next step begins from there
-    const size_t n = s->n, ntangent = n - l->nB;
+    const size_t n = s->n;
     struct saved_state from = saved_state(s, a);
     double *d = CT_NEWN(a, double, n + 1), push = 0, part = 1, size = 0;
-    for (size_t i = 0; i < ntangent; i++) {
+    for (size_t i = 0; i < l->ntangent; i++) {
         double along = 0;
         for (size_t k = 0; k < n; k++)
             along += l->shape[k + n * i] * l->force[k];
         for (size_t k = 0; k < n; k++)
-            d[k] += l->shape[k + n * i] * along / fmax(fabs(l->k[i]), flat * s->stiffness);
+            d[k] += l->shape[k + n * i] * along
+                  / fmax(fabs(l->k[i]), DBL_EPSILON * s->stiffness);
     }
-    limit(d, n, longest);
+    limit(d, n);
     for (size_t k = 0; k < n; k++) {
         push += d[k] * l->force[k];
         size = fmax(size, fabs(d[k]));
     }
     keep(s, &from, false);
-    for (int i = 0; i < MOST; i++, part /= 2) {
+    for (; part > DBL_EPSILON; part /= 2) {
         struct local end = {0};
         keep(s, &from, true);
         step_by(s, d, part);
@@ -263,14 +245,12 @@ static double descend(struct ct_static_residual *s, struct ct_arena *a, const st
 // Are all rows closed, and is the equilibrium stable?
 static bool is_good(struct ct_static_residual *s, struct ct_arena *a)
 {
-    // Residual [m or rad]; stiffness over that of the stiffest direction.
-    // Chosen: round-off against open loops and against equilibria that are just unstable.
-    const double closed = 1e-9, unstable = -1e-9;
     struct local l = {0};
     size_t row = 0;
-    if (ct_closure_continuation_remaining(s, &row) > closed || !look_around(s, a, &l))
+    if (ct_closure_continuation_remaining(s, &row) > ct_rank_tolerance
+        || !look_around(s, a, &l))
         return false;
-    return s->n == l.nB || l.k[0] > unstable * s->stiffness;
+    return l.ntangent == 0 || l.k[0] > -ct_rank_tolerance * s->stiffness;
 }
 
 // Newton's method from s->y.
@@ -280,19 +260,17 @@ static bool find_equilibrium_here(struct ct_static_residual *s, struct ct_arena 
     return ct_static_residual_iterate(s, a) && is_good(s, a);
 }
 
-// Go down the potential energy from s->y, after a small push that leaves a symmetric configuration;
-// end with Newton's method.
+// Go down the potential energy from s->y, after a push of 1 m or rad that leaves a symmetric
+// configuration; try Newton's method after each step that needed no limit.
 static bool relax(struct ct_static_residual *s, struct ct_arena *a)
 {
     enum { MOST = 500 }; // Limit: of steps; Newton's method fails then, with a message
-    // The first push, and the step from which Newton's method goes on [m or rad].
-    // Chosen: far enough to leave a saddle; near enough for Newton's method to converge.
-    const double push = 0.01, near = 1e-3;
     double size = INFINITY;
-    for (int i = 0; i < MOST && size > near; i++) {
+    struct saved_state at = saved_state(s, a);
+    for (int i = 0; i < MOST && size > sqrt(DBL_EPSILON); i++) {
         struct ct_arena *own = ct_arena_create_under(a);
         struct local l = {0};
-        if (!look_around(s, own, &l)) {
+        if (!look_around(s, own, &l) || !l.ntangent) {
             ct_arena_destroy(own);
             return false;
         }
@@ -300,14 +278,19 @@ static bool relax(struct ct_static_residual *s, struct ct_arena *a)
             double most = 0;
             for (size_t k = 0; k < s->n; k++)
                 most = fabs(l.shape[k]) > fabs(most) ? l.shape[k] : most;
-            step_by(s, l.shape, push / most);
+            step_by(s, l.shape, 1 / most);
         } else {
             size = descend(s, own, &l);
         }
         close_rows(s, own);
+        keep(s, &at, false);
+        const bool is_found = size < 1 && find_equilibrium_here(s, own);
         ct_arena_destroy(own);
+        if (is_found)
+            return true;
+        keep(s, &at, true);
     }
-    return find_equilibrium_here(s, a);
+    return false;
 }
 
 bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a)

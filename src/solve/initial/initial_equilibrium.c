@@ -75,9 +75,6 @@ static void find_still(struct ct_evaluator *m, struct ct_arena *a,
 static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *still,
                         double *y)
 {
-    // The part of the loops' demand that may stay unmet by joints and bodies alone.
-    // Chosen: far above round-off, far below a demand that beams must meet.
-    const double rest = 1e-9;
     const size_t nrow = m->nrow, nu = m->nu;
     double *A = CT_NEWN(a, double, nrow *nu + 1), *b = CT_NEWN(a, double, nrow + nu + 1);
     int *iwork = CT_NEWN(a, int, nu + 1), *free = CT_NEWN(a, int, nu + 1);
@@ -100,7 +97,7 @@ static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *
         y[m->nq + (size_t)free[k]] += b[k];
     ct_evaluator_set(m, 0, y);
     ct_evaluator_constraint(m);
-    return ct_vector_largest(m->v, nrow) <= rest * asked;
+    return ct_vector_largest(m->v, nrow) <= ct_rank_tolerance * asked;
 }
 
 // The same if beams must deform: all speeds follow the motion of the equilibrium s.

@@ -15,10 +15,6 @@ struct plane {
     bool *known;                       // (nbody)
 };
 
-// Axes count as parallel up to this angle [rad].
-// Chosen: digits of the axes that a user gives against small errors of an axis.
-static const double straight = 1e-6;
-
 // v = R v, or R' v, with the rotation by `angle` about the unit vector u.
 static void turn(const double u[3], double angle, double v[3])
 {
@@ -48,7 +44,8 @@ static void to_body(const struct ct_model *m, int frame, bool back, double v[3])
     }
 }
 
-// Does the joint keep motion in the plane whose normal is n, in axes of its frames?
+// Does the joint keep motion in the plane whose normal is n, in axes of its frames, to the digits of
+// typed data?
 static bool keeps(const struct plane *p, size_t joint, const double n[3])
 {
     const struct ct_measure *q = p->measure[joint];
@@ -58,8 +55,8 @@ static bool keeps(const struct plane *p, size_t joint, const double n[3])
     numbers(p->m, q->kind == CT_MEASURE_ANGLE ? q->about : q->along, a);
     for (int i = 0; i < 3; i++)
         along += a[i] * n[i];
-    return q->kind == CT_MEASURE_ANGLE ? fabs(along) > 1 - straight * straight
-                                       : fabs(along) < straight;
+    return q->kind == CT_MEASURE_ANGLE ? fabs(along) > 1 - ct_data_tolerance * ct_data_tolerance
+                                       : fabs(along) < ct_data_tolerance;
 }
 
 // The joint `from` hands the normal on to one of its bodies from the other, if it keeps it.
@@ -94,11 +91,10 @@ static bool is_odd(const struct plane *p, size_t joint)
 }
 
 // The only joint that does not keep the plane of motion of the hinge `joint`. -1: there is none,
-// there are several, or too few hinges share that plane.
+// there are several, or no other hinge shares that plane.
 static int find_odd(struct plane *p, size_t joint)
 {
     const struct ct_model *m = p->m;
-    const int least = 2; // Chosen: other hinges in the plane, which show that it is meant
     int odd = -1, nodd = 0, nhinge = 0;
     memset(p->known, 0, m->nbody * sizeof *p->known);
     const int body = m->frame[m->joint[joint].from].body;
@@ -121,7 +117,7 @@ static int find_odd(struct plane *p, size_t joint)
             nhinge += p->measure[i] && p->measure[i]->kind == CT_MEASURE_ANGLE;
         }
     }
-    return nodd == 1 && nhinge >= least ? odd : -1;
+    return nodd == 1 && nhinge > 1 ? odd : -1;
 }
 
 // How each joint moves; false if one does otherwise than hinges, guides and welds.

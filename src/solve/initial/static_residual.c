@@ -4,18 +4,13 @@
 #include "numeric/dense.h"
 #include "solve/constraint/partition_conditioning.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 // Newton's method ends at a correction of this part of the largest coordinate.
 // Derived: 450 units of round-off.
 static const double met = 1e-13;
-// It also ends below this part if corrections no longer become smaller.
-// Chosen: round-off of stiff systems against slow convergence.
-static const double roundoff = 1e-9;
-// The largest coordinate counts as of this size at least [m or rad].
-// Chosen: equilibria at zero against small mechanisms.
-static const double nothing = 1e-6;
 // Limit: of the iteration and of a step in it; without convergence there is an error.
 enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
 
@@ -23,9 +18,6 @@ enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
 
 bool ct_basis_extend(struct ct_basis *s, double *v)
 {
-    // Part of a vector's length that must be left after orthogonalisation.
-    // Chosen: far above round-off, far below an independent direction.
-    const double dependent = 1e-6;
     double before = 0, after = 0;
     for (size_t i = 0; i < s->n; i++)
         before += v[i] * v[i];
@@ -40,7 +32,7 @@ bool ct_basis_extend(struct ct_basis *s, double *v)
         }
     for (size_t i = 0; i < s->n; i++)
         after += v[i] * v[i];
-    if (!(after > dependent * dependent * before) || s->count == s->n)
+    if (!(after > ct_rank_tolerance * ct_rank_tolerance * before) || s->count == s->n)
         return false;
     double *out = s->v + s->n * s->count++;
     for (size_t i = 0; i < s->n; i++)
@@ -179,13 +171,14 @@ static void move(struct ct_static_residual *s, const double *d, double factor)
         s->lam[s->row[i]] -= factor * s->stiffness * d[s->n + i];
 }
 
+// The largest coordinate; of the root of eps at least, so that corrections of eps m or rad are none.
 static double largest(const struct ct_static_residual *s)
 {
-    double size = 0;
+    double size = sqrt(DBL_EPSILON);
     for (size_t i = 0; i < s->n; i++)
         if (s->e->u[s->u[i]].q >= 0)
             size = fmax(size, fabs(s->y[s->e->u[s->u[i]].q]));
-    return fmax(size, nothing);
+    return size;
 }
 
 // kept (nq + nrow, out): the state.
@@ -199,6 +192,13 @@ static void take_back(struct ct_static_residual *s, const double *kept)
 {
     memcpy(s->y, kept, s->m->nq * sizeof *kept);
     memcpy(s->lam, kept + s->m->nq, s->e->nrow * sizeof *kept);
+}
+
+// Is a correction that is followed by no smaller one round-off? Convergence is quadratic: from the
+// root of eps on a correction is followed by one of round-off.
+static bool is_roundoff(const struct ct_static_residual *s, double size)
+{
+    return size <= sqrt(DBL_EPSILON) * largest(s);
 }
 
 // Newton steps, halved until the next correction with the same derivative is smaller: that test
@@ -220,7 +220,7 @@ static bool iterate_damped(struct ct_static_residual *s, double *kept, double *d
             left = correction(s, next);
         }
         if (!(left < size)) // only round-off is left, or there is nothing to find
-            return size <= roundoff * largest(s);
+            return is_roundoff(s, size);
     }
     return false;
 }
@@ -236,7 +236,7 @@ static bool iterate_full(struct ct_static_residual *s, double *d)
         if (size <= met * largest(s))
             return true;
         if (!(size < before))
-            return before <= roundoff * largest(s);
+            return is_roundoff(s, before);
         before = size;
         move(s, d, 1);
         ct_static_residual_evaluate(s);
