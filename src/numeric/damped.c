@@ -51,13 +51,14 @@ double ct_sparse_rows_largest_column(const struct ct_sparse_rows *A, size_t n, s
 
 struct ct_damped {
     struct ct_arena *arena;            // data that depend on the pattern only
-    size_t n, ncolumn, nentry, *start; // the pattern: rows, columns, entries of A
+    size_t n, ncolumn, nentry, *start; // the pattern: rows, columns, entries of A and W
     int *column;
     const struct ct_sparse_rows *A; // matrix of the last factors
+    size_t nfirst;                  // rows of A; those of W follow
     double damping;
     bool is_empty, is_singular;
     struct ct_sparse *K; // NULL: KLU is not available
-    double *value;       // of K: n times damping, ncolumn times -damping, A, A'
+    double *value;       // of K: n times damping or 1, ncolumn times -damping, A, A'
     double *b, *x;       // (n + ncolumn)
 };
 
@@ -104,7 +105,7 @@ static void analyse(struct ct_damped *s, const struct ct_sparse_rows *A, size_t 
     s->K = ct_sparse_create(a, (int)(n + ncolumn), row, column, most, CT_SPARSE_ANY);
 }
 
-// By dense QR of A with damping I below it.
+// By dense QR of A / sqrt(damping), W, sqrt(damping) I.
 static void solve_dense(struct ct_damped *s, double *x, const double *b)
 {
     const struct ct_sparse_rows *A = s->A;
@@ -112,38 +113,40 @@ static void solve_dense(struct ct_damped *s, double *x, const double *b)
     struct ct_arena *own = ct_arena_create_under(s->arena);
     double *D = CT_NEWN(own, double, n *ncolumn), *y = CT_NEWN(own, double, n);
     double *work = CT_NEWN(own, double, ct_lstsq_work((int)n, (int)ncolumn));
-    memcpy(y, b, s->n * sizeof *y);
-    for (size_t i = 0; i < s->n; i++)
+    for (size_t i = 0; i < s->n; i++) {
+        const double weight = i < s->nfirst ? 1 / sqrt(s->damping) : 1;
+        y[i] = weight * b[i];
         for (size_t k = A->start[i]; k < A->start[i + 1]; k++)
-            D[i + n * (size_t)A->column[k]] += A->value[k];
+            D[i + n * (size_t)A->column[k]] += weight * A->value[k];
+    }
     for (size_t k = 0; k < ncolumn; k++)
-        D[s->n + k + n * k] = s->damping;
+        D[s->n + k + n * k] = sqrt(s->damping);
     ct_lstsq(y, D, (int)n, (int)ncolumn, (int)n, 0, CT_NEWN(own, int, ncolumn), work);
     memcpy(x, y, ncolumn * sizeof *x);
     ct_arena_destroy(own);
 }
 
-double ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
-                        size_t ncolumn, double damping)
+void ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t nfirst,
+                      size_t n, size_t ncolumn, double damping)
 {
     s->is_empty = n == 0 || ncolumn == 0;
     if (s->is_empty) {
         s->ncolumn = ncolumn;
-        return 0;
+        return;
     }
     if (!has_pattern(s, A, n, ncolumn))
         analyse(s, A, n, ncolumn);
     s->A = A;
+    s->nfirst = nfirst;
     s->damping = damping;
     if (!s->K)
-        return (double)(n + ncolumn) * (double)(ncolumn * ncolumn);
+        return;
     for (size_t i = 0; i < n + ncolumn; i++)
-        s->value[i] = i < n ? damping : -damping;
+        s->value[i] = i < nfirst ? damping : i < n ? 1 : -damping;
     for (int side = 0; side < 2; side++)
         memcpy(s->value + n + ncolumn + (side ? s->nentry : 0), A->value,
                s->nentry * sizeof *s->value);
     s->is_singular = !ct_sparse_factor_repivot(s->K, s->value);
-    return s->is_singular ? 0 : ct_sparse_operations(s->K) + ct_sparse_fill(s->K);
 }
 
 void ct_damped_solve(struct ct_damped *s, double *x, const double *b)

@@ -11,6 +11,10 @@
 // damping do not contribute to x, as in the solution of minimum norm. A singular value of round-off
 // size eps amplifies the component of b along it by eps / damping^2.
 //
+// Further rows W x = c, whose diagonal is 1 in place of the damping, add |W x - c|^2 to |A x - b|^2 /
+// damping + damping |x|^2: with little damping A x = b is met first, and W x = c as far as it leaves
+// x free.
+//
 // Source: the augmented system and its scaling, Bjorck (1996), section 2.7, key bjorck1996.
 #ifndef CT_NUMERIC_DAMPED_H
 #define CT_NUMERIC_DAMPED_H
@@ -38,11 +42,11 @@ double ct_sparse_rows_largest_column(const struct ct_sparse_rows *A, size_t n, s
 
 struct ct_damped;
 struct ct_damped *ct_damped_create(struct ct_arena *a);
-/// Factor for the first n rows of A, which must not change until the last solution; damping > 0.
-/// The symbolic analysis is kept for later matrices of the same pattern. Returns the approximate
-/// number of multiplications.
-double ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t n,
-                        size_t ncolumn, double damping);
+/// Factor for the first n rows, which must not change until the last solution; of these the first
+/// nfirst are A, the others W; damping > 0. The symbolic analysis is kept for later matrices of the
+/// same pattern. Returns the approximate number of multiplications.
+void ct_damped_factor(struct ct_damped *s, const struct ct_sparse_rows *A, size_t nfirst,
+                      size_t n, size_t ncolumn, double damping);
 /// x (ncolumn, out) for b (n), which it may overlap. NaN where A is not finite.
 void ct_damped_solve(struct ct_damped *s, double *x, const double *b);
 

@@ -90,7 +90,7 @@ static void compare(const struct sample *s, double damping, double dense_damping
         want[j] = uniform();
     for (int again = 0; again < 2; again++) {            // with the analysis of the first
         ct_sparse_rows_times(b, &A, (size_t)s->m, want); // in the range of A
-        ct_damped_factor(d, &A, (size_t)s->m, (size_t)s->n, damping);
+        ct_damped_factor(d, &A, (size_t)s->m, (size_t)s->m, (size_t)s->n, damping);
         ct_damped_solve(d, x, b);
         solve_dense(s, b, dense_damping, want);
         for (int j = 0; j < s->n; j++)
@@ -121,6 +121,23 @@ static void little_damping_gives_the_shortest_solution(void **unused)
     }
 }
 
+// x + y = 2 is met; of x = 0 and 2 y = 0 what it leaves. There x = 4 y.
+static void further_rows_count_where_the_first_leave_freedom(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    struct ct_damped *d = ct_damped_create(a);
+    struct ct_sparse_rows A = {.arena = a};
+    const double row[][2] = {{1, 1}, {1, 1}, {1, 0}, {0, 2}}; // the first one twice
+    double x[4], b[4] = {2, 2, 0, 0};
+    for (int i = 0; i < 4; i++)
+        ct_sparse_rows_add(&A, NULL, row[i], 2, 1);
+    ct_damped_factor(d, &A, 2, 4, 2, 1e-12);
+    ct_damped_solve(d, x, b);
+    assert_true(fabs(x[0] - 1.6) < 1e-11 && fabs(x[1] - 0.4) < 1e-11);
+    ct_arena_destroy(a);
+}
+
 static void no_rows_leave_nothing_to_do(void **unused)
 {
     (void)unused;
@@ -128,7 +145,7 @@ static void no_rows_leave_nothing_to_do(void **unused)
     struct ct_damped *d = ct_damped_create(a);
     const struct ct_sparse_rows A = {.arena = a};
     double x[2] = {1, 1};
-    ct_damped_factor(d, &A, 0, 2, 1e-8);
+    ct_damped_factor(d, &A, 0, 0, 2, 1e-8);
     ct_damped_solve(d, x, NULL);
     assert_true(x[0] == 0 && x[1] == 0);
     ct_arena_destroy(a);
@@ -192,6 +209,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damped_solutions_are_those_of_dense_matrices),
         cmocka_unit_test(little_damping_gives_the_shortest_solution),
+        cmocka_unit_test(further_rows_count_where_the_first_leave_freedom),
         cmocka_unit_test(no_rows_leave_nothing_to_do),
         cmocka_unit_test(pivots_show_the_rank),
         cmocka_unit_test(doubtful_rows_are_reported),

@@ -247,7 +247,7 @@ struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partiti
     // directions with singular values below the rank tolerance have no part in solutions
     const double least = s->m->is_inexact ? ct_data_tolerance : ct_rank_tolerance;
     const double size = ct_sparse_rows_largest_column(&v->A, nu, nrow, value);
-    ct_damped_factor(v->factors, &v->A, nu, nrow, least * (size > 0 ? size : 1));
+    ct_damped_factor(v->factors, &v->A, nu, nu, nrow, least * (size > 0 ? size : 1));
     return v;
 }
 

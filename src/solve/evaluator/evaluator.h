@@ -23,9 +23,9 @@ enum ct_backend {
     CT_BACKEND_NATIVE,
 };
 
-/// // A row is dependent if the part of it that is left after elimination, relative to its natural
-/// size (6.5a), is below this. Round-off of sums of some hundred terms, at positions closed to
-/// 1e-13, is below 1e-12.
+/// A row is dependent if the part of it that is left after elimination, relative to its natural
+/// size (6.5a), is below this; a row whose residual is below this is met. Round-off of sums of some
+/// hundred terms, at positions closed to 1e-13, is below 1e-12.
 // Derived: between both, three digits from either.
 static const double ct_rank_tolerance = 1e-9;
 /// The same for data with six digits, which err by 5e-6 of their size at most; a row adds up a few

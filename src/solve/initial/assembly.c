@@ -11,33 +11,15 @@
 #include "solve/constraint/partition.h"
 #include "solve/evaluator/switch_state.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-// Weight of constraints and given values against guesses in a least-squares step.
-// Chosen: constraints that are met against round-off, which the square of the weight enlarges.
-static const double hard = 1e4;
-// Largest change of a coordinate in a step [m or rad].
-// Chosen: iterations against a jump to another way of assembly.
-static const double longest_step = 0.5;
-// The iteration has converged at a step of this size [m or rad].
-// Chosen: three digits below the tolerance of assembly, and far above round-off.
-static const double small_step = 1e-12;
-// Residual of speeds that is accepted [m/s or rad/s].
-// Chosen: round-off of large speeds against contradictions, which are as large as the speeds.
-static const double speeds_met = 1e-6;
-enum {
-    MOST_ITERATIONS = 200, // Limit: of a search; a start that is not found is an error
-    MOST_HALVINGS = 12,    // Chosen: a step of 1/4096 that gains nothing is at a minimum
-    MOST_STARTS = 24,      // Limit: of searches for a closed position, then there is an error
-    MOST_SEARCHES = 16,    // Chosen: time against positions nearer to the guesses
-    MOST_FAR_SEARCHES = 64 // Chosen: as above
-};
-enum { MOST_APPROACHES = 30 }; // Chosen: iterations before constraints alone are iterated
-// Multiplications of all searches for a nearer position, about a second.
-// Chosen: time against a nearer position in large mechanisms.
-static const double most_search_work = 1e9;
+enum { MOST_ITERATIONS = 200 }; // Limit: of a search; a start that is not found is an error
+// Positions from which a closed position, and then a nearer one, is sought.
+// Default: time against positions nearer to the guesses. Test: nearest.
+enum { MOST_STARTS = 24 };
 static const double pi = 3.14159265358979323846; // Definition: of mathematics
 
 // ---- residuals ----------------------------------------------------------------------------------
@@ -204,160 +186,101 @@ static double distance(const struct ct_assembler *s)
 
 // ---- iterations ---------------------------------------------------------------------------------
 
-static double limit_step(double *d, size_t n)
-{
-    double largest = 0;
-    for (size_t i = 0; i < n; i++)
-        largest = fabs(d[i]) > largest || isnan(d[i]) ? fabs(d[i]) : largest;
-    for (size_t i = 0; i < n && largest > longest_step; i++)
-        d[i] *= longest_step / largest;
-    return largest;
-}
-
 // Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
 static void closing_step(struct ct_assembler *s, double damping)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    s->work_done += ct_damped_factor(s->closing, &s->A, s->nhard, s->m->nu, damping);
+    ct_damped_factor(s->closing, &s->A, s->nhard, s->nhard, s->m->nu, damping);
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// Step into s->b along the constraints that minimises the weighted distance to the guesses. The
-// constraints have a large finite weight; multipliers that are updated from step to step correct
-// for it (augmented Lagrangian method).
-static void wishing_step(struct ct_assembler *s)
+// Gauss-Newton step into s->b: along the constraints, to the least distance from the guesses to first
+// order. Returns by how much the square of the distance falls to first order.
+static double nearest_step(struct ct_assembler *s)
 {
-    // Derived: with a thousandth of the smallest weight a step is too short by 1e-6 of itself at
-    // most.
-    const double damping = 1e-3 * ct_assembly_open_weight / fmax(1, s->length);
-    const struct ct_sparse_rows *A = &s->A;
-    ct_sparse_rows_clear(&s->weighted);
-    for (size_t i = 0; i < A->n; i++) {
-        const size_t at = A->start[i];
-        ct_sparse_rows_add(&s->weighted, A->column + at, A->value + at, A->start[i + 1] - at,
-                           i < s->nhard ? hard : 1);
-        s->b[i] = i < s->nhard ? -hard * (s->r[i] + s->shift[i]) : -s->r[i];
-    }
-    s->work_done += ct_damped_factor(s->wishing, &s->weighted, A->n, s->m->nu, damping);
-    ct_damped_solve(s->wishing, s->b, s->b);
-    ct_sparse_rows_times(s->work, A, s->nhard, s->b);
-    for (size_t i = 0; i < s->nhard; i++)
-        s->shift[i] += s->r[i] + s->work[i];
+    // Derived: 1e-6 of the smallest weight squared, so that steps are too short by 1e-6 of themselves,
+    // and four digits above round-off, which is what dependent rows leave.
+    const double damping = 1e-6 * ct_assembly_open_weight * ct_assembly_open_weight;
+    const size_t n = s->A.n;
+    double after = 0;
+    for (size_t i = 0; i < n; i++)
+        s->b[i] = -s->r[i];
+    ct_damped_factor(s->nearest, &s->A, s->nhard, n, s->m->nu, damping);
+    ct_damped_solve(s->nearest, s->b, s->b);
+    ct_sparse_rows_times(s->work, &s->A, n, s->b);
+    for (size_t i = s->nhard; i < n; i++)
+        after += (s->r[i] + s->work[i]) * (s->r[i] + s->work[i]);
+    return distance(s) - after;
 }
 
-// The size of the part of the step s->b that is tangent to the constraints [m or rad]. Near a
-// singular configuration a step off the constraints may violate them by round-off only, and seem to
-// come nearer to the guesses: that part does not count.
-static double size_along_constraints(struct ct_assembler *s)
-{
-    // Derived: three times the root of 1e-13. Loops closed to 1e-13 are as far as the root of that
-    // from a singular configuration.
-    const double dependent = 1e-6;
-    const size_t nu = s->m->nu;
-    const double size = ct_sparse_rows_largest_column(&s->A, s->nhard, nu, s->work);
-    if (!(size > 0))
-        return ct_vector_largest(s->b, nu);
-    ct_sparse_rows_times(s->work, &s->A, s->nhard, s->b);
-    s->work_done += ct_damped_factor(s->closing, &s->A, s->nhard, nu, dependent * size);
-    ct_damped_solve(s->closing, s->work, s->work);
-    ct_vector_add(s->work, -1, s->b, nu);
-    return ct_vector_largest(s->work, nu);
-}
-
-// Close the loops from s->y; returns the largest residual.
+// Close the loops from s->y by Levenberg-Marquardt steps; returns the largest residual.
 static double close_loops(struct ct_assembler *s)
 {
-    const double closed = 1e-15; // Derived: four units of round-off
     double before = INFINITY;
     for (int i = 0;; i++) {
         position_rows(s);
         const double worst = violation(s);
-        // Derived: convergence is quadratic; below 1e-11 only round-off keeps a residual from
-        // halving
-        if (!isfinite(worst) || worst <= closed || i == MOST_ITERATIONS
-            || (worst < 1e-11 && worst > before / 2))
+        // convergence is quadratic: below the tolerance only round-off keeps a residual from halving
+        if (!isfinite(worst) || worst <= 4 * DBL_EPSILON || i == MOST_ITERATIONS
+            || (worst < ct_rank_tolerance && worst > before / 2))
             return worst;
         closing_step(s, fmax(fmin(1, worst), ct_assembly_least_damping));
-        limit_step(s->b, s->m->nu);
         ct_evaluator_retract(s->m, s->y, s->b);
         before = worst;
     }
 }
 
-static void keep_place(struct ct_assembler *s, bool back)
+// Copy the position to k, or back.
+static void save(struct ct_assembler *s, struct ct_saved_position *k, bool back)
 {
     double *memory = s->m->input + s->m->at_memory;
-    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
-    memcpy(back ? s->y : s->saved_y, back ? s->saved_y : s->y, ny * sizeof *s->y);
-    memcpy(back ? memory : s->saved_memory, back ? s->saved_memory : memory,
-           nm * sizeof *memory);
+    const size_t nm = s->e->nmemory;
+    memcpy(back ? s->y : k->y, back ? k->y : s->y, s->m->nq * sizeof *s->y);
+    memcpy(back ? memory : k->memory, back ? k->memory : memory, nm * sizeof *memory);
 }
 
-// Take the step s->b or a part of it, if that comes nearer to the guesses.
-static bool take_step(struct ct_assembler *s, double *nearest)
+// What round-off makes of the square of the distance, a sum, as a part of it.
+static double roundoff(const struct ct_assembler *s)
+{
+    return DBL_EPSILON * (double)(s->A.n - s->nhard);
+}
+
+// Take the step s->b or a part of it, with closed loops, so that it comes nearer to the guesses. False
+// where that would be less than round-off. gain: of the whole step to first order.
+static bool take_step(struct ct_assembler *s, double gain)
 {
     const size_t nu = s->m->nu;
-    double *d = s->step, part = 1;
-    // Derived: 45 units of round-off, of a sum of some tens of squares.
-    const double roundoff = 1e-14;
+    const double before = distance(s), least = roundoff(s) * before;
+    double *d = s->step;
     memcpy(d, s->b, nu * sizeof *d);
-    keep_place(s, false);
-    for (int i = 0; i < MOST_HALVINGS; i++, part /= 2) {
+    save(s, &s->before, false);
+    for (double part = 1; part * gain > least; part /= 2) {
         for (size_t k = 0; k < nu; k++)
             s->b[k] = part * d[k];
         ct_evaluator_retract(s->m, s->y, s->b);
-        if (close_loops(s) < ct_assembly_tolerance
-            && distance(s) <= *nearest * (1 + roundoff)) {
-            *nearest = distance(s);
+        if (close_loops(s) < ct_rank_tolerance && distance(s) < before)
             return true;
-        }
-        keep_place(s, true);
+        save(s, &s->before, true);
     }
     return false;
-}
-
-// From positions where loops may be open, towards the guesses and closed loops together:
-// Gauss-Newton steps of the constrained least-squares problem. Coordinates without a guess move
-// most.
-static void approach(struct ct_assembler *s)
-{
-    // Step at which the iteration ends [m or rad].
-    // Chosen: iterations here against those of find_positions, which follow.
-    const double arrived = 1e-3;
-    for (int i = 0; i < MOST_APPROACHES; i++) {
-        position_rows(s);
-        memset(s->shift, 0, s->nhard * sizeof *s->shift);
-        wishing_step(s);
-        const double size = limit_step(s->b, s->m->nu);
-        if (!isfinite(size))
-            return;
-        ct_evaluator_retract(s->m, s->y, s->b);
-        if (size < arrived)
-            return;
-    }
 }
 
 // Close the loops from s->y, then move along them to the position nearest to the guesses. Returns
 // the largest residual.
 static double find_positions(struct ct_assembler *s)
 {
-    double worst = close_loops(s);
-    if (!(worst < ct_assembly_tolerance))
-        return worst;
-    memset(s->shift, 0, s->nhard * sizeof *s->shift);
-    // Steps below this size that no longer halve are round-off.
-    // Chosen: slow convergence against iterations on round-off.
-    const double roundoff = 1e-11;
-    double nearest = distance(s), before = INFINITY;
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
-        wishing_step(s);
-        if (!(size_along_constraints(s) > small_step))
+    double worst = close_loops(s), before = INFINITY;
+    for (int i = 0; i < MOST_ITERATIONS && worst < ct_rank_tolerance; i++) {
+        const double gain = nearest_step(s), size = ct_vector_max_norm(s->b, s->m->nu);
+        // the last digits of the position are beyond those of the distance
+        const bool is_last = gain <= roundoff(s) * distance(s);
+        if (is_last ? !(size < before) : !take_step(s, gain))
             break;
-        const double size = limit_step(s->b, s->m->nu);
-        if (!(size > small_step) || (size < roundoff && size > before / 2)
-            || !take_step(s, &nearest))
-            break;
+        if (is_last) {
+            ct_evaluator_retract(s->m, s->y, s->b);
+            worst = close_loops(s);
+        }
         before = size;
     }
     return close_loops(s);
@@ -365,20 +288,22 @@ static double find_positions(struct ct_assembler *s)
 
 static double find_velocities(struct ct_assembler *s)
 {
-    double *u = s->y + s->m->nq;
-    memset(s->shift, 0, s->most * sizeof *s->shift);
-    for (int i = 0; i < 5;
-         i++) { // linear: the multipliers are learnt in three, two take off round-off
+    double *u = s->y + s->m->nq, before = INFINITY;
+    for (bool is_met = false; !is_met;) { // linear: until steps are round-off
         velocity_rows(s);
-        if (i < 3)
-            wishing_step(s);
-        else
+        nearest_step(s);
+        const double size = ct_vector_max_norm(s->b, s->m->nu);
+        is_met = !(size < before);
+        if (is_met) { // the damping leaves out a little of what must be met
+            velocity_rows(s);
             closing_step(s, ct_assembly_least_damping);
-        for (size_t k = 0; k < s->m->nu; k++)
-            u[k] += s->b[k];
+        }
+        ct_vector_add(u, 1, s->b, s->m->nu);
+        before = size;
     }
     velocity_rows(s);
-    return fmax(violation(s), ct_loop_filter_missed(s, true));
+    return fmax(violation(s), ct_loop_filter_missed(s, true))
+         / fmax(1, ct_vector_largest(u, s->m->nu));
 }
 
 // ---- the stage ----------------------------------------------------------------------------------
@@ -499,64 +424,45 @@ static void draw_search(struct ct_assembler *s, int search, double reach)
     }
 }
 
-// The number of searches for a position nearer to the guesses. None if all joints are guessed or
-// given and the position is within 0.1 rad or natural lengths. Most if joints without guesses may
-// have led far from the guesses of others.
-static int most_searches(const struct ct_assembler *s, double nearest)
+// May there be a position so much nearer that it is worth a search? `nearest` is a square.
+static bool may_be_nearer(const struct ct_assembler *s, double nearest)
 {
-    // Derived: a fifth of 0.5; of 1800 random loops those with a nearer position were 0.5 away or
+    // Definition: docs/format.md; of 1800 random loops those with a nearer position were 0.5 away or
     // more.
     const double near = 0.1;
-    const bool is_near = nearest <= near * near;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
         if (is_open_coordinate(s, i))
-            return nearest <= ct_assembly_tolerance * ct_assembly_tolerance ? 0
-                 : is_near                                                  ? MOST_SEARCHES
-                                                                            : MOST_FAR_SEARCHES;
-    return is_near ? 0 : MOST_SEARCHES;
+            return nearest > ct_rank_tolerance * ct_rank_tolerance;
+    return nearest > near * near;
 }
 
 static bool is_closed(struct ct_assembler *s, double residual)
 {
     if (s->filter->is_on)
         residual = fmax(residual, ct_loop_filter_missed(s, false));
-    return residual < ct_assembly_tolerance && half_turned_joint(s) < 0
+    return residual < ct_rank_tolerance && half_turned_joint(s) < 0
         && (!s->filter->is_on || ct_loop_filter_holds(s));
-}
-
-static void keep_best(struct ct_assembler *s, bool back)
-{
-    double *memory = s->m->input + s->m->at_memory;
-    const size_t ny = s->m->nq + s->m->nu, nm = s->e->nmemory;
-    memcpy(back ? s->y : s->best_y, back ? s->best_y : s->y, ny * sizeof *s->y);
-    memcpy(back ? memory : s->best_memory, back ? s->best_memory : memory, nm * sizeof *memory);
 }
 
 // s->y is a closed position, the nearest to the guesses so far. Replace it by a nearer one if
 // searches from other starts find one; of equally near ones the first stays.
 static void search_nearer(struct ct_assembler *s)
 {
-    // Relative difference of distances that count as equal.
-    // Chosen: the errors at which iterations end against positions that are a little nearer.
-    const double same = 1e-6;
     double nearest = distance(s);
-    keep_best(s, false);
-    s->work_done = 0;
-    for (int search = 0; search < most_searches(s, nearest) && s->work_done < most_search_work;
-         search++) {
+    save(s, &s->best, false);
+    for (int search = 0; search < MOST_STARTS && may_be_nearer(s, nearest); search++) {
         start_near_targets(s, 0);
         if (search > 0) { // every second one leaves the guesses where they are
             draw_search(s, search, search % 2 ? 0 : sqrt(nearest));
             ct_evaluator_retract(s->m, s->y, s->b);
         }
-        approach(s);
         if (!is_closed(s, find_positions(s))
-            || !(sqrt(distance(s)) < sqrt(nearest) * (1 - same) - ct_assembly_tolerance))
+            || !(sqrt(distance(s)) < sqrt(nearest) - ct_rank_tolerance))
             continue;
         nearest = distance(s);
-        keep_best(s, false);
+        save(s, &s->best, false);
     }
-    keep_best(s, true);
+    save(s, &s->best, true);
     position_rows(s);
 }
 
@@ -607,7 +513,7 @@ static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
         target[i].is_given = false;
     }
     const bool is_met
-        = of_speeds ? find_velocities(s) < speeds_met : try_positions(s, &residual);
+        = of_speeds ? find_velocities(s) < ct_rank_tolerance : try_positions(s, &residual);
     memcpy(target, kept, n * sizeof *kept);
     return is_met;
 }
@@ -622,7 +528,7 @@ static bool assemble_positions(struct ct_assembler *s, double *residual, bool *i
     if (s->may_stay_open)
         return true;
     *residual = find_positions(s);
-    if (*residual < ct_assembly_tolerance)
+    if (*residual < ct_rank_tolerance)
         return report_half_turn(s, half_turned_joint(s));
     const bool closes = is_met_with_guesses(s, false);
     if (!closes) {
@@ -701,6 +607,12 @@ static void derive_speeds(struct ct_arena *a, struct ct_assembler *s)
     ct_evaluator_add_program(a, s->m, e->x, value, n, s->speeds);
 }
 
+static struct ct_saved_position saved_position(struct ct_arena *a, const struct ct_equations *e)
+{
+    return (struct ct_saved_position){CT_NEWN(a, double, e->nq + 1),
+                                      CT_NEWN(a, double, e->nmemory + 1)};
+}
+
 static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                            const struct ct_model *model,
                                            const struct ct_equations *e, bool is_iterated)
@@ -713,10 +625,8 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     s.q = CT_NEWN(a, struct ct_target, nc + 1);
     s.u = CT_NEWN(a, struct ct_target, nc + 1);
     s.y = CT_NEWN(a, double, s.m->nq + nu + 1);
-    s.saved_y = CT_NEWN(a, double, s.m->nq + nu + 1);
-    s.saved_memory = CT_NEWN(a, double, e->nmemory + 1);
-    s.best_y = CT_NEWN(a, double, s.m->nq + nu + 1);
-    s.best_memory = CT_NEWN(a, double, e->nmemory + 1);
+    s.before = saved_position(a, e);
+    s.best = saved_position(a, e);
     s.b = CT_NEWN(a, double, s.m->nrow + nc + s.nelastic + nu + 1);
     s.kept_targets = CT_NEWN(a, struct ct_target, nc + 1);
     ct_assembler_list_frames(&s, a, model);
@@ -724,12 +634,11 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     if (!is_iterated && is_direct(&s))
         return s;
     s.most = s.m->nrow + nc + s.nelastic + nu + 1;
-    s.A.arena = s.weighted.arena = a;
+    s.A.arena = a;
     s.closing = ct_damped_create(a);
-    s.wishing = ct_damped_create(a);
+    s.nearest = ct_damped_create(a);
     s.step = CT_NEWN(a, double, nu + 1);
     s.r = CT_NEWN(a, double, s.most);
-    s.shift = CT_NEWN(a, double, s.most);
     s.work = CT_NEWN(a, double, s.most);
     list_entries(a, e->J, e->nJ, e->nrow, &s.first_J, &s.J_column);
     derive_speeds(a, &s);
@@ -744,8 +653,7 @@ static void drop_whole_turns(const struct ct_assembler *s, double *q)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const double away = q[i] - s->q[i].value;
-        if (s->q[i].wanted && fabs(away) > pi + ct_assembly_tolerance
-            && ct_assembler_is_turn(s, i))
+        if (s->q[i].wanted && fabs(away) > pi + ct_rank_tolerance && ct_assembler_is_turn(s, i))
             q[i] -= 2 * pi * round(away / (2 * pi));
     }
 }
@@ -766,7 +674,7 @@ static bool find_start(struct ct_assembler *s, struct ct_initial_state *out)
         left = find_velocities(s);
     ct_evaluator_set(m, 0, s->y);
     ct_program_run(&m->result, m->input);
-    if (!(left < speeds_met))
+    if (!(left < ct_rank_tolerance))
         return report_speeds(s);
     if (!ct_assembler_check_drivers(s))
         return false;

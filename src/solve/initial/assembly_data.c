@@ -20,7 +20,8 @@
 #include <string.h>
 
 // Weight of given values against rows of loops that do not close exactly.
-// Chosen: given values change by 1e-6, the square, of the gaps of the loops.
+// Derived: given values give way by the inverse square, 1e-6, of the gaps, which are 3e-5 at most:
+// 3e-11, less than what counts as met.
 static const double given_weight = 1e3;
 
 struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s)
@@ -191,7 +192,8 @@ static void shortest_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
-    ct_damped_factor(s->closing, &s->A, s->nhard, s->m->nu, ct_assembly_least_damping);
+    ct_damped_factor(s->closing, &s->A, s->nhard, s->nhard, s->m->nu,
+                     ct_assembly_least_damping);
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
@@ -260,15 +262,14 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
 
 // Is there no motion that makes the remaining gaps smaller? Near a singular configuration the
 // iteration may have ended before, at given values.
-static bool is_least(struct ct_assembler *s, double gap)
+static bool is_least(struct ct_assembler *s)
 {
-    const double little = 1e-2; // Chosen: part of the gap that iterations leave
     loop_rows(s);
     double left = 0;
     for (size_t i = 0; i < s->m->nrow; i++)
         if (s->fixed_row[i])
             left = fmax(left, fabs(s->r[i]) / s->m->row_size[i]);
-    return left <= fmax(unmoved, little * gap);
+    return left <= unmoved;
 }
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
@@ -276,8 +277,7 @@ bool ct_loop_filter_holds(struct ct_assembler *s)
     // A gap that is only round-off: the data close exactly. Derived: 45 units of round-off.
     const double closed = 1e-14;
     const double gap = largest_gap(s);
-    return gap > closed && gap <= ct_data_tolerance && is_least(s, gap)
-        && is_rank_everywhere(s);
+    return gap > closed && gap <= ct_data_tolerance && is_least(s) && is_rank_everywhere(s);
 }
 
 size_t ct_loop_filter_freedoms(struct ct_assembler *s)

@@ -12,11 +12,8 @@
 #include "formulate/build.h"
 #include "numeric/damped.h"
 
-/// Residual of constraints and given values that is accepted [m or rad].
-/// Chosen: round-off of large mechanisms against contradictions.
-static const double ct_assembly_tolerance = 1e-9;
 /// Weight of a deviation from 0 of coordinates without a guess; guesses have 1.
-/// Chosen: a definite position, which moves guesses by 1e-6, the square, at most.
+/// Definition: the root of the weight in docs/format.md.
 static const double ct_assembly_open_weight = 1e-3;
 
 /// Smallest damping of Levenberg-Marquardt steps.
@@ -41,13 +38,14 @@ struct ct_assembler {
     int *J_column, *speed_column;
     struct ct_program *speeds; // coefficients of measured speeds
     double *y, *b, *work;
-    struct ct_sparse_rows A, weighted; // rows now; what must be met comes first
-    double *r, *shift; // their residuals; of what must be met, its multipliers over hard^2
-    struct ct_damped *closing, *wishing; // for rows that must be met, for all
-    double *saved_y, *saved_memory, *step;
+    struct ct_sparse_rows A;             // rows now; what must be met comes first
+    double *r;                           // their residuals
+    struct ct_damped *closing, *nearest; // for rows that must be met, for all
+    struct ct_saved_position {
+        double *y, *memory;
+    } before, best; // before a step; the nearest so far
+    double *step;
     struct ct_target *kept_targets;
-    double *best_y, *best_memory;  // the nearest position so far
-    double work_done;              // multiplications in solved rows, about
     struct ct_loop_filter *filter; // assembly_data.c
     size_t most;                   // room for rows
     size_t nhard;                  // of these: what must be met

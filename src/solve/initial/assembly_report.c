@@ -26,15 +26,12 @@ static struct ct_mark initial_mark(const struct ct_assembler *s, size_t i, bool 
 static bool report_missed(struct ct_assembler *s, bool is_speed)
 {
     enum { MOST_NOTES = 4 }; // Limit: of notes; the last one counts the others
-    // Part of the worst miss below which others are not listed.
-    // Chosen: causes against what an iteration without convergence leaves of other values.
-    const double slight = 1e-3;
     size_t worst = 0, nmissed = 0;
     for (size_t i = 1; i < s->e->ncoordinate; i++)
         if (missed(s, i, is_speed) > missed(s, worst, is_speed))
             worst = i;
     const double most = s->e->ncoordinate ? missed(s, worst, is_speed) : 0;
-    if (!(most > ct_assembly_tolerance))
+    if (!(most > ct_rank_tolerance))
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
@@ -45,11 +42,9 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
              is_speed ? s->u[worst].value : s->q[worst].value,
              ct_start_shown(s->m->result.out[2 * worst + is_speed]));
     for (size_t i = 0; i < s->e->ncoordinate; i++)
-        nmissed += i != worst
-                && missed(s, i, is_speed) > fmax(ct_assembly_tolerance, slight * most);
+        nmissed += i != worst && missed(s, i, is_speed) > ct_rank_tolerance;
     for (size_t i = 0, n = 0; i < s->e->ncoordinate && n < MOST_NOTES; i++) {
-        if (i == worst
-            || !(missed(s, i, is_speed) > fmax(ct_assembly_tolerance, slight * most)))
+        if (i == worst || !(missed(s, i, is_speed) > ct_rank_tolerance))
             continue;
         const bool is_last = ++n == MOST_NOTES && nmissed > MOST_NOTES;
         ct_note(s->ctx, initial_mark(s, i, is_speed), "and %s'%s' of joint '%s', by %.3g%s",
@@ -134,7 +129,7 @@ bool ct_assembler_check_drivers(struct ct_assembler *s)
             if (!ct_initial_number(b->model, v, c->index, &given))
                 continue;
             const double real = s->m->result.out[2 * i + (size_t)k];
-            if (fabs(given - real) > ct_assembly_tolerance * fmax(1, fabs(real)))
+            if (fabs(given - real) > ct_rank_tolerance * fmax(1, fabs(real)))
                 ok = ct_error(
                     s->ctx, v->mark, CT_E_START,
                     "joint '%s' starts on its motion with %s = %.17g, but initial says %.17g",

@@ -15,7 +15,7 @@ static const double kept = 1e-4;
 
 double ct_start_shown(double value)
 {
-    return fabs(value) < ct_assembly_tolerance ? 0 : value;
+    return fabs(value) < ct_rank_tolerance ? 0 : value;
 }
 
 static double unit_of(const struct ct_initial_state *s, const struct ct_target *t, double value)
