@@ -195,22 +195,28 @@ static void closing_step(struct ct_assembler *s, double damping)
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// Gauss-Newton step into s->b: along the constraints, to the least distance from the guesses to first
-// order. Returns by how much the square of the distance falls to first order.
+// Gauss-Newton step into s->b: along the constraints, to the least distance from the guesses to
+// first order. Returns by how much the square of the distance falls to first order.
 static double nearest_step(struct ct_assembler *s)
 {
-    // Derived: 1e-6 of the smallest weight squared, so that steps are too short by 1e-6 of themselves,
-    // and four digits above round-off, which is what dependent rows leave.
+    // Derived: 1e-6 of the smallest weight squared, so that steps are too short by 1e-6 of
+    // themselves, and four digits above round-off, which is what dependent rows leave.
     const double damping = 1e-6 * ct_assembly_open_weight * ct_assembly_open_weight;
     const size_t n = s->A.n;
     double after = 0;
-    for (size_t i = 0; i < n; i++)
-        s->b[i] = -s->r[i];
+    memset(s->work, 0, n * sizeof *s->work);
     ct_damped_factor(s->nearest, &s->A, s->nhard, n, s->m->nu, damping);
-    ct_damped_solve(s->nearest, s->b, s->b);
-    ct_sparse_rows_times(s->work, &s->A, n, s->b);
+    // The first solution misses the constraints by the damping times their multipliers, which the
+    // second adds: near a singular configuration that is round-off, and seems to lead nearer.
+    for (int solution = 0; solution < 2; solution++) {
+        for (size_t i = 0; i < n; i++)
+            s->b[i] = -s->r[i] - (i < s->nhard ? s->work[i] : 0);
+        ct_damped_solve(s->nearest, s->b, s->b);
+        ct_sparse_rows_times(s->work, &s->A, n, s->b);
+        ct_vector_add(s->work, 1, s->r, n);
+    }
     for (size_t i = s->nhard; i < n; i++)
-        after += (s->r[i] + s->work[i]) * (s->r[i] + s->work[i]);
+        after += s->work[i] * s->work[i];
     return distance(s) - after;
 }
 
@@ -221,7 +227,8 @@ static double close_loops(struct ct_assembler *s)
     for (int i = 0;; i++) {
         position_rows(s);
         const double worst = violation(s);
-        // convergence is quadratic: below the tolerance only round-off keeps a residual from halving
+        // convergence is quadratic: below the tolerance only round-off keeps a residual from
+        // halving
         if (!isfinite(worst) || worst <= 4 * DBL_EPSILON || i == MOST_ITERATIONS
             || (worst < ct_rank_tolerance && worst > before / 2))
             return worst;
@@ -246,8 +253,8 @@ static double roundoff(const struct ct_assembler *s)
     return DBL_EPSILON * (double)(s->A.n - s->nhard);
 }
 
-// Take the step s->b or a part of it, with closed loops, so that it comes nearer to the guesses. False
-// where that would be less than round-off. gain: of the whole step to first order.
+// Take the step s->b or a part of it, with closed loops, so that it comes nearer to the guesses.
+// False where that would be less than round-off. gain: of the whole step to first order.
 static bool take_step(struct ct_assembler *s, double gain)
 {
     const size_t nu = s->m->nu;
@@ -275,7 +282,7 @@ static double find_positions(struct ct_assembler *s)
         const double gain = nearest_step(s), size = ct_vector_max_norm(s->b, s->m->nu);
         // the last digits of the position are beyond those of the distance
         const bool is_last = gain <= roundoff(s) * distance(s);
-        if (is_last ? !(size < before) : !take_step(s, gain))
+        if (size <= 4 * DBL_EPSILON || (is_last ? !(size < before) : !take_step(s, gain)))
             break;
         if (is_last) {
             ct_evaluator_retract(s->m, s->y, s->b);
@@ -427,8 +434,8 @@ static void draw_search(struct ct_assembler *s, int search, double reach)
 // May there be a position so much nearer that it is worth a search? `nearest` is a square.
 static bool may_be_nearer(const struct ct_assembler *s, double nearest)
 {
-    // Definition: docs/format.md; of 1800 random loops those with a nearer position were 0.5 away or
-    // more.
+    // Definition: docs/format.md; of 1800 random loops those with a nearer position were 0.5 away
+    // or more.
     const double near = 0.1;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
         if (is_open_coordinate(s, i))

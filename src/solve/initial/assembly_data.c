@@ -262,14 +262,18 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
 
 // Is there no motion that makes the remaining gaps smaller? Near a singular configuration the
 // iteration may have ended before, at given values.
-static bool is_least(struct ct_assembler *s)
+static bool is_least(struct ct_assembler *s, double gap)
 {
+    // Part of the gap along the loops' basis, which is not that with given values: what is left out
+    // of a basis, up to the tolerance, over the columns kept turns it.
+    // Derived: columns kept are of size 1 to the tolerance, this is the middle of both.
+    const double turned = sqrt(ct_data_tolerance);
     loop_rows(s);
     double left = 0;
     for (size_t i = 0; i < s->m->nrow; i++)
         if (s->fixed_row[i])
             left = fmax(left, fabs(s->r[i]) / s->m->row_size[i]);
-    return left <= unmoved;
+    return left <= fmax(unmoved, turned * gap);
 }
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
@@ -277,7 +281,8 @@ bool ct_loop_filter_holds(struct ct_assembler *s)
     // A gap that is only round-off: the data close exactly. Derived: 45 units of round-off.
     const double closed = 1e-14;
     const double gap = largest_gap(s);
-    return gap > closed && gap <= ct_data_tolerance && is_least(s) && is_rank_everywhere(s);
+    return gap > closed && gap <= ct_data_tolerance && is_least(s, gap)
+        && is_rank_everywhere(s);
 }
 
 size_t ct_loop_filter_freedoms(struct ct_assembler *s)

@@ -27,8 +27,9 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
 {
     enum { MOST_NOTES = 4 }; // Limit: of notes; the last one counts the others
     size_t worst = 0, nmissed = 0;
+    // of equal ones the first: round-off does not count
     for (size_t i = 1; i < s->e->ncoordinate; i++)
-        if (missed(s, i, is_speed) > missed(s, worst, is_speed))
+        if (missed(s, i, is_speed) > (1 + ct_rank_tolerance) * missed(s, worst, is_speed))
             worst = i;
     const double most = s->e->ncoordinate ? missed(s, worst, is_speed) : 0;
     if (!(most > ct_rank_tolerance))

@@ -103,8 +103,8 @@ static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
         s->lam[s->row[i]] = b[i];
 }
 
-// Forces, and eigenvalues and directions of the stiffness Z' K Z along the rows. False if they are not
-// found.
+// Forces, and eigenvalues and directions of the stiffness Z' K Z along the rows. False if they are
+// not found.
 static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
 {
     const size_t n = s->n;

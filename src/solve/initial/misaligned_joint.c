@@ -44,8 +44,8 @@ static void to_body(const struct ct_model *m, int frame, bool back, double v[3])
     }
 }
 
-// Does the joint keep motion in the plane whose normal is n, in axes of its frames, to the digits of
-// typed data?
+// Does the joint keep motion in the plane whose normal is n, in axes of its frames, to the digits
+// of typed data?
 static bool keeps(const struct plane *p, size_t joint, const double n[3])
 {
     const struct ct_measure *q = p->measure[joint];

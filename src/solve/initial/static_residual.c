@@ -171,7 +171,8 @@ static void move(struct ct_static_residual *s, const double *d, double factor)
         s->lam[s->row[i]] -= factor * s->stiffness * d[s->n + i];
 }
 
-// The largest coordinate; of the root of eps at least, so that corrections of eps m or rad are none.
+// The largest coordinate; of the root of eps at least, so that corrections of eps m or rad are
+// none.
 static double largest(const struct ct_static_residual *s)
 {
     double size = sqrt(DBL_EPSILON);
