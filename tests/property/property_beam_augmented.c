@@ -287,7 +287,7 @@ static const struct ct_pivot_order *order_of(struct variant *v)
     return o;
 }
 
-static void carried_beams_move_as_beams_do(void **state)
+static void the_augmented_form_gives_the_same_motion(void **state)
 {
     (void)state;
     bool ok = true;
@@ -372,7 +372,7 @@ static void sections_are_eliminated_along_the_beam(void **state)
 }
 
 // Few elements take fewer operations without: nothing is derived for them.
-static void short_beams_are_not_carried(void **state)
+static void short_beams_have_no_augmented_form(void **state)
 {
     (void)state;
     struct system s;
@@ -385,9 +385,10 @@ static void short_beams_are_not_carried(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(carried_beams_move_as_beams_do),
-                                       cmocka_unit_test(cost_grows_with_the_number_of_elements),
-                                       cmocka_unit_test(sections_are_eliminated_along_the_beam),
-                                       cmocka_unit_test(short_beams_are_not_carried)};
+    const struct CMUnitTest tests[]
+        = {cmocka_unit_test(the_augmented_form_gives_the_same_motion),
+           cmocka_unit_test(cost_grows_with_the_number_of_elements),
+           cmocka_unit_test(sections_are_eliminated_along_the_beam),
+           cmocka_unit_test(short_beams_have_no_augmented_form)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,7 +143,7 @@ static void bricard_mechanism_stays_on_its_manifold(void **state)
 }
 
 // The aligned positions, where rank(J) falls, are passed again and again.
-static void four_bars_in_a_row_pass_singular_positions(void **state)
+static void four_bars_in_a_row_pass_singular_configurations(void **state)
 {
     (void)state;
     static const char *const file[]
@@ -181,7 +181,7 @@ static bool compare_with_pivot(void *user, double t, const double *value, size_t
 // Fixed steps look at J only where the pivots of the form have changed, and seek pivots at every
 // evaluation all the same where the mechanism is near a singular configuration, with redundant rows
 // or without.
-static void fixed_steps_know_of_singular_positions(void **state)
+static void fixed_steps_report_singular_configurations(void **state)
 {
     (void)state;
     static const char *const method[] = {"rk4", "rk4", "radau5", "radau5"};
@@ -293,8 +293,8 @@ int main(void)
         cmocka_unit_test(parallel_hinges_in_space_leave_three_reactions_open),
         cmocka_unit_test(multipliers_have_the_least_norm),
         cmocka_unit_test(bricard_mechanism_stays_on_its_manifold),
-        cmocka_unit_test(four_bars_in_a_row_pass_singular_positions),
-        cmocka_unit_test(fixed_steps_know_of_singular_positions),
+        cmocka_unit_test(four_bars_in_a_row_pass_singular_configurations),
+        cmocka_unit_test(fixed_steps_report_singular_configurations),
         cmocka_unit_test(cutsets_and_circuits_of_real_systems_are_orthogonal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -135,19 +135,19 @@ static void check_kind(const struct ct_solver_kind *kind)
     assert_true(n > 80); // places where they were compared
 }
 
-static void unrolled_forms_solve_the_equations(void **state)
+static void symbolic_solvers_solve_the_equations(void **state)
 {
     (void)state;
     check_kind(&ct_solver_symbolic);
 }
 
-static void one_system_solves_the_equations(void **state)
+static void the_solver_of_one_system_solves_the_equations(void **state)
 {
     (void)state;
     check_kind(&ct_solver_symbolic_kkt);
 }
 
-static void sparse_forms_solve_the_equations(void **state)
+static void sparse_solvers_solve_the_equations(void **state)
 {
     (void)state;
     if (!CT_HAS_KLU)
@@ -157,7 +157,7 @@ static void sparse_forms_solve_the_equations(void **state)
 
 // Whatever has become of the pivots, what ct_partition_solve gives is right: it tells where the
 // form is of no use.
-static void forms_are_not_used_where_they_are_weak(void **state)
+static void weak_solvers_are_not_used(void **state)
 {
     (void)state;
     bool ok = true;
@@ -282,7 +282,7 @@ static struct ct_solve_counts run_for(const char *file, const struct ct_formulat
 // Past a position that is nearly singular the rows and columns change, and with them the form;
 // beside it residuals grow and are taken off. A singular one is crossed with the choice that there
 // was before.
-static void runs_refine_and_make_other_forms(void **state)
+static void runs_refine_solutions_and_reorder_pivots(void **state)
 {
     (void)state;
     const struct ct_formulate_options joints = {.tree = CT_TREE_JOINTS, .with_energy = true},
@@ -331,7 +331,7 @@ static const struct ct_solver_kind *cheapest_for_chain(int n)
     return kind;
 }
 
-static void the_cheapest_form_is_chosen(void **state)
+static void the_cheapest_solver_is_chosen(void **state)
 {
     (void)state;
     assert_ptr_equal(cheapest_for_chain(3), &ct_solver_symbolic);
@@ -475,15 +475,16 @@ static void back_ends_agree(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(unrolled_forms_solve_the_equations),
-                                       cmocka_unit_test(one_system_solves_the_equations),
-                                       cmocka_unit_test(sparse_forms_solve_the_equations),
-                                       cmocka_unit_test(forms_are_not_used_where_they_are_weak),
-                                       cmocka_unit_test(projections_end_on_rows),
-                                       cmocka_unit_test(runs_refine_and_make_other_forms),
-                                       cmocka_unit_test(the_cheapest_form_is_chosen),
-                                       cmocka_unit_test(cost_grows_with_the_number_of_loops),
-                                       cmocka_unit_test(cost_grows_with_the_number_of_elements),
-                                       cmocka_unit_test(back_ends_agree)};
+    const struct CMUnitTest tests[]
+        = {cmocka_unit_test(symbolic_solvers_solve_the_equations),
+           cmocka_unit_test(the_solver_of_one_system_solves_the_equations),
+           cmocka_unit_test(sparse_solvers_solve_the_equations),
+           cmocka_unit_test(weak_solvers_are_not_used),
+           cmocka_unit_test(projections_end_on_rows),
+           cmocka_unit_test(runs_refine_solutions_and_reorder_pivots),
+           cmocka_unit_test(the_cheapest_solver_is_chosen),
+           cmocka_unit_test(cost_grows_with_the_number_of_loops),
+           cmocka_unit_test(cost_grows_with_the_number_of_elements),
+           cmocka_unit_test(back_ends_agree)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

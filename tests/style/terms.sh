@@ -1,6 +1,6 @@
 #!/bin/sh
 # A specialist finds a subject by its usual name: the folder with most files that have the term is the one where it is
-# treated.
+# treated. Words that a standard term has replaced stay out of the source.
 #   terms.sh SOURCE_ROOT
 set -eu
 
@@ -31,5 +31,28 @@ impulse:solve/run
 kinematic analysis:solve/run
 consistent initial:solve/initial
 static equilibrium:solve/initial
+END
+
+# retired:the term
+while IFS=: read -r word term; do
+  grep -rnE --include='*.[ch]' -e "(^|[^a-z_])($word)([^a-z_]|\$)" . && {
+    echo "'$word' is called: $term"
+    bad=1
+  }
+done <<'END'
+blunt|is_blunt:round-off limit
+amplifiers?:sensitive output
+poised:state of the vibration modes
+plant(s|ed|ing)?:seed of a directional derivative
+worn:degraded conditioning
+riders?:attached bodies
+abreast:batch, lane
+recoil:coupled beam error
+foresee|foresees|foreseen|unforeseen:predict
+glance:small step of a difference quotient
+embed|embed_side|embed_view:coordinate partition
+striding:crossing
+ct_flexible_felt:ct_flexible_effective_base
+march:follow the path
 END
 exit $bad

@@ -146,7 +146,7 @@ static void a_massless_coordinate_with_a_damper_creeps(void **state)
 
 // One cubic element, free in space: w^2 = 720 and 8400 EI/(m L^4). Its turn about its own axis
 // moves no mass and nothing holds it: it is no motion, and takes no part in the others.
-static void what_neither_mass_nor_force_sees_is_no_motion(void **state)
+static void a_coordinate_without_mass_and_stiffness_is_no_mode(void **state)
 {
     (void)state;
 #define FREE_BEAM(more)                                                                        \
@@ -343,7 +343,7 @@ static const char two_rods[]
       "  lower: {type: revolute, from: a.tip, to: b, initial: {q: second}}\n"
       "outputs: [b.com.y]\n";
 
-static void pendulums_come_to_hang(void **state)
+static void pendulums_find_their_lower_equilibrium(void **state)
 {
     (void)state;
     static const char *const starts[][2]
@@ -838,14 +838,14 @@ int main(void)
         cmocka_unit_test(an_upright_pendulum_grows_and_decays),
         cmocka_unit_test(a_massless_coordinate_follows_its_springs),
         cmocka_unit_test(a_massless_coordinate_with_a_damper_creeps),
-        cmocka_unit_test(what_neither_mass_nor_force_sees_is_no_motion),
+        cmocka_unit_test(a_coordinate_without_mass_and_stiffness_is_no_mode),
         cmocka_unit_test(a_pendulum_on_a_turning_shaft),
         cmocka_unit_test(a_sleeping_top_seen_from_the_top),
         cmocka_unit_test(a_motion_is_linearised_at_a_time),
         cmocka_unit_test(shapes_have_names),
         cmocka_unit_test(a_turning_beam_stiffens_by_southwell),
         cmocka_unit_test(rows_of_many_masses),
-        cmocka_unit_test(pendulums_come_to_hang),
+        cmocka_unit_test(pendulums_find_their_lower_equilibrium),
         cmocka_unit_test(an_unstable_equilibrium_is_one),
         cmocka_unit_test(what_nothing_holds_is_named),
         cmocka_unit_test(a_beam_starts_in_its_static_shape),

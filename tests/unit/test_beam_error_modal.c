@@ -27,7 +27,7 @@ static void follow_until(struct ct_beam_error_modal *s, double t, int n,
 
 // At the rate w: W = 4 - w^2 without, 4 - w^2 + 1.2 w^2 with the axial force, whatever the steps
 // are.
-static void let_go_it_swings_at_two_frequencies(void **unused)
+static void a_released_shape_vibrates_at_the_frequency_of_each_model(void **unused)
 {
     (void)unused;
     const double base[NBASE] = {[W + 2] = 1.2};
@@ -42,7 +42,7 @@ static void let_go_it_swings_at_two_frequencies(void **unused)
 }
 
 // Faster than omega the linear one grows as cosh: the error leaves all bounds.
-static void beyond_its_frequency_it_grows(void **unused)
+static void deflections_grow_beyond_the_first_frequency(void **unused)
 {
     (void)unused;
     const double base[NBASE] = {[W + 2] = 3};
@@ -70,7 +70,7 @@ static void damping_is_in_both(void **unused)
 
 // About the axis at the rate w: in axes that stand still y + i z swings as it would at rest, here
 // it turns back by w t. The second pass makes it of second order.
-static void about_its_axis_planes_meet(void **unused)
+static void rotation_about_the_axis_couples_the_planes(void **unused)
 {
     (void)unused;
     const double w = 0.7, end = 5, base[NBASE] = {[W] = w};
@@ -94,7 +94,7 @@ static void about_its_axis_planes_meet(void **unused)
 
 // Turned about its axis in no time, a deflection along z has a speed along y, and the other way
 // round.
-static void a_jump_about_its_axis_turns_speeds(void **unused)
+static void a_jump_of_axial_rotation_couples_the_planes(void **unused)
 {
     (void)unused;
     const double rest[NBASE] = {0}, base[NBASE] = {[W] = 0.2};
@@ -112,7 +112,7 @@ static void a_jump_about_its_axis_turns_speeds(void **unused)
 }
 
 // A push in no time gives the momentum 2.5 w; a new grip gives none.
-static void a_jump_of_the_rate_is_a_push(void **unused)
+static void a_jump_of_the_rate_is_an_impulse_on_the_beam(void **unused)
 {
     (void)unused;
     const double rest[NBASE] = {0}, base[NBASE] = {[W + 2] = 1e-6};
@@ -130,7 +130,7 @@ static void a_jump_of_the_rate_is_a_push(void **unused)
 }
 
 // Weight across at rest: x = 1.5 g/4; weight along -x is a pressure, eta = -0.05*8 = -0.4.
-static void it_settles_under_its_weight(void **unused)
+static void it_starts_in_static_equilibrium(void **unused)
 {
     (void)unused;
     const double base[NBASE] = {[WEIGHT] = -8, [WEIGHT + 1] = -2};
@@ -147,13 +147,13 @@ static void it_settles_under_its_weight(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(let_go_it_swings_at_two_frequencies),
-        cmocka_unit_test(beyond_its_frequency_it_grows),
+        cmocka_unit_test(a_released_shape_vibrates_at_the_frequency_of_each_model),
+        cmocka_unit_test(deflections_grow_beyond_the_first_frequency),
         cmocka_unit_test(damping_is_in_both),
-        cmocka_unit_test(about_its_axis_planes_meet),
-        cmocka_unit_test(a_jump_about_its_axis_turns_speeds),
-        cmocka_unit_test(a_jump_of_the_rate_is_a_push),
-        cmocka_unit_test(it_settles_under_its_weight),
+        cmocka_unit_test(rotation_about_the_axis_couples_the_planes),
+        cmocka_unit_test(a_jump_of_axial_rotation_couples_the_planes),
+        cmocka_unit_test(a_jump_of_the_rate_is_an_impulse_on_the_beam),
+        cmocka_unit_test(it_starts_in_static_equilibrium),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,21 +24,20 @@ struct record {
     struct ct_integrate_stats stats;
     double now; // last accepted time
     bool is_passed_by;
-    double nearest;              // to the position, of all evaluations
-    double worst, worst_bridged; // errors of steps and samples, and of derivatives by bridges
-    int nbridge, nevent;
+    double nearest; // to the singular configuration, of all evaluations
+    double worst,
+        worst_dense; // errors of steps and samples, and of derivatives by dense output
+    int ndense, nevent;
     double event, last;
     double left,
-        // what the constraints are missed by in the middle, falling with this power of the reach
-        grows;
-    double
-        // the position is `singular` after that time; before, another one that is passed by
-        trusted;
-    double jump;   // of y0' at the event, where that switches
-    double bend;   // and a part of it that is odd about the position, of this width
-    double beside; // time from the position to where it does
-    double since;  // seconds before the position from when on f is known once it has switched
-    double wavers; // every other time to the position is so many times as long
+        grows; // residual of the constraints in the middle; power of the reach it falls with
+    // The singular configuration is `singular` after that time; before, another one is passed by.
+    double trusted;
+    double jump;     // of y0' at the event, where that switches
+    double odd_part; // part of it that is odd about the singular configuration, of this width
+    double event_offset;     // time from the singular configuration to the event
+    double known_before;     // f is known from so many seconds before it on, after the switch
+    double prediction_scale; // every other predicted time is so many times as long
     int nlook, ncrossing;
 };
 
@@ -106,15 +105,15 @@ static double wavering(void *user, double *reach)
 {
     struct record *r = user;
     const double in = singular_in(user, reach);
-    return r->nlook++ % 2 ? in * r->wavers : in;
+    return r->nlook++ % 2 ? in * r->prediction_scale : in;
 }
 
 static double error_of(const struct record *r, double t, const double *y)
 {
     const double since = r->nevent ? fmax(0, t - r->event) : 0, x = since / width;
     const double bent = log1p(x * x) / 2, sum = x * bent - x + atan(x);
-    return fmax(fabs(y[0] - sin(t) - r->jump * since - r->bend * bent),
-                fabs(y[1] - cos(t) + r->jump * since * since / 2 + r->bend * width * sum));
+    return fmax(fabs(y[0] - sin(t) - r->jump * since - r->odd_part * bent),
+                fabs(y[1] - cos(t) + r->jump * since * since / 2 + r->odd_part * width * sum));
 }
 
 static bool at_step(void *user, double t, const double *y)
@@ -143,8 +142,8 @@ static bool at_singular_sample(void *user, double t, const double *y,
         rate += b->weight[k] * dy[0];
     }
     rate += r->nevent ? -r->jump : 0; // b has what rhs makes of it now
-    r->worst_bridged = fmax(r->worst_bridged, fabs(rate - cos(t)));
-    r->nbridge++;
+    r->worst_dense = fmax(r->worst_dense, fabs(rate - cos(t)));
+    r->ndense++;
     return at_sample(user, t, y);
 }
 
@@ -209,11 +208,11 @@ static bool run(struct record *r, const char *method, struct ct_problem p, doubl
                          .left = r->left,
                          .grows = r->grows,
                          .trusted = r->trusted,
-                         .wavers = r->wavers,
+                         .prediction_scale = r->prediction_scale,
                          .jump = r->jump,
-                         .bend = r->bend,
-                         .beside = r->beside,
-                         .since = r->since,
+                         .odd_part = r->odd_part,
+                         .event_offset = r->event_offset,
+                         .known_before = r->known_before,
                          .nearest = INFINITY,
                          .ctx = {.model = ct_arena_create()}};
     struct ct_singularities own = *p.singular;
@@ -244,7 +243,7 @@ static void check_below(const char *what, double got, double limit)
     }
 }
 
-static void any_tolerance_gets_across(void **unused)
+static void crossings_succeed_at_any_tolerance(void **unused)
 {
     (void)unused;
     static const char *const methods[] = {"dopri5", "dop853"};
@@ -254,12 +253,12 @@ static void any_tolerance_gets_across(void **unused)
             struct record r = {0};
             assert_true(run(&r, methods[m], problem, 3, tolerance));
             check_below("error", r.worst, 10 * tolerance + 1e-13);
-            check_below("error of the bridge", r.worst_bridged, 1e3 * tolerance + 1e-11);
-            assert_true(r.nbridge > 10);
+            check_below("error of the dense output", r.worst_dense, 1e3 * tolerance + 1e-11);
+            assert_true(r.ndense > 10);
         }
 }
 
-static void a_run_may_end_on_the_position(void **unused)
+static void a_run_may_end_in_the_singular_configuration(void **unused)
 {
     (void)unused;
     for (int k = -2; k < 5; k++) {
@@ -271,7 +270,7 @@ static void a_run_may_end_on_the_position(void **unused)
     }
 }
 
-static void an_event_beside_the_position_is_found(void **unused)
+static void an_event_near_the_singular_configuration_is_located(void **unused)
 {
     (void)unused;
     struct ct_problem p = problem;
@@ -288,17 +287,17 @@ static enum ct_eval switched(void *user, double t, const double *y, double *dy)
 {
     const struct record *r = user;
     const enum ct_eval e = rhs(user, t, y, dy);
-    if (r->nevent && t < singular - r->since)
+    if (r->nevent && t < singular - r->known_before)
         return CT_EVAL_RETRY;
     const double x = (t - singular) / width;
-    dy[0] += r->nevent ? r->jump + r->bend / width * x / (1 + x * x) : 0;
+    dy[0] += r->nevent ? r->jump + r->odd_part / width * x / (1 + x * x) : 0;
     return e;
 }
 
 static enum ct_eval root_beside(void *user, double t, const double *y, double *g)
 {
     (void)t;
-    g[0] = y[0] - sin(singular + ((const struct record *)user)->beside);
+    g[0] = y[0] - sin(singular + ((const struct record *)user)->event_offset);
     return CT_EVAL_OK;
 }
 
@@ -325,47 +324,50 @@ static const struct ct_problem switching = {.ny = NY,
 
 // f can be computed neither at the event nor next to it: what comes behind is found from both
 // sides.
-static void f_may_switch_in_the_position(void **unused)
+static void f_may_switch_in_the_singular_configuration(void **unused)
 {
     (void)unused;
     static const char *const methods[] = {"dopri5", "dop853"};
-    static const double besides[] = {0, 1e-13, -1e-10, 1e-7, -5e-4, 1.9e-3};
+    static const double event_offsets[] = {0, 1e-13, -1e-10, 1e-7, -5e-4, 1.9e-3};
     for (size_t m = 0; m < COUNT(methods); m++)
-        for (size_t i = 0; i < COUNT(besides); i++)
+        for (size_t i = 0; i < COUNT(event_offsets); i++)
             for (int k = 3; k <= 13; k++) {
                 const double tolerance = pow(10, -k);
-                struct record r = {.jump = -0.3, .beside = besides[i], .since = 1};
+                struct record r
+                    = {.jump = -0.3, .event_offset = event_offsets[i], .known_before = 1};
                 assert_true(run(&r, methods[m], switching, 3, tolerance));
                 assert_int_equal(r.nevent, 1);
-                check_below("time of the event", fabs(r.event - singular - r.beside),
+                check_below("time of the event", fabs(r.event - singular - r.event_offset),
                             k < 13 ? 10 * tolerance : 1e-13);
                 check_below("error", r.worst, 10 * tolerance + 1e-12);
-                check_below("error of the bridge", r.worst_bridged, 1e3 * tolerance + 1e-11);
+                check_below("error of the dense output", r.worst_dense,
+                            1e3 * tolerance + 1e-11);
             }
 }
 
 // Before the event f need not be known far back; where it is not known at all steps go on from the
 // event, if it can be computed there.
-static void f_that_has_switched_is_asked_for_near_by(void **unused)
+static void f_is_evaluated_near_by_after_a_switch(void **unused)
 {
     (void)unused;
-    struct record r = {.jump = 0.5, .since = 0.02}, none = {.jump = 0.5, .beside = 1.5e-3};
+    struct record r = {.jump = 0.5, .known_before = 0.02},
+                  none = {.jump = 0.5, .event_offset = 1.5e-3};
     assert_true(run(&r, "dop853", switching, 3, 1e-9));
     check_below("error", r.worst, 1e-8);
     assert_true(run(&none, "dop853", switching, 3, 1e-9));
     check_below("error", none.worst, 1e-8);
-    none.beside = 0;
+    none.event_offset = 0;
     assert_false(run(&none, "dop853", switching, 3, 1e-9));
 }
 
-// Over the whole crossing what is odd about the position cancels, and what it errs by in the gap;
-// over the rest it does not.
-static void the_rest_has_an_error_of_its_own(void **unused)
+// Over the whole crossing what is odd about the singular configuration cancels, and what it errs by
+// in the gap; over the rest it does not.
+static void the_remainder_has_an_error_of_its_own(void **unused)
 {
     (void)unused;
     for (int k = 4; k <= 11; k++) {
         const double tolerance = pow(10, -k);
-        struct record r = {.bend = 0.1, .since = 1};
+        struct record r = {.odd_part = 0.1, .known_before = 1};
         assert_true(run(&r, "dop853", switching, 1.7, tolerance));
         check_below("error", r.worst, 10 * tolerance);
     }
@@ -382,20 +384,20 @@ static enum ct_eval sharp(void *user, double t, const double *y, double *dy)
 
 // Where the constraints do not hold in the middle there is no position to be singular: short steps
 // follow the motion.
-static void a_position_that_is_passed_by_is_not_crossed(void **unused)
+static void a_configuration_that_is_passed_by_is_not_crossed(void **unused)
 {
     (void)unused;
     struct ct_problem p = problem;
     struct record r = {.is_passed_by = true};
     p.rhs = sharp;
     assert_true(run(&r, "dop853", p, 3, 1e-10));
-    assert_int_equal(r.nbridge, 0);
+    assert_int_equal(r.ndense, 0);
     assert_true(r.stats.steps > 50);
 }
 
 // What misses the constraints by less than 100 T may meet them from nearer by; what misses them by
 // more is passed by at once.
-static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
+static void a_small_mismatch_is_retried_from_nearer_by(void **unused)
 {
     (void)unused;
     const double tolerance = 1e-6;
@@ -412,20 +414,20 @@ static void what_misses_a_little_is_tried_from_nearer_by(void **unused)
     assert_int_equal(far.ncrossing, 1);
 }
 
-// A position that is told of at more than twice the time is another one, and is crossed though the
-// one before was not; up to twice it is the same.
-static void another_position_is_crossed_after_one_that_is_passed_by(void **unused)
+// A singular configuration that is predicted at more than twice the time is another one, and is
+// crossed though the one before was not; up to twice it is the same.
+static void another_configuration_is_crossed_after_one_that_is_passed_by(void **unused)
 {
     (void)unused;
     const double tolerance = 1e-6;
     struct ct_problem p = problem;
-    struct record two = {.trusted = 0.3}, one = {.left = 1, .wavers = 1.8};
+    struct record two = {.trusted = 0.3}, one = {.left = 1, .prediction_scale = 1.8};
     struct ct_singularities x = singularities;
     x.time_to_next = two_ahead;
     x.residual = missed_before;
     p.singular = &x;
     assert_true(run(&two, "dopri5", p, 3, tolerance));
-    assert_true(two.nbridge > 10);
+    assert_true(two.ndense > 10);
     check_below("error", two.worst, 10 * tolerance);
     x.time_to_next = wavering;
     x.residual = missed;
@@ -437,15 +439,15 @@ static void another_position_is_crossed_after_one_that_is_passed_by(void **unuse
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_tolerance_gets_across),
-        cmocka_unit_test(a_run_may_end_on_the_position),
-        cmocka_unit_test(an_event_beside_the_position_is_found),
-        cmocka_unit_test(f_may_switch_in_the_position),
-        cmocka_unit_test(f_that_has_switched_is_asked_for_near_by),
-        cmocka_unit_test(the_rest_has_an_error_of_its_own),
-        cmocka_unit_test(a_position_that_is_passed_by_is_not_crossed),
-        cmocka_unit_test(what_misses_a_little_is_tried_from_nearer_by),
-        cmocka_unit_test(another_position_is_crossed_after_one_that_is_passed_by),
+        cmocka_unit_test(crossings_succeed_at_any_tolerance),
+        cmocka_unit_test(a_run_may_end_in_the_singular_configuration),
+        cmocka_unit_test(an_event_near_the_singular_configuration_is_located),
+        cmocka_unit_test(f_may_switch_in_the_singular_configuration),
+        cmocka_unit_test(f_is_evaluated_near_by_after_a_switch),
+        cmocka_unit_test(the_remainder_has_an_error_of_its_own),
+        cmocka_unit_test(a_configuration_that_is_passed_by_is_not_crossed),
+        cmocka_unit_test(a_small_mismatch_is_retried_from_nearer_by),
+        cmocka_unit_test(another_configuration_is_crossed_after_one_that_is_passed_by),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -268,8 +268,9 @@ static void find_entries(struct fixture *f, const struct ct_flexible *self,
     const size_t n = (size_t)self->nelastic, nu = f->e.nu;
     ct_ex3 less[2];
     const struct ct_base m = ct_flexible_base(b, self, CT_BIAS),
-                         felt = ct_flexible_effective_base(b, self, &m, &less[0], &less[1]),
-                         turned = {.w = felt.w};
+                         effective
+                         = ct_flexible_effective_base(b, self, &m, &less[0], &less[1]),
+                         turned = {.w = effective.w};
     s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
     s->M = ct_symmetric_create(a, nu);
     s->velocity = CT_NEWN(a, ct_ex, nu + 1);

@@ -188,7 +188,7 @@ static double error_of_swings(int count, double least_rtol, long *steps)
 
 // Errors grow with the square of the number of turns, unless steps know of it; with few turns
 // nothing changes.
-static void many_turns_ask_for_better_steps(void **unused)
+static void many_periods_tighten_the_tolerance(void **unused)
 {
     (void)unused;
     long steps, better_steps;
@@ -225,7 +225,7 @@ int main(void)
         cmocka_unit_test(a_fixed_step_is_not_shortened),
         cmocka_unit_test(limits_and_senseless_options_are_errors),
         cmocka_unit_test(endless_runs_end_early),
-        cmocka_unit_test(many_turns_ask_for_better_steps),
+        cmocka_unit_test(many_periods_tighten_the_tolerance),
         cmocka_unit_test(the_caller_may_stop_a_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

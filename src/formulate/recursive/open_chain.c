@@ -55,9 +55,9 @@ static ct_ex divide(struct ct_exs *x, ct_ex a, const struct pivot *p)
                                         : ct_ex_mul(x, a, p->reciprocal);
 }
 
-// M = L' D L from the last speed to the first, unrolled: speeds are numbered from ground outwards,
-// so that this order causes no fill-in in a branched chain, and structural zeros cost nothing. M is
-// positive definite, so that no pivoting is needed. H: M. Source: Featherstone
+// M = L' D L from the last speed to the first, as straight-line code: speeds are numbered from
+// ground outwards, so that this order causes no fill-in in a branched chain, and structural zeros
+// cost nothing. M is positive definite, so that no pivoting is needed. H: M. Source: Featherstone
 // (2008), key featherstone2008, 8.5.
 static ct_ex *solve_symbolic(struct ct_build *b, struct ct_symmetric *H, const ct_ex *Q,
                              ct_ex *pivots)
@@ -153,13 +153,13 @@ static struct trial try_matrix(struct ct_build *b, struct ct_symmetric *H, const
         CT_PUSH(b->ctx->scratch, all, k, cap, H->value[i]);
     for (size_t i = 0; i < n; i++)
         CT_PUSH(b->ctx->scratch, all, k, cap, Q[i]);
-    const double unrolled = symbolic_cost(H), dense = dense_cost((double)n);
+    const double symbolic = symbolic_cost(H), dense = dense_cost((double)n);
     // there are at least as many nodes as operations: count operations only for very many nodes
-    const double most = (double)b->x->nnode + unrolled;
-    const bool is_short = unrolled < dense && most < longest_program;
+    const double most = (double)b->x->nnode + symbolic;
+    const bool is_short = symbolic < dense && most < longest_program;
     const double assembly = is_short ? 0 : cost_of(b, all, k);
     struct trial t = {NULL, NULL, assembly + dense};
-    if (is_short || (unrolled < dense && assembly + unrolled < longest_program)) {
+    if (is_short || (symbolic < dense && assembly + symbolic < longest_program)) {
         t.pivot = CT_NEWN(b->arena, ct_ex, n + 1);
         t.solution = solve_symbolic(b, H, Q, t.pivot);
         t.cost = cost_of(b, t.solution, n);
