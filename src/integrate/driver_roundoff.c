@@ -9,23 +9,17 @@
 // round-off and the change of f is measured. Scaled down to round-off, it is subtracted from error
 // estimates as long as steps stay as short.
 #include "integrate/driver.h"
+#include "numeric/roundoff.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Positions are changed by this part of the largest of them to measure how round-off of positions
-// acts on f. Derived: 2^12 unit round-offs, so that round-off in f itself changes the result by
-// 2^-12.
-static const double change = 0x1p-40;
 // Derived: truncation errors of methods of order 4 or more fall with the fifth power of the step or
 // faster, those of round-off with the first one, and 3 lies between. This holds for steps shorter
 // than 1 over the fastest frequency; longer ones are held by stability, and their errors have no
 // order.
 static const double between = 3;
-// Positions are changed by different parts, so that nothing cancels. Derived: multiples of the
-// golden section are spread most evenly.
-static const double golden = 0.618033988749895;
 // Round-off is measured after each of so many steps, too, since it may keep steps short without a
 // refusal. Chosen: at a cost of nu/1000 evaluations a step, nu the number of speeds.
 enum { STEPS_BETWEEN = 1000 };
@@ -56,7 +50,7 @@ static enum ct_eval move_places(struct ct_driver *r, double part, int k, double 
 {
     const struct ct_problem *p = r->p;
     for (int i = 0; i < p->ny; i++)
-        r->point[i] = r->y[i] + (i < p->nq ? part * (1 + fmod(golden * (i + k), 1)) : 0);
+        r->point[i] = r->y[i] + (i < p->nq ? part * ct_perturbation_part((size_t)(i + k)) : 0);
     return ct_stepper_rhs(p, r->t, r->point, dy, r->stats);
 }
 
@@ -87,7 +81,8 @@ static void measure(struct ct_driver *r, double h)
     double largest = 0, most = 0;
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
-    if (!(largest > 0) || move_places(r, change * largest, 0, r->roundoff) != CT_EVAL_OK)
+    if (!(largest > 0)
+        || move_places(r, CT_PERTURBATION * largest, 0, r->roundoff) != CT_EVAL_OK)
         return;
     for (int i = 0; i < p->ny; i++) {
         const bool is_speed = i >= p->nq && i < p->nq + p->nu;
@@ -95,15 +90,16 @@ static void measure(struct ct_driver *r, double h)
         most = fmax(most, answer);
         r->roundoff[i] = answer;
     }
-    r->problem.roundoff_step = sqrt(change * largest / most);
+    r->problem.roundoff_step = sqrt(CT_PERTURBATION * largest / most);
     if (h > r->problem.roundoff_step)
         return;
-    leave_out_damped(r, change * largest / r->problem.roundoff_step);
-    find_arithmetic_roundoff(r, change * largest);
+    leave_out_damped(r, CT_PERTURBATION * largest / r->problem.roundoff_step);
+    find_arithmetic_roundoff(r, CT_PERTURBATION * largest);
     for (int i = p->nq; i < p->nq + p->nu; i++)
-        r->roundoff[i] = r->roundoff[i] > 0 ? fmax(r->roundoff[i] * DBL_EPSILON / change,
-                                                   r->arithmetic_roundoff[i])
-                                            : 0;
+        r->roundoff[i] = r->roundoff[i] > 0
+                           ? fmax(r->roundoff[i] * DBL_EPSILON / CT_PERTURBATION,
+                                  r->arithmetic_roundoff[i])
+                           : 0;
     r->problem.roundoff = r->roundoff;
 }
 

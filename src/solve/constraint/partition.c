@@ -4,6 +4,7 @@
 
 #include "numeric/damped.h"
 #include "numeric/dense.h"
+#include "numeric/roundoff.h"
 
 #include <math.h>
 #include <string.h>
@@ -270,11 +271,9 @@ void ct_partition_uniqueness(struct ct_partition *s, struct ct_null_space *v)
 {
     // The entry is the squared length of the unit vector's part in null(J'): 0 to round-off where
     // the multiplier is unique, else usually of order one.
-    // Chosen: round-off against multipliers that have a small part in a redundant loop.
-    const double unique_tolerance = 1e-6;
     for (int k = 0; k < (int)s->m->nrow; k++) {
         ct_null_space_vector(v, k, s->r);
-        s->is_unique[k] = fabs(s->r[k]) < unique_tolerance;
+        s->is_unique[k] = fabs(s->r[k]) < CT_HALF_DIGITS;
     }
 }
 

@@ -2,6 +2,7 @@
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/dense.h"
+#include "numeric/roundoff.h"
 
 #include <float.h>
 #include <math.h>
@@ -229,9 +230,6 @@ static size_t bare_speed(const struct ct_partition *s)
 // the motion has no inertia.
 // Chosen: round-off of a sum of several terms against small inertias that are meant.
 static const double roundoff_pivot = 16 * DBL_EPSILON;
-// A pivot above this part of the terms is certainly not round-off: the slower test is left out.
-// Chosen: time of that test against the round-off of the other pivots in this one.
-static const double sound_pivot = 1e-8;
 
 // The elastic coordinate that moves the same masses as speed k, if there is one; else k. A message
 // names it, as the beam whose sections have no inertia is the cause.
@@ -342,7 +340,7 @@ static int lacking_speed(const struct ct_partition *s, const double *z, int k)
 {
     const size_t n = s->m->nu;
     const struct ct_u *u = s->m->e->u;
-    double most = sound_pivot * gross_inertia(s, z, true);
+    double most = CT_HALF_DIGITS * gross_inertia(s, z, true);
     int named = k;
     for (size_t i = 0; i < n && !bare_beam_of(s->m->model, &u[k]); i++) {
         const double moved = z[i] * z[i] * s->m->M[i + n * i];
@@ -379,7 +377,7 @@ static int rounded_pivot(struct ct_partition *s, int f, bool of_beams)
         memset(motion, 0, s->m->nu * sizeof *motion);
         add_motion(s, i, 1, motion);
         const double turned = turned_inertia(s, (size_t)s->independent[i]);
-        if (pivot > sound_pivot * fmax(gross_inertia(s, motion, true), turned))
+        if (pivot > CT_HALF_DIGITS * fmax(gross_inertia(s, motion, true), turned))
             continue;
         find_pivot_motion(s, f, i, x, motion);
         const double rigid = gross_inertia(s, motion, false),
@@ -432,7 +430,7 @@ static int rounded_closed_pivot(struct ct_partition *s, const double *pivot)
         if (bare_beam_of(s->m->model, &s->m->e->u[i])
             && pivot[i] <= roundoff_pivot * turned_inertia(s, i))
             return (int)i;
-        is_doubtful |= pivot[i] <= sound_pivot * s->m->M[i + n * i];
+        is_doubtful |= pivot[i] <= CT_HALF_DIGITS * s->m->M[i + n * i];
         if (pivot[i] <= roundoff_pivot * s->m->M[i + n * i]
             && !(is_exact && elastic_beside(s, i) == i && !is_elastic_motion(s, i)))
             return (int)i;
@@ -522,7 +520,8 @@ static double time_ahead(const struct ct_partition *s, double way)
 // accelerations found last. The evaluator's input is unchanged at the end.
 static void choose_there(struct ct_partition *s)
 {
-    // Chosen: far enough for the choices to differ, near enough for the extrapolation to hold.
+    // Default: far enough for the choices to differ, near enough for the extrapolation to hold.
+    // Test: solvers
     const double way = 0.3; // [rad or m]
     struct ct_evaluator *m = s->m;
     double *q = m->input + m->at_q;

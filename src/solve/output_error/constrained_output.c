@@ -3,6 +3,7 @@
 
 #include "integrate/stepper.h"
 #include "numeric/dense.h"
+#include "numeric/roundoff.h"
 #include "solve/output_error/output_error.h"
 
 #include <float.h>
@@ -85,13 +86,6 @@ void ct_constrained_output_clear(const struct ct_constrained_output *p,
     }
 }
 
-// 1 to 2, in no simple relation.
-static double part(size_t i)
-{
-    const double x = 0.618033988749895 * (double)i;
-    return 1 + (x - (double)(size_t)x);
-}
-
 // p->y = p->closed, with coordinates and their speeds moved by `way`: those of `which` (n).
 static void move_states(struct ct_constrained_output *p, const int *which, size_t n, double way)
 {
@@ -100,8 +94,8 @@ static void move_states(struct ct_constrained_output *p, const int *which, size_
     ct_evaluator_copy(p->y, p->closed, p->ny);
     for (size_t i = 0; i < n; i++) {
         const size_t k = (size_t)which[i];
-        p->d[k] = way * part(k);
-        p->y[m->nq + k] += way * part(m->nu + k);
+        p->d[k] = way * ct_perturbation_part(k);
+        p->y[m->nq + k] += way * ct_perturbation_part(m->nu + k);
     }
     ct_evaluator_retract(m, p->y, p->d);
 }

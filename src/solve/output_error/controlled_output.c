@@ -3,11 +3,6 @@
 
 #include <math.h>
 
-// Tolerance of accelerations and reactions in a step, in tolerances of states. Errors of states
-// accumulate over the steps, those of accelerations and reactions do not.
-// Chosen: ten tolerances, which is promised of outputs at the end of a run.
-static const double promised_error = 10;
-
 bool ct_controlled_outputs_is_check(const struct ct_equations *e, ct_ex v)
 {
     return v.id == e->total.id || v.id == e->closure_error[0].id
@@ -67,6 +62,6 @@ const double *ct_controlled_outputs_at(struct ct_controlled_outputs *o, double t
 struct ct_tolerance ct_controlled_outputs_tolerance(enum ct_output_kind kind,
                                                     const struct ct_tolerance *states)
 {
-    const double part = kind == CT_OUTPUTS_OF_SOLUTIONS ? promised_error : 1;
+    const double part = kind == CT_OUTPUTS_OF_SOLUTIONS ? CT_PROMISED_ERROR : 1;
     return (struct ct_tolerance){part * states->rtol, part * states->atol};
 }

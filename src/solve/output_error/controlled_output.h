@@ -10,6 +10,10 @@
 
 enum ct_output_kind { CT_OUTPUTS_OF_STATES, CT_OUTPUTS_OF_SOLUTIONS, CT_OUTPUT_KINDS };
 
+/// Error of outputs at the end of a run, in tolerances.
+/// Definition: of what docs/accuracy.md promises.
+#define CT_PROMISED_ERROR 10
+
 /// The outputs of one kind.
 struct ct_controlled_outputs {
     struct ct_partition *s;
@@ -35,7 +39,8 @@ void ct_controlled_outputs_create(struct ct_arena *a, struct ct_partition *s,
 /// accelerations cannot be found.
 const double *ct_controlled_outputs_at(struct ct_controlled_outputs *o, double t,
                                        const double *y);
-/// The tolerance of these outputs in a step, from that of the states.
+/// The tolerance of these outputs in a step, from that of the states: for accelerations and
+/// reactions the promised error, as their errors do not accumulate over the steps.
 struct ct_tolerance ct_controlled_outputs_tolerance(enum ct_output_kind kind,
                                                     const struct ct_tolerance *states);
 

@@ -10,30 +10,29 @@
 // The ratio is the error of outputs over the error of states, both in their tolerances. At a ratio
 // of at most `negligible_ratio` the error of outputs is not estimated in the next STEPS_BETWEEN
 // steps.
-// Chosen: time of estimates against errors in between.
+// Default: time of estimates against errors in between. Test: output_error
 static const double negligible_ratio = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // If the ratio changes by at most this part between two estimates, it is used for twice as many
 // steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
-// evaluations, and the ratio may change more. Chosen: time of estimates against errors in between.
+// evaluations, and the ratio may change more. Default: time of estimates against errors in
+// between. Test: output_error
 static const double steady_change[CT_OUTPUT_KINDS] = {0.02, 0.5};
-enum { MOST_BETWEEN = 15 }; // Chosen: as above
+enum { MOST_BETWEEN = 15 }; // Default: as above. Test: output_error
 // Steps without an estimate after one in which outputs err by at most `negligible_ratio` of their
 // tolerance.
-// Chosen: as above.
 static const int fewest_between[CT_OUTPUT_KINDS] = {0, 3};
 // Estimates without a new measurement of round-off, after one in which it did not matter. An error
-// that would reject a step has it measured at once. Chosen: as above.
+// that would reject a step has it measured at once. Default: time of measurements against steps
+// that round-off makes too short. Test: output_error
 enum { MEASUREMENTS_BETWEEN = 15 };
 // Errors of states below this, in tolerances, do not give a ratio: the step size is still growing.
-// Chosen: steps that are too short against accurate ones.
+// Default: steps that are too short against accurate ones. Test: output_error
 static const double least_state_error = 0.02;
-// Relative change of the states by which the round-off of outputs is measured.
-// Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
-static const double perturbation = 0x1p-40;
 // An output counts if it is larger than this many of its round-off errors, that is, has six digits;
 // its error need not be less than `fewest_roundoff_errors` of them.
-// Chosen: outputs that are only round-off against small ones; steps against the last digits.
+// Default: outputs that are only round-off against small ones; steps against the last digits.
+// Test: output_error
 const double ct_output_error_least_size = 1e6;
 static const double fewest_roundoff_errors = 16;
 
@@ -201,7 +200,7 @@ static void plan_checks(struct ct_output_error_record *r, double error, double s
 // Round-off of an output, from its values at a state and at the perturbed one.
 static double roundoff_of(double at, double probed)
 {
-    return fabs(probed - at) * (DBL_EPSILON / perturbation);
+    return fabs(probed - at) * (DBL_EPSILON / CT_PERTURBATION);
 }
 
 double ct_output_error_evaluate(struct ct_output_error_record *r, const double *at,

@@ -10,6 +10,7 @@
 #ifndef CT_SOLVE_OUTPUT_ERROR_OUTPUT_ERROR_H
 #define CT_SOLVE_OUTPUT_ERROR_OUTPUT_ERROR_H
 
+#include "numeric/roundoff.h"
 #include "solve/output_error/output_sensitivity.h"
 
 struct ct_output_error;
@@ -114,7 +115,7 @@ void ct_output_error_accept_sizes(struct ct_output_error_record *r);
 /// Relative change of state i by which the round-off of outputs is measured.
 static inline double ct_output_error_perturbation(int i)
 {
-    return i % 2 ? -0x1p-40 : 0x1p-40;
+    return i % 2 ? -CT_PERTURBATION : CT_PERTURBATION;
 }
 
 #endif

@@ -2,17 +2,12 @@
 #include "solve/output_error/output_sensitivity.h"
 
 #include "integrate/stepper.h"
+#include "numeric/roundoff.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-// Error of outputs that is promised at the end of a run, in tolerances. An output is sensitive if
-// errors of states within their tolerance may change it by more. Chosen: as documented.
-static const double promised_error = 10;
-// Relative change of states in difference quotients of outputs.
-// Derived: 2^12 units of round-off, so that the change has digits; terms of second order are 2^-80.
-static const double perturbation = 0x1p-40;
 // An output need not be more accurate than so many round-off errors of states.
 // Chosen: steps against the last digit.
 static const double fewest_roundoff_errors = 2;
@@ -75,23 +70,17 @@ bool ct_output_sensitivity_is_sensitive(const struct ct_output_sensitivity *p, s
     return p->has[i];
 }
 
-// 1 to 2, in no simple relation.
-static double part(size_t i)
-{
-    const double x = 0.618033988749895 * (double)i;
-    return 1 + (x - (double)(size_t)x);
-}
-
-// What outputs change by, over `perturbation`, where states are changed by it in different parts of
+// What outputs change by, over CT_PERTURBATION, where states are changed by it in different parts of
 // themselves, so that nothing cancels; of themselves and of `small`.
 static void find_way(struct ct_output_sensitivity *p, double t, const double *y, double small,
                      double *way)
 {
     for (size_t i = 0; i < p->ny; i++)
-        p->y[i] = y[i] + perturbation * part(i) * (y[i] + copysign(small, y[i]));
+        p->y[i]
+            = y[i] + CT_PERTURBATION * ct_perturbation_part(i) * (y[i] + copysign(small, y[i]));
     const double *off = ct_controlled_outputs_at(p->outputs, t, p->y);
     for (size_t i = 0; i < p->n; i++)
-        way[i] = fabs(off[i] - p->at[i]) / perturbation;
+        way[i] = fabs(off[i] - p->at[i]) / CT_PERTURBATION;
 }
 
 // Fills `at`, `largest`, `way`, `reach` at y.
@@ -119,7 +108,7 @@ static bool find_known(struct ct_output_sensitivity *p, const double *way,
     bool any = *is_new = false;
     for (size_t i = 0; i < p->n; i++) {
         const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
-        const bool amplifies = tolerance->rtol * way[i] > promised_error * wanted;
+        const bool amplifies = tolerance->rtol * way[i] > CT_PROMISED_ERROR * wanted;
         p->has[i] = amplifies && !p->record->is_found[i];
         any |= p->has[i];
         *is_new |= amplifies && !p->record->is_settled[i];

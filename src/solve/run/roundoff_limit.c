@@ -16,27 +16,18 @@
 // relative error of eps times the ratio of the terms to it, which is nearly constant during the
 // run. The motion that it governs gets out of phase: the error of its speed is half of that
 // relative error times acceleration times time.
+#include "numeric/roundoff.h"
 #include "solve/run/run_internal.h"
 
 #include <float.h>
 #include <string.h>
 
-// Changes of states in difference quotients, in units of round-off. Derived: the quotients have
-// twelve bits, and terms of second order, 2^-80, are far below round-off.
-static const double perturbation_units = 0x1p12;
 // An output need not be more accurate than so many round-off errors.
 // Chosen: reports of the last digit are of no use.
 static const double fewest_roundoff_errors = 2;
 
-static double part_of(size_t i)
-{
-    // different for each state, so that changes do not cancel. Definition: (sqrt 5 - 1)/2
-    const double golden = 0.618033988749895;
-    return 1 + fmod(golden * (double)i, 1);
-}
-
 struct roundoff {
-    double *speed;           // (nu) in units of perturbation_units, after damping
+    double *speed;           // (nu) in units of CT_PERTURBATION_UNITS, after damping
     double *frequency_share; // (nu) omega/(the largest omega)
     // (nu) factor of the accumulation: n errors of random sign add up to sqrt(n); n is the number
     // of steps whose errors are not damped yet
@@ -57,7 +48,7 @@ static bool find_roundoff(struct ct_run *r, double t, struct roundoff *e)
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     e->position = 0;
     for (size_t i = 0; i < nq; i++) {
-        const double change = perturbation_units * DBL_EPSILON / 2 * part_of(i) * fabs(r->y[i]);
+        const double change = CT_PERTURBATION / 2 * ct_perturbation_part(i) * fabs(r->y[i]);
         e->position = fmax(e->position, change);
         r->stage[i] += change;
     }
@@ -103,7 +94,7 @@ static bool find_accumulation(struct ct_run *r, double t, struct roundoff *e)
     return true;
 }
 
-// Changes of outputs, relative to their largest values, by one unit of perturbation_units: for a
+// Changes of outputs, relative to their largest values, by one unit of CT_PERTURBATION_UNITS: for a
 // change of positions d (nu) and of speeds u (nu).
 static bool evaluate_change(struct ct_run *r, double t, const double *d, const double *u,
                             const double *at, double *part)
@@ -116,7 +107,7 @@ static bool evaluate_change(struct ct_run *r, double t, const double *d, const d
     if (ct_run_results(r, t, r->stage, r->value) != CT_EVAL_OK)
         return false;
     for (size_t i = 0; i < r->e->nresult; i++)
-        part[i] = fabs(r->value[i] - at[i]) / perturbation_units / r->largest[i];
+        part[i] = fabs(r->value[i] - at[i]) / CT_PERTURBATION_UNITS / r->largest[i];
     return true;
 }
 
@@ -186,14 +177,14 @@ static void find_accumulated_roundoff(struct ct_run *r, double t, struct roundof
 }
 
 // out (nu, nq, nu; out): u', q' and the pivots (inertias) of the solution in closed form, with
-// positions changed by `side` times perturbation_units round-off errors.
+// positions changed by `side` times CT_PERTURBATION_UNITS round-off errors.
 static void solve_perturbed(struct ct_run *r, double t, int side, size_t sample, double *out)
 {
     const struct ct_evaluator *m = r->m;
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     for (size_t i = 0; i < m->nq; i++)
-        r->stage[i] += side * perturbation_units * DBL_EPSILON / 2 * part_of(i + sample)
-                     * fabs(r->y[i]);
+        r->stage[i]
+            += side * CT_PERTURBATION / 2 * ct_perturbation_part(i + sample) * fabs(r->y[i]);
     ct_evaluator_set(r->m, t, r->stage);
     ct_program_run(&r->m->solved, m->input);
     memcpy(out, m->solved.out, (2 * m->nu + m->nq) * sizeof *out);
@@ -239,7 +230,7 @@ static void find_cancellation(struct ct_run *r, double t, struct cancellation *g
 static double decay_time(struct ct_run *r, double t, size_t k)
 {
     const size_t nq = r->m->nq;
-    const double change = perturbation_units * DBL_EPSILON * fabs(r->y[nq + k]);
+    const double change = CT_PERTURBATION * fabs(r->y[nq + k]);
     memcpy(r->stage, r->y, r->ny * sizeof *r->y);
     r->stage[nq + k] += change;
     if (!(change > 0) || ct_run_rhs(r, t, r->stage, r->dy) != CT_EVAL_OK)
@@ -266,7 +257,7 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
         return;
     const double error = g.part[k] * fabs(r->scratch[k]) * decay_time(r, t, k) / 2;
     for (size_t i = 0; i < nu; i++)
-        u[i] = perturbation_units * error * g.noise[i] / g.noise[k];
+        u[i] = CT_PERTURBATION_UNITS * error * g.noise[i] / g.noise[k];
     if (!evaluate_change(r, t, NULL, u, at, output_change))
         return;
     b->output = find_largest_change(r, output_change, &most);

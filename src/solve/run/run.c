@@ -3,6 +3,7 @@
 
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"
+#include "numeric/roundoff.h"
 #include "solve/constraint/dae.h"
 
 #include <float.h>
@@ -89,12 +90,10 @@ static const double aimed_turn = 2, most_turn = 3; // [rad]
 
 static double angle_rate(struct ct_run *r, double t, const double *y)
 {
-    // Time over which angles are compared, part of the run, or [s].
-    // Chosen: half the digits, for a difference of which no angle turns far.
-    const double small_part = 1e-6;
-    const double dt = small_part * (r->o ? fmin(1, r->o->duration) : 1);
+    // time over which angles are compared: a part of the run, or [s]
+    const double dt = CT_HALF_DIGITS * (r->o ? fmin(1, r->o->duration) : 1);
     return ct_memory_angle_rate(r->m, ct_run_time_before_event(r, t), y,
-                                dt > 0 ? dt : small_part);
+                                dt > 0 ? dt : CT_HALF_DIGITS);
 }
 
 void ct_run_store_angle_rate(struct ct_run *r, double t, const double *y)
@@ -507,13 +506,10 @@ static bool over_step(void *user, const struct ct_step_view *step)
     return true;
 }
 
-// Results with multipliers lam and lam + z, with z in null(J'): those that change depend on the
-// choice of multipliers.
+// Results with multipliers lam and lam + z, with z in null(J') of order one: those that change
+// depend on the choice of multipliers.
 static void compare_results(struct ct_run *r, const double *z, double *value, bool *result)
 {
-    // Relative change of a result that is still none; z is of order one.
-    // Chosen: round-off against a small part of a multiplier in a result.
-    const double change_tolerance = 1e-9;
     double *lam = r->m->input + r->m->at_lam, largest_lam = 1;
     for (size_t i = 0; i < r->m->nrow; i++)
         largest_lam = fmax(largest_lam, fabs(lam[i]));
@@ -524,7 +520,7 @@ static void compare_results(struct ct_run *r, const double *z, double *value, bo
     ct_program_run(&r->m->result, r->m->input);
     for (size_t i = 0; i < r->e->nresult; i++)
         result[i] |= fabs(r->m->result.out[i] - value[i])
-                   > change_tolerance * fmax(largest_lam, fabs(value[i]));
+                   > CT_HALF_DIGITS * fmax(largest_lam, fabs(value[i]));
     for (size_t i = 0; i < r->m->nrow; i++)
         lam[i] = r->s->lam[i];
 }

@@ -181,8 +181,7 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
 // near singular configurations first.
 static void advise_order(struct ct_run *r)
 {
-    const int low_order = 2; // Chosen: order from which on steps are long enough
-    if (r->method->order <= low_order)
+    if (r->method->order == 2)
         ct_note(
             r->ctx, (struct ct_mark){0},
             "steps of '%s', of order %d, are many times shorter than those of 'radau5' or "

@@ -83,7 +83,8 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 // largest value so far and goes on falling. Below the second part pivots are chosen at every
 // evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
 // their rows avoid it below the second part.
-// Chosen: shorter steps near small pivots against the accuracy of accelerations.
+// Default: shorter steps near small pivots against the accuracy of accelerations. Test:
+// singular_approach.
 static const double predicted_pivot = 0.8, near_pivot = 0.5;
 // No step ends where the pivot is less than this part of its largest value. Derived: round-off
 // is divided by its square, and eps / 1e-14 leaves one digit to distinguish the motions through the

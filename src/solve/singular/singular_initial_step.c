@@ -14,6 +14,7 @@
 
 #include "integrate/crossing.h"
 #include "numeric/dense.h"
+#include "numeric/roundoff.h"
 
 #include <float.h>
 #include <math.h>
@@ -244,11 +245,7 @@ static void find_step(struct ct_singular_start *r, const struct initial_step *l,
     }
 }
 
-// Speeds that miss (8.23) by more, of their squares, belong to no motion: what round-off of them
-// leaves is far below.
-// Chosen: between both.
-static const double speed_misfit_tolerance = 1e-7;
-
+// misfit: of (8.23), relative to the squares of the speeds.
 static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedoms)
 {
     ct_error(r->ctx, (struct ct_mark){0}, CT_E_STEP_OPEN,
@@ -256,10 +253,9 @@ static bool refuse_speeds(struct ct_singular_start *r, double misfit, int freedo
              "configuration, where constraints of %s are dependent and several motions are "
              "possible, and %s",
              r->joints,
-             misfit > speed_misfit_tolerance
-                 ? "the speeds belong to none of them"
-                 : "none that has these speeds is found to this tolerance");
-    if (misfit > speed_misfit_tolerance)
+             misfit > CT_HALF_DIGITS ? "the speeds belong to none of them"
+                                     : "none that has these speeds is found to this tolerance");
+    if (misfit > CT_HALF_DIGITS)
         ct_note(r->ctx, (struct ct_mark){0},
                 "give the rates of %d joints there, as they belong to one motion through the "
                 "configuration: the present ones violate its condition by "
@@ -342,7 +338,7 @@ static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *
             r->joints);
     const double misfit = ct_singular_start_misfit(r->arena, r->s, 0, r->assembled, &freedoms);
     set_largest_error(l, r->rtol, 1);
-    return (misfit <= speed_misfit_tolerance && begin_before(r, l))
+    return (misfit <= CT_HALF_DIGITS && begin_before(r, l))
         || refuse_speeds(r, misfit, freedoms);
 }
 
