@@ -142,11 +142,10 @@ static void advance_to(struct run *r, quad t)
             memory[i] = r->out[i];
 }
 
-// True: y has gone on by h. *factor: what the next step should be.
+// True: y has gone on by h. *factor: what the next step should be, over h. A step that needs at most
+// half of the columns is doubled, one that all of them do not make accurate is halved.
 static bool step(struct run *r, quad t, quad h, double tolerance, double *factor)
 {
-    const int aim
-        = 10; // Chosen: columns that a step should need; work of a step against its length
     rhs(r, t, r->y, r->dy);
     for (int k = 0; k < COLUMNS; k++) {
         midpoint(r, t, h, 2 * (k + 1));
@@ -154,10 +153,10 @@ static bool step(struct run *r, quad t, quad h, double tolerance, double *factor
         if (error > tolerance)
             continue;
         memcpy(r->y, r->table[k], r->ny * sizeof *r->y);
-        *factor = k < aim ? 1.3 : k > aim ? 0.8 : 1;
+        *factor = 2 * k < COLUMNS ? 2 : 1;
         return true;
     }
-    *factor = 0.4;
+    *factor = 0.5;
     return false;
 }
 
@@ -186,7 +185,6 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double 
                  void *user, double *out)
 {
     const double least = 1e-12; // Limit: part of the duration; the run fails with shorter steps
-    const double stretch = 1.1; // Chosen: a longer last step against a very short one after it
     struct run r = create(a, m, y);
     quad t = 0, h = (quad)duration / 1000;
     if (m->result.nout)
@@ -196,9 +194,7 @@ bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double 
         const quad sample
             = k + 1 == nsample ? duration : duration * (double)k / (double)(nsample - 1);
         while (t < sample) {
-            const bool is_last
-                = h * stretch
-               >= sample - t; // a step that nearly gets there goes on to the sample
+            const bool is_last = h >= sample - t;
             const quad now = is_last ? sample - t : h;
             double factor;
             if (!go_on(user) || (!is_last && now < least * duration))
