@@ -60,7 +60,7 @@ static double change_over_step(const struct ct_driver *r)
 static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
     // Part of the largest rate that is kept from step to step.
-    // Chosen: comparisons of interpolants against a fast mode that is missed.
+    // Default: comparisons of interpolants against a fast mode that is missed. Test: integrate.
     const double kept = 0.95;
     // The least ratio of its rate times h to the relative change of the accelerations.
     // Chosen: comparisons of interpolants against a fast mode that is not seen.

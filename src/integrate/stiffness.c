@@ -7,20 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-// Steps between tests. Chosen: four evaluations a test against stiffness found late.
+// Steps between tests. Default: four evaluations a test against stiffness found late. Test:
+// integrate.
 static const long test_every = 100;
-// Iterations of the power method in the first test, before v is the fastest mode.
-// Chosen: evaluations against the error of the first rate.
-static const int first_rounds = 6;
-// Positive tests in a row before a trial. Chosen: trials in vain against stiffness found late.
-static const int suspicious_tests = 3;
-// Where the last step was too long for the fastest mode, its rate is estimated again so many steps
-// later, until it has stayed about the same. Chosen: at h = 7/fast an unstable step multiplies an
-// error by 13, so that instability must be seen within a few steps.
-static const long look_after = 5;
-// The least h fast that a test counts as held up. Chosen: explicit methods become unstable, or lose
-// their accuracy, for h fast between 1 and 6; this is half of the lower bound.
-static const double suspicious_step = 0.5;
+// Positive tests in a row before a trial. Default: trials in vain against stiffness found late.
+// Test: integrate.
+static const int tests_in_a_row = 3;
+// Rates that differ by a smaller factor count as the same.
+// Default: modes that change with the motion against other modes. Test: integrate.
+static const double same_rate = 2;
+// From this h fast on the fastest mode may limit the step.
+// Default: trials in vain against stiffness not seen. Test: stiffness_detection_bushing.
+static const double limited_step = 0.5;
 // From this h fast on no method resolves the fastest mode. The changes from step to step are then
 // errors at the limit of stability, and `slow` is not known.
 // Derived: a vibration needs two points in a period, a step of pi/omega.
@@ -32,11 +30,12 @@ static const double least_separation = 10;
 // on (8.10). Chosen: as many explicit steps, of some 1/fast each, are worth a trial.
 static const double far_off = 1000;
 // The part of J^2 x outside the plane of x and J x up to which x counts as a single mode. Otherwise
-// the decay rate is not known. Chosen: the error of the decay rate against modes without one.
+// the decay rate is not known. Default: the error of the decay rate against modes without one.
+// Test: integrate.
 static const double one_motion = 0.1;
 // A motion with h slow below this does not limit the step. Then round-off of positions, which the
 // forces amplify, may limit it far from the limit of stability.
-// Derived: (1e-3)^5, the error of a method of order 5, is a few round-off errors.
+// Derived: (1e-3)^5, the error of a method of order 5, is a few round-off errors. Test: bushing.
 static const double idle_step = 1e-3;
 // Fewer steps to come are worth neither a trial nor the preparation of an implicit method.
 // Chosen: the work of a trial against that of the rest of the run.
@@ -135,14 +134,18 @@ static double find_decay(const struct ct_stiffness *s, const double *x, double g
 }
 
 // Estimates `fast` and `decay`. Two applications of J take positions of a vibration to speeds and
-// back; its rate is the square root of the product of both gains.
+// back; its rate is the square root of the product of both gains. The first estimate is repeated
+// while it grows.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
     if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
         return false;
     turn_to(s, memcpy(s->w, s->v, (size_t)s->p->ny * sizeof *s->w));
-    for (int round = s->fast > 0 ? 1 : first_rounds; round > 0; round--) {
+    const bool is_first = s->fast == 0;
+    double before;
+    do {
         double gain[2];
+        before = s->fast;
         memcpy(s->quarter, s->v, (size_t)s->p->ny * sizeof *s->v);
         for (int i = 0; i < 2; i++) {
             if (!apply_jacobian(s, t, y, s->v, s->w))
@@ -153,7 +156,7 @@ static bool find_fast(struct ct_stiffness *s, double t, const double *y)
         }
         s->fast = sqrt(gain[0] * gain[1]);
         s->decay = find_decay(s, s->quarter, gain[0]);
-    }
+    } while (is_first && s->fast > same_rate * before);
     return isfinite(s->fast);
 }
 
@@ -214,13 +217,12 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
 // configurations it is large for a moment only.
 static bool is_persistent(const struct ct_stiffness *s)
 {
-    return s->alike >= suspicious_tests;
+    return s->alike >= tests_in_a_row;
 }
 
 static void compare_rates(struct ct_stiffness *s, double before)
 {
-    const double about = 2; // Chosen: rates that count as the same against modes that change
-    const bool is_same = s->fast < about * before && before < about * s->fast;
+    const bool is_same = s->fast < same_rate * before && before < same_rate * s->fast;
     s->alike = is_same ? s->alike + 1 : 1;
 }
 
@@ -253,27 +255,12 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     s->is_far = s->p->requested_speeds && s->fast > far_off * pace;
     compare_rates(s, fast_before);
     s->is_followed = reach < unfollowed_step && is_persistent(s);
-    const bool is_unfollowed = fmax(reach, (t - s->t0) * s->fast) >= unfollowed_step;
-    s->is_unstable = is_unfollowed && is_persistent(s);
-    s->test_at = is_unfollowed && !is_persistent(s) ? s->count + look_after : 0;
-    const bool is_idle = s->is_far || s->step * s->slow < idle_step;
-    const bool is_held_up = reach > suspicious_step || (is_idle && is_roundoff_visible(s, y));
+    s->is_unstable = fmax(reach, (t - s->t0) * s->fast) >= unfollowed_step && is_persistent(s);
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
     note_decay(s, is_apart && is_persistent(s), pace, start, t);
+    const bool is_idle = s->is_far || s->step * s->slow < idle_step;
+    const bool is_held_up = reach > limited_step || (is_idle && is_roundoff_visible(s, y));
     return reach > unfollowed_step || (is_held_up && is_apart);
-}
-
-// Between tests: is the rate of the fastest mode still about the same?
-static void look_again(struct ct_stiffness *s, double t, const double *y)
-{
-    const double before = s->fast;
-    s->test_at = 0;
-    if (!find_fast(s, t, y))
-        return;
-    compare_rates(s, before);
-    s->is_unstable = is_persistent(s);
-    if (!is_persistent(s))
-        s->test_at = s->count + look_after;
 }
 
 bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end)
@@ -283,12 +270,10 @@ bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, doub
         memcpy(s->y0, y, (size_t)s->p->ny * sizeof *y);
         s->t0 = t;
     }
-    if (s->count == s->test_at)
-        look_again(s, t, y);
     if (s->count % test_every != 0)
         return false;
     s->in_a_row = test(s, t, y) ? s->in_a_row + 1 : 0;
-    const bool is_due = s->in_a_row >= suspicious_tests && s->count >= s->next_trial;
+    const bool is_due = s->in_a_row >= tests_in_a_row && s->count >= s->next_trial;
     const bool is_overtaken = s->step < s->other_pace * s->evaluations;
     return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
 }

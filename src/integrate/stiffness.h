@@ -29,7 +29,6 @@ struct ct_stiffness {
         is_unstable; // steps are limited by stability, at a rate that has stayed about the same
 
     int alike;       // tests in a row with about the same rate
-    long test_at;    // number of steps at which the rate is estimated between tests; 0: none
     double window_t; // time of the last test, with its counts
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, current

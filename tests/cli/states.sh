@@ -129,7 +129,7 @@ done
 sed 's/rate: setpoint - slide.q/rate: -100*sign(integral - 0.1)/' position.yaml >chatter.yaml
 say simulate chatter.yaml -q -o - 2>&1 | sed -n '/error/p'
 sed 's/rate: setpoint - slide.q/rate: 1e3*integral^2, initial: 1/' position.yaml >blows.yaml
-say simulate blows.yaml -q -o blows.csv 2>&1 | sed -n '/error/p'
+say simulate blows.yaml -q -o blows.csv 2>&1 | sed -n 's/([0-9.e-]* s)/(... s)/; /error/p'
 for rate in 1/integral "sqrt(-1 - slide.q^2)"; do
   sed "s|rate: setpoint - slide.q|rate: $rate|" position.yaml >undefined.yaml
   say simulate undefined.yaml -q -o undefined.csv 2>&1 | sed -n '/error/p'
