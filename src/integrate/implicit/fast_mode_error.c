@@ -12,7 +12,8 @@
 #include <string.h>
 
 // The cutoff frequency of the filter, over the rate of the motion (8.10).
-// Chosen: vibrations that are resolved without need against a slow motion that is filtered out.
+// Default: vibrations that are resolved without need against a slow motion that is filtered out.
+// Test: vibration_error
 static const double much_faster = 10;
 
 // The rate of the motion: the largest |u|/min(|q|, 1), where coordinates below the absolute

@@ -9,24 +9,15 @@
 #include <float.h>
 #include <string.h>
 
-// A convergence rate above this is divergence at once; the first corrections may grow by less.
-// Chosen: corrections in vain against steps refused too early.
-static const double hopeless = 100;
-// The factor on the convergence limit for corrections that go on after convergence, where outputs
-// amplify errors of states (8.11). Chosen: corrections against the error of these outputs.
-static const double further = 1e-6;
-// Among those, a convergence rate above this means that corrections are round-off.
-// Chosen: corrections in vain against corrections missed.
-static const double halved = 0.5;
-// A correction up to this many times the measured effect of round-off counts as round-off.
-// Chosen: three stages add their round-off, and a single measurement may find too little.
+// A correction up to this many times the measured effect of round-off counts as round-off: stages
+// add theirs, and a single measurement may find too little.
+// Default: steps refused for round-off against errors accepted. Test: implicit
 static const double together = 8;
 
 void ct_newton_iteration_start(struct ct_newton_iteration *it)
 {
     const double tail = ct_larger(it->tail, DBL_EPSILON);
     it->count = 0;
-    it->is_further = false;
     it->rate = 0;
     // the value of the last step to the power 3/4, RADAU5 has 4/5; not used where iterations go
     // down to round-off
@@ -36,8 +27,7 @@ void ct_newton_iteration_start(struct ct_newton_iteration *it)
 void ct_newton_iteration_continue(struct ct_newton_iteration *it)
 {
     it->count = 1; // the last correction is known, its rate is not wanted
-    it->is_further = true;
-    it->kappa *= further;
+    it->kappa = 0;
     it->kappa_for = NAN; // in this step only
 }
 
@@ -149,8 +139,6 @@ static void take_rate(struct ct_newton_iteration *it, double rate)
 // Is a correction of this size and convergence rate mere round-off?
 static bool is_roundoff(const struct ct_newton_iteration *it, double rate, double size)
 {
-    if (it->is_further && rate >= halved && size <= 1)
-        return true;
     return rate >= 1 && !is_too_early(it) && size <= it->roundoff_size;
 }
 
@@ -160,10 +148,7 @@ static bool is_roundoff(const struct ct_newton_iteration *it, double rate, doubl
 static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, double size,
                               bool has_speeds)
 {
-    const bool has_stalled
-        = rate >= 1
-       || (rate >= halved && it->count > 2 && !ct_newton_iteration_is_slow(it->rate));
-    if (!has_stalled || it->is_finest)
+    if (rate < 1 || it->is_finest)
         return false;
     const double *noise = ct_newton_iteration_roundoff(it);
     const double *u = has_speeds ? noise + it->nu : NULL;
@@ -175,7 +160,7 @@ static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, doubl
 static bool is_below_roundoff(const struct ct_newton_iteration *it, double size,
                               const double *d, const double *u, int n)
 {
-    return it->m && u && !it->is_finest && !it->is_further && size <= it->roundoff_size
+    return it->m && u && !it->is_finest && it->kappa > 0 && size <= it->roundoff_size
         && is_within(it, d, n, it->roundoff_position)
         && is_within(it, u, n, it->roundoff_speed);
 }
@@ -201,8 +186,6 @@ enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iterat
             || is_roundoff_noise(it, rate, size, u != NULL))
             return CT_CONVERGED;
         take_rate(it, rate);
-        if (rate >= hopeless)
-            return CT_DIVERGED;
         if (it->rate >= 1 && it->count > 3)
             return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
     }

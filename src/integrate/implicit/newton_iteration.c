@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-// The iteration ends when its error is below kappa times the tolerance.
-// Derived: kappa = min(0.03, sqrt(tolerance)), as FNEWT of RADAU5, Hairer and Wanner (1996), IV.8.
+// The iteration ends when its error is below kappa = min(0.03, sqrt(tolerance)) times the
+// tolerance. Definition: FNEWT of RADAU5, Hairer and Wanner (1996), IV.8.
 static const double kappa_most = 0.03;
 // Without a tolerance the iteration goes down to round-off, since errors that it leaves add up over
 // steps of fixed length. Derived: with the factor kappa_finest of 1e-4 this is 1e-16, half of the
@@ -20,11 +20,13 @@ static const double kappa_finest = 1e-4; // Derived: see above
 // corrections. Chosen: steps refused for round-off against the error of the iteration.
 static const double rounding_finest = 100;
 // A factor on kappa in the index-3 form, which tests positions alone. Errors of speeds are those of
-// positions over the step. Chosen: corrections against the error of speeds.
-static const double kappa_index3 = 0.01;
-// The largest number of corrections, with a tolerance and without one.
-// Chosen: corrections against steps refused; RADAU5 has 7.
-enum { MOST = 10, MOST_FINEST = 30 };
+// positions over the step. Default: corrections against the error of speeds. Test: dae
+static const double kappa_index3 = 0.1;
+// The largest number of corrections; RADAU5 has 7.
+// Default: corrections against refused steps. Test: stiffness_detection_bushing
+enum { MOST = 10 };
+// The same without a tolerance. Limit: then the message that the fixed step is too long.
+enum { MOST_FINEST = 30 };
 
 // For full matrices of m rows, n equations.
 static void make_room(struct ct_arena *a, struct ct_newton_iteration *it, int m, int n,

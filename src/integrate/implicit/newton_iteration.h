@@ -85,7 +85,6 @@ struct ct_newton_iteration {
     double kappa, roundoff_size; // sizes of corrections: converged; not above round-off
     double kappa_for;            // the tolerance that kappa belongs to
     bool is_finest;              // there is no tolerance: iterate down to round-off
-    bool is_further;             // corrections go on after convergence
     double least;                // a change of positions by less is round-off  [m, rad]
     double roundoff_position, roundoff_speed; // half a unit round-off of the largest one
     double size;                              // of the last correction
@@ -107,7 +106,7 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
 
 /// A correction of positions below this many round-off errors of the largest one ends the
 /// iteration. With a tolerance the same holds for speeds that move positions by less in the step.
-/// Chosen: steps refused for round-off against the error of positions.
+/// Default: steps refused for round-off against the error of positions. Test: implicit
 static const double ct_position_roundoff = 8;
 
 /// Is the convergence rate so slow that new derivatives pay?
@@ -344,7 +343,7 @@ const double *ct_newton_iteration_roundoff(struct ct_newton_iteration *it);
 
 /// Before the first correction.
 void ct_newton_iteration_start(struct ct_newton_iteration *it);
-/// After convergence: lets corrections go on until they are much smaller or come to round-off.
+/// After convergence: lets corrections go on until they come to round-off.
 void ct_newton_iteration_continue(struct ct_newton_iteration *it);
 /// The convergence test, after a correction of norm `size` of positions by d (nu x k) and of speeds
 /// by u (nu x k; NULL: not tested).

@@ -360,15 +360,13 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
     return CT_EVAL_RETRY;
 }
 
-// Further corrections after convergence, down to round-off if necessary.
+// Further corrections after convergence, down to round-off.
 static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
                                struct ct_integrate_stats *stats)
 {
     enum ct_convergence verdict = CT_ITERATING;
-    enum ct_eval e = CT_EVAL_OK;
     ct_newton_iteration_continue(s->it);
-    e = correct_until(s, t, y, e, &verdict, stats);
-    return e == CT_EVAL_OK && verdict == CT_DIVERGED ? CT_EVAL_RETRY : e;
+    return correct_until(s, t, y, CT_EVAL_OK, &verdict, stats);
 }
 
 // ---- a step -------------------------------------------------------------------------------------

@@ -37,26 +37,22 @@ static const double growing = 0.13;
 // Vibrations of less energy than this many tolerances may be damped altogether.
 // Definition: outputs are promised within ten tolerances, docs/cli.md.
 static const double promised = 10;
-// Vibrations are damped where the loss of all of them changes outputs by less than this part of the
-// promised error (8.10). Chosen: the other half is left to all other errors.
-static const double unfelt = 0.5;
-// The same for the loss over the run (8.22). Chosen: more than half, as it is the largest of many
-// estimates.
-static const double unmissed = 0.75;
+// The part of the promised error that damped vibrations may take, (8.10) and (8.22).
+// Default: longer steps against what is left to all other errors. Test: vibration_error
+static const double unfelt = 0.75;
 
 // Derived: a step dissipates z^6/7200 of a vibration with z = omega h < 1, and its filtered error
 // estimate is z^4/(60 gamma), from the stability function of the method.  (8.21)
 static const double of_vibration = 7200, of_error = 60 * GAMMA;
 // All steps of a run dissipate 1 - 1/e of a vibration with z = z0. `lost` is estimated at `apart`
-// z0 and `all` at z0/`apart`. Chosen: nearer to z0 less than a third of the loss is seen.
+// z0 and `all` at z0/`apart`. Default: nearer to z0 less than a third of the loss is seen, further
+// away its size is less certain. Test: vibration_error
 static const double apart = 2;
 // The part of the last estimate of a loss that counts at least in the next one, as vibrations of
-// several frequencies are in phase only now and then. Chosen: steps against errors of outputs.
+// several frequencies are in phase only now and then.
+// Default: longer steps against errors of outputs. Test: vibration_error
 static const double fading = 0.9;
 
-// The filtered error of speeds is used where it is below this part of the whole error.
-// Chosen: steps that grow against new derivatives.
-static const double worth_it = 0.5;
 // Steps between estimates of fast modes where they did not help, and between estimates of losses.
 // Chosen: the work of estimates against steps that stay short.
 enum { STEPS_BETWEEN = 15 };
@@ -134,7 +130,7 @@ static double find_loss(struct ct_radau *s, const struct ct_problem *p,
     const double may = counts ? p->accuracy * it->energy : INFINITY;
     s->largest_work = ct_larger(s->largest_work, fabs(y[p->ny - 1]));
     const double of_work
-        = p->keeps_work ? 2 * unmissed * felt * (s->largest_work + small) : INFINITY;
+        = p->keeps_work ? 2 * unfelt * felt * (s->largest_work + small) : INFINITY;
     const double least = ct_smaller(may, of_work);
     return as_error(pace / least, v->present / least);
 }
@@ -157,12 +153,12 @@ static void discount_fast_modes(struct ct_radau *s, const struct ct_problem *p,
             = ct_newton_iteration_vibration(s->it, GAMMA, s->now.h, d, u);
         if (loss)
             *loss = find_loss(s, p, &v, y, dy + nq);
-        if (slow < worth_it * eased
+        if (slow < eased
             && ct_newton_iteration_output_change(s->it, p, &v, t, y, d, u)
                    < unfelt * promised * p->accuracy)
             eased = slow;
     }
-    s->counts_slow_only = eased < worth_it * *err;
+    s->counts_slow_only = eased < *err;
     s->unchecked = STEPS_BETWEEN;
     if (s->counts_slow_only && eased > 1 && !s->it->is_new)
         ct_newton_iteration_forget(
@@ -187,7 +183,7 @@ static double missing(struct ct_radau *s, const struct ct_problem *p, double t, 
                       double rate, double times)
 {
     const double small = s->step_tolerance.atol / s->step_tolerance.rtol,
-                 may = unmissed * promised;
+                 may = unfelt * promised;
     const struct ct_band band = {.rate = rate,
                                  .times = times,
                                  .small = small,
