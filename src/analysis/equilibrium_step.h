@@ -7,7 +7,8 @@
 #include "analysis/sparse_linearization.h"
 
 /// Longest rotation in one step [rad].
-/// Chosen: shorter steps are more steps; longer ones may jump to another equilibrium.
+/// Default: shorter steps are more steps; longer ones may jump to another equilibrium.
+/// Test: equilibria
 static const double ct_largest_rotation_step = 0.2;
 
 /// Which coordinates are angles? (nu)

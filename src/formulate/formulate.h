@@ -50,12 +50,12 @@ struct ct_formulate_options {
 };
 
 /// Up to this many speeds every formulation is tried. Users read the mass matrix of such systems.
-/// Chosen: the time to generate them against shorter programs.
+/// Default: the time to generate them against shorter programs. Test: operation_counts
 enum { CT_SMALL_SYSTEM = 24 };
 /// Limit: speeds; full matrices of larger systems would take hours, and a message says so.
 enum { CT_MOST_FULL = 3000 };
-/// Up to this many speeds analyses use dense matrices, above it sparse ones. Chosen: dense matrices
-/// take some seconds at this size.
+/// Limit: speeds of analyses with dense matrices, which take some seconds at this size; larger
+/// systems have sparse ones.
 enum { CT_MOST_DENSE = 300 };
 
 /// A pair of trees whose cost the search has computed.

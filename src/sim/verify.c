@@ -22,9 +22,9 @@
 #include <math.h>
 #include <string.h>
 
-// Tolerance of the second run relative to the first. With a tenth, the error often does not
-// decrease enough; a hundredth costs more and is not better.
-// Chosen: between those.
+// Tolerance of the second run relative to the first. Derived: the geometric mean of a tenth, with
+// which the error often does not decrease enough, and a hundredth, which costs more and is not
+// better.
 static const double tolerance_reduction = 1. / 30;
 // If the tolerance can be tightened by less than this factor, the second run is looser by this
 // factor. Then it has the larger error.

@@ -10,9 +10,6 @@
 
 #include <math.h>
 
-// Cost of one call of a dense solver, in operations of straight-line code. Chosen: about the time
-// of a call.
-static const double call_cost = 300;
 // Limit: operations of a program, because they take memory. Shorter programs have their loops
 // rerolled (codegen/reroll.h); for longer ones a sparse solver is called.
 static const double longest_program = 1e7;
@@ -113,7 +110,7 @@ static double symbolic_cost(const struct ct_symmetric *H)
 
 static double dense_cost(double n)
 {
-    return n * n * n / 3 + 2 * n * n + call_cost;
+    return n * n * n / 3 + 2 * n * n + CT_DENSE_CALL_COST;
 }
 
 // ---- candidates ---------------------------------------------------------------------------------

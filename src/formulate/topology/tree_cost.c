@@ -81,7 +81,8 @@ double ct_equations_cost(struct ct_arena *scratch, const struct ct_equations *e)
         all[k++] = e->row[i].gam;
     const struct ct_tape_counts c = ct_ex_count(scratch, e->x, all, k);
     // In multiplications: the vector operations of a multi-stage integrator.
-    // Chosen: weight of the number of speeds against the length of the equations.
+    // Default: weight of the number of speeds against the length of the equations.
+    // Test: operation_counts
     const double per_speed = 20;
     return ct_counted_cost(&c) + per_speed * (double)e->nu + factor_cost(scratch, e);
 }

@@ -14,17 +14,18 @@
 
 // Rows and columns are chosen anew when kappa has grown by this factor since the last choice, or
 // sigma has fallen by it, and when kappa is larger than ct_kappa_largest (section 6.3, item 5).
-// Chosen: one digit, or three in all, against the cost of a choice, which makes a solver.
+// Default: one digit, or three in all, against the cost of a choice, which makes a solver.
+// Test: partition_conditioning
 static const double ct_kappa_growth = 10;
 static const double ct_kappa_largest = 1e3;
 // The same for sigma if there are redundant rows: other rows can replace those that are kept, and
 // do so before these are nearly dependent. Stages of a step do not meet the rows that are left out
 // exactly; with nearly dependent kept rows their accelerations are wrong.
-// Chosen: the accuracy of stages against the cost of choices.
+// Default: the accuracy of stages against the cost of choices. Test: partition_conditioning
 static const double ct_redundant_degradation = 2.5;
 // Near a singular configuration every choice is poor, and one that was made there may still be poor
 // after it. There another choice is made whenever sigma has changed by this factor.
-// Chosen: a good choice soon against the cost of choices.
+// Default: a good choice soon against the cost of choices. Test: partition_conditioning
 static const double ct_sigma_change_near_singular = 1.25;
 // Projections stop at this residual [rad, m]. Derived: 450 units of round-off, which is what sums
 // of some hundred terms of order one may leave.
@@ -35,25 +36,26 @@ static const double ct_position_tolerance = 1e-13;
 // 2e-17, less than a round-off of speeds of order one.
 static const double ct_small_change = 1e-4;
 // From this sigma on the division by small pivots is taken into account.
-// Chosen: a factor of two is not.
+// Default: a factor of two is not. Test: partition_conditioning
 static const double ct_small_pivot = 0.5;
 // Limit: Newton iterations of a projection; beyond it the step is repeated with half its length.
 enum { CT_MOST_NEWTON = 25 };
 // Only dense matrices give sigma, which tells how near a singular configuration is. A solver with a
 // fixed order of pivots is used while its strength (solver.h) has changed by less than this factor
 // since sigma was computed last.
-// Chosen: a recent sigma against the time of dense factors.
+// Default: a recent sigma against the time of dense factors. Test: partition_conditioning
 static const double ct_most_strength_change = 1.5;
 // If strength and sigma have changed by the same factor, to ct_same_change, sigma is extrapolated
-// by the strength, up to a change by ct_most_extrapolated_change. Chosen: as above.
+// by the strength, up to a change by ct_most_extrapolated_change. Default: as above.
+// Test: partition_conditioning
 static const double ct_same_change = 1.02, ct_most_extrapolated_change = 4;
 // The residual check of a solver is left out while its strength is within this factor of that at
-// the last check. Chosen: the time of checks against pivots that become bad.
+// the last check. Default: the time of checks against pivots that become bad. Test: redundancy
 static const double ct_same_strength = 1.25;
 // It is also left out only while the correction of coordinates per residual, in a projection, is at
 // most so many times that at the last check. Near a singular J_d kappa can rise from 1 to 50 within
-// the eight steps between two checks, while no pivot of the solver changes as much. Chosen: as
-// above.
+// the eight steps between two checks, while no pivot of the solver changes as much.
+// Chosen: as above.
 static const double ct_correction_growth = 3;
 // Residual of the equations relative to their largest terms. Above the first value the solution is
 // refined; above the second one the solver is not used.

@@ -1,27 +1,27 @@
 // See solver.h.
 #include "solve/constraint/solver.h"
 
+#include "formulate/operation_count.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// The overhead of the dense solver, in operations of straight-line code.
-// Chosen: about what it takes; only the choice of a solver depends on it.
-static const double dense_call_cost = 500;
 // Limit: nodes of the expressions of a symbolic solver; with more another solver is used. A node
 // takes about a microsecond and half a kilobyte: two seconds and a gigabyte.
 static const double most_nodes = 2e6;
 // Limit: the same where the caller wants a symbolic solver whatever it costs.
 static const double most_requested_nodes = 8e6;
 // Nodes of all programs, those of checks and projections included, over those of the solution.
-// Chosen: about the largest ratio; a symbolic solver with more nodes is not made.
+// Default: about the largest ratio; a symbolic solver with more nodes is not made. Test: solvers
 static const double all_programs_ratio = 4;
 // The symbolic solver of [M J'; J 0] is made if its predicted cost is below this part of the
 // others'.
-// Chosen: the time to make it against the time that it saves.
+// Default: the time to make it against the time that it saves. Test: solvers
 static const double kkt_cost_ratio = 0.9;
 
-// See solver.h. Chosen: three digits that are lost against the time of dense matrices.
+// See solver.h. Default: three digits that are lost against the time of dense matrices.
+// Test: partition_conditioning
 const double ct_solver_least_strength = 1e-3;
 
 static int ascending(const void *a, const void *b)
@@ -136,7 +136,7 @@ struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
                                    struct ct_solver_costs *costs)
 {
     struct ct_solver_costs c = {.symbolic = NAN, .symbolic_kkt = NAN, .sparse = NAN};
-    c.dense = ct_solver_operations(&m->motion) + operations + dense_call_cost;
+    c.dense = ct_solver_operations(&m->motion) + operations + CT_DENSE_CALL_COST;
     struct ct_solver *f = kind ? kind->create(a, m, p, most_nodes) : compare(a, m, p, &c);
     if (f && !kind && f->cost > c.dense) {
         ct_solver_destroy(m, f);
