@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Chosen: the default of the wanted error, as documented in docs/cli.md.
+// Default: the wanted error, as docs/cli.md says. Test: accuracy
 static const double default_error = 1e-6;
 // Limit: six methods in about a minute; more if the reference alone takes long.  [s]
 static const double share_of_method = 9, share_of_reference = 1;

@@ -57,10 +57,12 @@ static const double ct_same_strength = 1.25;
 // the eight steps between two checks, while no pivot of the solver changes as much.
 // Chosen: as above.
 static const double ct_correction_growth = 3;
-// Residual of the equations relative to their largest terms. Above the first value the solution is
-// refined; above the second one the solver is not used.
-// Chosen: digits of accelerations against the time of a refinement.
-static const double ct_refinement_residual = 1e-13, ct_largest_residual = 1e-11;
+// Residual of the equations relative to their largest terms above which the solution is refined.
+// Derived: 450 units of round-off, as ct_position_tolerance.
+static const double ct_refinement_residual = 1e-13;
+// The same, and backward error of a sparse solution, above which dense matrices are used.
+// Chosen: digits of accelerations against the time of dense matrices.
+static const double ct_largest_residual = 1e-11;
 
 static inline bool ct_is_within(double ratio, double factor)
 {

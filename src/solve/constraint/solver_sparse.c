@@ -3,7 +3,7 @@
 //     [ M  J' ] [  u'  ]   [  Q   ]
 //     [ J  0  ] [ -lam ] = [ -gam ]         J_d d = -Phi,  J_d d = -v
 #include "numeric/sparse.h"
-#include "solve/constraint/solver.h"
+#include "solve/constraint/partition_conditioning.h"
 
 #include <math.h>
 #include <string.h>
@@ -112,9 +112,7 @@ static double solve_into(struct sparse_solver *f, struct ct_evaluator *m, bool i
 static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
 {
     struct sparse_solver *f = sparse_solver_of(form);
-    const double largest_error
-        = 1e-11; // Chosen: backward error from which dense matrices are used
-    if (!(solve_into(f, m, false) < largest_error) || !factor_Jd(f, m->Q + m->nu))
+    if (!(solve_into(f, m, false) < ct_largest_residual) || !factor_Jd(f, m->Q + m->nu))
         return 0;
     for (size_t i = 0; i < m->nu; i++)
         if (!isfinite(f->x[i]))

@@ -14,6 +14,10 @@ enum ct_output_kind { CT_OUTPUTS_OF_STATES, CT_OUTPUTS_OF_SOLUTIONS, CT_OUTPUT_K
 /// Definition: of what docs/accuracy.md promises.
 #define CT_PROMISED_ERROR 10
 
+/// An output need not be more accurate than so many round-off errors. Derived: the difference of
+/// two values, which its error is, has the round-off of both.
+#define CT_FEWEST_ROUNDOFF_ERRORS 2
+
 /// The outputs of one kind.
 struct ct_controlled_outputs {
     struct ct_partition *s;

@@ -8,9 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-// An output need not be more accurate than so many round-off errors of states.
-// Chosen: steps against the last digit.
-static const double fewest_roundoff_errors = 2;
 // Calls without a test after one that found no sensitive output. Chosen: time against a late start.
 enum { CALLS_BETWEEN = 7 };
 // Derivatives of outputs change slowly. Those of accelerations are used at so many further states.
@@ -151,7 +148,7 @@ int ct_output_sensitivity_roundoff_limit(struct ct_output_sensitivity *p, double
     int limited = -1;
     note_sizes(p, largest);
     find(p, t, y, p->way, &tolerance);
-    *part = wanted / fewest_roundoff_errors;
+    *part = wanted / CT_FEWEST_ROUNDOFF_ERRORS;
     for (size_t i = 0; i < p->n; i++) {
         const double size = p->largest[i], roundoff = DBL_EPSILON * p->way[i];
         // a residual is nothing but round-off
@@ -186,7 +183,7 @@ double ct_output_sensitivity_error(struct ct_output_sensitivity *p, double t, co
         const double wanted = tolerance->rtol * p->largest[i] + tolerance->atol;
         const double roundoff = DBL_EPSILON * p->way[i];
         const double part
-            = (off[i] - p->at[i]) / ct_larger(fewest_roundoff_errors * roundoff, wanted);
+            = (off[i] - p->at[i]) / ct_larger(CT_FEWEST_ROUNDOFF_ERRORS * roundoff, wanted);
         sum += part * part;
         n++;
     }

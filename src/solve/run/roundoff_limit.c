@@ -22,10 +22,6 @@
 #include <float.h>
 #include <string.h>
 
-// An output need not be more accurate than so many round-off errors.
-// Chosen: reports of the last digit are of no use.
-static const double fewest_roundoff_errors = 2;
-
 struct roundoff {
     double *speed;           // (nu) in units of CT_PERTURBATION_UNITS, after damping
     double *frequency_share; // (nu) omega/(the largest omega)
@@ -275,7 +271,7 @@ struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double hel
     double *at = CT_NEWN(r->arena, double, n + 1),
            *output_change = CT_NEWN(r->arena, double, n + 1);
     struct ct_roundoff_limit b
-        = {.output = -1, .one = held / fewest_roundoff_errors, .sum = NAN};
+        = {.output = -1, .one = held / CT_FEWEST_ROUNDOFF_ERRORS, .sum = NAN};
     if (r->output_error)
         b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, held,
                                                   small_output(r), &b.one);
