@@ -167,8 +167,8 @@ static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *a
 // for them it only matters whether pivots are sought at every evaluation.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
-    // Chosen: changes on a step; steps
-    const double unchanged_ratio = 1.05, far_steps = 2 * CT_STEPS_NEAR_SINGULAR;
+    // Default: rank tests against what changes on a step. Test: singular
+    const double unchanged_ratio = 1.05;
     const struct ct_partition *s = w->s;
     if (!s->has_solver || s->nweak || s->switches != w->switches || s->nmade != w->nmade)
         return false;
@@ -179,7 +179,7 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
         return ct_is_within(f->weakest / w->weakest, ct_same_strength)
             && !(s->has_units && !ct_is_within(f->volume / w->volume, ct_same_strength));
     const bool is_away = is_fixed || w->relative_pivot > predicted_pivot
-                      || w->time_to_singular > far_steps * dt;
+                      || w->time_to_singular > CT_STEPS_NEAR_SINGULAR * dt;
     return w->relative_pivot > near_pivot && is_away
         && ct_is_within(f->weakest / w->weakest, unchanged_ratio)
         && ct_is_within(f->volume / w->volume, unchanged_ratio);

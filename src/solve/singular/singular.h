@@ -21,7 +21,8 @@ enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
 /// Part of its largest value so far that the smallest pivot must have for accelerations to be
 /// computed without a crossing. Derived: they lose 1/part^2 = 16 of accuracy there, a digit.
 #define CT_SINGULAR_PIVOT 0.25
-/// Steps within which a singular configuration is near. Chosen: four.
+/// Steps within which a singular configuration is near. Default: rank tests against a configuration
+/// that is seen late. Test: near_singular_slow
 #define CT_STEPS_NEAR_SINGULAR 4
 
 /// A singular configuration that was passed.

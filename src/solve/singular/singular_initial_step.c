@@ -28,10 +28,13 @@ static const double longest_displacement = 0.4;
 // accelerations at the start predict
 enum { MOST_HALVINGS = 12 };
 
-// Starts from so far [rad, m] come to the position by a step across it and what is learnt on the
-// way; up to there from it a start tells nothing of how the smallest pivot falls.
-// Chosen: starts that are refused for lack of digits against steps that err.
-static const double crossing_distance = 0.2, near_distance = 0.5;
+// Starts up to so far [rad, m] from a singular configuration begin by a step across it.
+// Default: starts that are refused for lack of digits against steps that err.
+// Test: near_singular_slow
+static const double crossing_distance = 0.2;
+// A start up to so far from it [rad, m] tells nothing of how the smallest pivot falls.
+// Default: as above. Test: singular
+static const double near_distance = 0.5;
 
 // The error of the step may be this part of the largest state, or the second part of the
 // tolerance if that is more. (8.35) Derived: 4500 units of round-off; a fiftieth of the tolerance
