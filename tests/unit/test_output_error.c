@@ -5,12 +5,11 @@
 
 #include <float.h>
 
-// The error of an output that is so many of its round-off errors, wholly wrong.
-static double judge(double roundoffs)
+// The error of an output of 1 that changes to `off`, where one of its round-off errors is
+// `roundoff`.
+static double judge(struct ct_tolerance tolerance, double roundoff, double off)
 {
-    const struct ct_tolerance tolerance = {1e-6, 1e-12};
-    const double at = 1, off = 2,
-                 probed = at + ct_output_error_perturbation(0) / (DBL_EPSILON * roundoffs);
+    const double at = 1, probed = at + roundoff * (CT_PERTURBATION / DBL_EPSILON);
     struct ct_arena *a = ct_arena_create();
     struct ct_output_error_record r = ct_output_error_record(a, CT_OUTPUTS_OF_STATES, 1);
     const double error = ct_output_error_evaluate(&r, &at, &probed, &off, &tolerance, 1);
@@ -22,30 +21,20 @@ static double judge(double roundoffs)
 static void outputs_count_from_six_digits_on(void **unused)
 {
     (void)unused;
-    check_below("error of an output of five digits", judge(2e5), 0);
-    check_below("what an output of seven digits lacks", 1, judge(5e6));
-}
-
-// An output of 1 with so many round-off errors in its error, wholly wrong, at a tolerance that is
-// far below round-off.
-static double judge_at_roundoff(double roundoffs)
-{
-    const struct ct_tolerance tolerance = {1e-18, 0};
-    const double at = 1, off = 1 + roundoffs * 0x1p-40,
-                 probed = at + 0x1p-40 * (CT_PERTURBATION / DBL_EPSILON);
-    struct ct_arena *a = ct_arena_create();
-    struct ct_output_error_record r = ct_output_error_record(a, CT_OUTPUTS_OF_STATES, 1);
-    const double error = ct_output_error_evaluate(&r, &at, &probed, &off, &tolerance, 1);
-    ct_arena_destroy(a);
-    return error;
+    const struct ct_tolerance usual = {1e-6, 1e-12};
+    check_below("error of an output of five digits", judge(usual, 1 / 2e5, 2), 0);
+    check_below("what an output of seven digits lacks", 1, judge(usual, 1 / 5e6, 2));
 }
 
 // A step is not refused for the last digit of an output, and is for its last two.
 static void the_last_digit_rejects_no_step(void **unused)
 {
     (void)unused;
-    check_below("error of ten round-off errors", judge_at_roundoff(10), 1);
-    check_below("1, for a hundred", 1, judge_at_roundoff(100));
+    const struct ct_tolerance below_roundoff = {1e-18, 0};
+    const double roundoff = 0x1p-40;
+    check_below("error of ten round-off errors",
+                judge(below_roundoff, roundoff, 1 + 10 * roundoff), 1);
+    check_below("1, for a hundred", 1, judge(below_roundoff, roundoff, 1 + 100 * roundoff));
 }
 
 struct looks {

@@ -3,7 +3,6 @@
 #include "solve/run/run_internal.h"
 
 #include "expr/print.h"
-#include "numeric/roundoff.h"
 
 #include <string.h>
 
@@ -78,6 +77,12 @@ static double largest_jump(const struct ct_run *r, const double *before, int whi
     return jump;
 }
 
+// A jump of a driven coordinate or its rate, or an open row after an event, that is still none [m,
+// rad, 1/s]. Speeds follow the sum of all jumps of a rate, those of a finely sampled table among
+// them: a larger value leaves out more of it.
+// Default: round-off of tables and functions against jumps that are meant. Test: cubic_table
+const double ct_run_jump_tolerance = 1e-9;
+
 bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
                         double t)
 {
@@ -93,7 +98,7 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
 {
     const struct ct_row *row = r->e->row;
     for (size_t i = 0; i < r->m->nrow; i++)
-        if (fabs(r->m->phi[i]) > CT_HALF_DIGITS) {
+        if (fabs(r->m->phi[i]) > ct_run_jump_tolerance) {
             const struct ct_instance *joint
                 = row[i].joint < 0 ? NULL : &r->model->joint[row[i].joint];
             const bool is_driven = joint && joint->cls->motion;
@@ -125,7 +130,7 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const d
     ct_program_run(&m->driver, m->input);
     for (size_t i = 0; i < r->e->ndriver; i++)
         if (fabs(m->driver.out[2 * i] - before[2 * i])
-            > CT_HALF_DIGITS * fmax(1, fabs(before[2 * i]))) {
+            > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i]))) {
             ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark,
                                m->driver.out[2 * i] - before[2 * i], t);
             return CT_EVAL_FATAL;
@@ -136,7 +141,7 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const d
     double worst = largest_jump(r, before, 1);
     for (size_t i = 0; i < m->nrow; i++)
         worst = fmax(worst, fabs(m->v[i]));
-    if (worst <= CT_HALF_DIGITS)
+    if (worst <= ct_run_jump_tolerance)
         return CT_EVAL_OK;
     r->has_jumped = true;
     const enum ct_eval e = ct_impulse_apply(r, momentum, y + m->nq);

@@ -1,7 +1,6 @@
 // Kinematic analysis, runs in which everything is driven: positions, speeds and accelerations
 // follow from the rows, sample by sample, and only the work is integrated. See ct_run_kinematic in
 // run.h.
-#include "numeric/roundoff.h"
 #include "solve/run/run_internal.h"
 
 #include <string.h>
@@ -137,7 +136,7 @@ static bool pass_event(struct ct_run *r, double t, double *y)
     ct_program_run(&m->driver, m->input);
     for (size_t i = 0; i < r->e->ndriver; i++) {
         const double jump = m->driver.out[2 * i] - before[2 * i];
-        if (fabs(jump) > CT_HALF_DIGITS * fmax(1, fabs(before[2 * i])))
+        if (fabs(jump) > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i])))
             return ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
     }
     ct_evaluator_constraint(m);
