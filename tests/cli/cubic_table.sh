@@ -46,9 +46,9 @@ for T in 1e-4 1e-8; do
     paste -d, fixed.csv cart.csv | awk -F, -v T=$T 'NR > 1 { d = ($2 - $4)^2; if (d > E) E = d; if ($2^2 > Q) Q = $2^2 }
         END { print "moved, " T, (sqrt(E/Q) < 10*T ? "within ten tolerances" : "off by " sqrt(E/Q)) }'
 done
-# A slow drive sampled at 1 kHz: the rate of a linear table jumps by less than 1e-7 rad/s at each row, and what hangs on it
-# follows the sum of these jumps, which is the acceleration of the cubic table.
-awk 'BEGIN { print "t,q"; for (i = 0; i <= 5001; i++) printf "%.17g,%.17g\n", i/1000, 0.01*sin(i/10000) }' >slow.csv
+# A slow drive sampled at 1 kHz: the rate of a linear table jumps by less than 1e-11 rad/s at each row, and what hangs on
+# it follows the sum of these jumps, which is the acceleration of the cubic table.
+awk 'BEGIN { print "t,q"; for (i = 0; i <= 5001; i++) printf "%.17g,%.17g\n", i/1000, 1e-6*sin(i/10000) }' >slow.csv
 for kind in linear cubic; do
   cat >$kind.yaml <<END
 cotree: 1

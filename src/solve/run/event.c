@@ -3,6 +3,7 @@
 #include "solve/run/run_internal.h"
 
 #include "expr/print.h"
+#include "numeric/roundoff.h"
 
 #include <string.h>
 
@@ -67,21 +68,12 @@ double ct_run_kinetic_energy(struct ct_run *r, double t, const double *y)
     return r->m->energy.out[0];
 }
 
-// Largest change of driver values and rates between two records (value, rate alternating).
-static double largest_jump(const struct ct_run *r, const double *before, int which)
+// Pieces of a function meet to within the digits of its numbers. Such jumps do not add up, since a
+// driven coordinate is known for each time.
+bool ct_run_is_coordinate_jump(double jump, double size)
 {
-    double jump = 0;
-    for (size_t i = 0; i < r->e->ndriver; i++)
-        jump = fmax(jump, fabs(r->m->driver.out[2 * i + (size_t)which]
-                               - before[2 * i + (size_t)which]));
-    return jump;
+    return fabs(jump) > CT_HALF_DIGITS * fmax(1, fabs(size));
 }
-
-// A jump of a driven coordinate or its rate, or an open row after an event, that is still none [m,
-// rad, 1/s]. Speeds follow the sum of all jumps of a rate, those of a finely sampled table among
-// them: a larger value leaves out more of it.
-// Default: round-off of tables and functions against jumps that are meant. Test: cubic_table
-const double ct_run_jump_tolerance = 1e-9;
 
 bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
                         double t)
@@ -98,7 +90,7 @@ bool ct_run_chords_are_closed(struct ct_run *r, double t)
 {
     const struct ct_row *row = r->e->row;
     for (size_t i = 0; i < r->m->nrow; i++)
-        if (fabs(r->m->phi[i]) > ct_run_jump_tolerance) {
+        if (ct_run_is_coordinate_jump(r->m->phi[i], 0)) {
             const struct ct_instance *joint
                 = row[i].joint < 0 ? NULL : &r->model->joint[row[i].joint];
             const bool is_driven = joint && joint->cls->motion;
@@ -120,32 +112,82 @@ static enum ct_eval switch_at_new_speeds(struct ct_run *r, double t, const doubl
     return e;
 }
 
+// What an event may change, just before it: values and rates of drivers alternating, the rates of
+// rows without speeds (dPhi/dt), momenta.
+struct before_event {
+    double *driver, *momentum, *phi_t; // (2 ndriver), (momentum.nout), (nrow)
+};
+
+// phi_t (nrow) at t, y: drivers that are chords have their rate there. Leaves t, y set.
+static void find_phi_t(struct ct_evaluator *m, double t, const double *y, double *phi_t)
+{
+    if (!m->nrow)
+        return;
+    memset(m->input + m->at_u, 0, m->nu * sizeof *m->input);
+    ct_evaluator_constraint(m);
+    memcpy(phi_t, m->v, m->nrow * sizeof *phi_t);
+    ct_evaluator_set(m, t, y);
+}
+
+// Do two rates differ by more than their round-off? Speeds follow the sum of all jumps of a rate,
+// those of a finely sampled table among them: no jump is too small to count.
+static bool rates_differ(double a, double b)
+{
+    // Derived: round-off of the few operations of a slope or a function, in units of the last
+    // digit. An impulse for one that is more than that and still round-off changes speeds by
+    // round-off.
+    enum { ROUNDOFF = 8 };
+    return fabs(a - b) > ROUNDOFF * DBL_EPSILON * fmax(fabs(a), fabs(b));
+}
+
+static bool has_rate_jump(const struct ct_run *r, const struct before_event *before,
+                          const double *phi_t)
+{
+    bool has = false;
+    for (size_t i = 0; i < r->e->ndriver; i++)
+        has |= rates_differ(before->driver[2 * i + 1], r->m->driver.out[2 * i + 1]);
+    for (size_t i = 0; i < r->m->nrow; i++)
+        has |= rates_differ(before->phi_t[i], phi_t[i]);
+    return has;
+}
+
+// Do speeds u (nu) differ from u0 (nu) by more than the tolerance of the run?
+static bool exceeds_tolerance(const struct ct_run *r, const double *u0, const double *u)
+{
+    bool exceeds = false;
+    for (size_t i = 0; i < r->m->nu; i++)
+        exceeds |= fabs(u[i] - u0[i]) > r->o->rtol * fmax(fabs(u0[i]), fabs(u[i])) + r->o->atol;
+    return exceeds;
+}
+
 // Driven values after a change of switches. With an impulse or without, the speeds must fit the new
 // rates. (8.5)
-static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y, const double *before,
-                                  const double *momentum)
+static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y,
+                                  const struct before_event *before)
 {
     struct ct_evaluator *m = r->m;
     ct_evaluator_set(m, t, y);
     ct_program_run(&m->driver, m->input);
-    for (size_t i = 0; i < r->e->ndriver; i++)
-        if (fabs(m->driver.out[2 * i] - before[2 * i])
-            > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i]))) {
-            ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark,
-                               m->driver.out[2 * i] - before[2 * i], t);
+    for (size_t i = 0; i < r->e->ndriver; i++) {
+        const double jump = m->driver.out[2 * i] - before->driver[2 * i];
+        if (ct_run_is_coordinate_jump(jump, before->driver[2 * i])) {
+            ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
             return CT_EVAL_FATAL;
         }
+    }
+    double *u0 = r->scratch, *phi_t = before->phi_t + m->nrow;
+    find_phi_t(m, t, y, phi_t);
     ct_evaluator_constraint(m);
     if (!ct_run_chords_are_closed(r, t))
         return CT_EVAL_FATAL;
-    double worst = largest_jump(r, before, 1);
-    for (size_t i = 0; i < m->nrow; i++)
-        worst = fmax(worst, fabs(m->v[i]));
-    if (worst <= ct_run_jump_tolerance)
+    if (!has_rate_jump(r, before, phi_t))
         return CT_EVAL_OK;
-    r->has_jumped = true;
-    const enum ct_eval e = ct_impulse_apply(r, momentum, y + m->nq);
-    return e == CT_EVAL_OK ? switch_at_new_speeds(r, t, y) : e;
+    memcpy(u0, y + m->nq, m->nu * sizeof *u0);
+    const enum ct_eval e = ct_impulse_apply(r, before->momentum, y + m->nq);
+    if (e != CT_EVAL_OK)
+        return e;
+    r->has_jumped |= exceeds_tolerance(r, u0, y + m->nq);
+    return switch_at_new_speeds(r, t, y);
 }
 
 // Reports that on both sides of switch i the force leads back to it (dry friction at rest): f
@@ -237,14 +279,18 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
     r->last_event = t;
     if (dy)
         return switch_in_gap(r, t, y, dy, crossed);
-    double *before = r->scratch + m->nu, *momentum = before + 2 * r->e->ndriver;
+    const double t_before = ct_run_time_before_event(r, t);
+    struct before_event before = {.driver = r->scratch + m->nu};
+    before.momentum = before.driver + m->driver.nout;
+    before.phi_t = before.momentum + m->momentum.nout;
     ct_run_monitor_base(r, t, y, CT_MONITOR_EVENT);
-    ct_evaluator_set(m, ct_run_time_before_event(r, t), y);
+    ct_evaluator_set(m, t_before, y);
     ct_program_run(&m->driver, m->input);
-    memcpy(before, m->driver.out, m->driver.nout * sizeof *before);
+    memcpy(before.driver, m->driver.out, m->driver.nout * sizeof *before.driver);
     ct_program_run(&m->momentum, m->input);
-    memcpy(momentum, m->momentum.out, m->momentum.nout * sizeof *momentum);
-    const double kinetic = ct_run_kinetic_energy(r, ct_run_time_before_event(r, t), y);
+    memcpy(before.momentum, m->momentum.out, m->momentum.nout * sizeof *before.momentum);
+    find_phi_t(m, t_before, y, before.phi_t);
+    const double kinetic = ct_run_kinetic_energy(r, t_before, y);
 
     if (!ct_run_tables_reach(r, t))
         return CT_EVAL_FATAL;
@@ -252,7 +298,7 @@ enum ct_eval ct_run_event(void *user, double t, double *y, const double *dy,
     if (e != CT_EVAL_OK)
         return e;
     set_sides(r, t, y, r->dy, crossed);
-    e = apply_impulse(r, t, y, before, momentum);
+    e = apply_impulse(r, t, y, &before);
     if (e != CT_EVAL_OK)
         return e;
     y[r->ny - 1] += ct_run_kinetic_energy(r, t, y) - kinetic;

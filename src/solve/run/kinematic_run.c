@@ -136,7 +136,7 @@ static bool pass_event(struct ct_run *r, double t, double *y)
     ct_program_run(&m->driver, m->input);
     for (size_t i = 0; i < r->e->ndriver; i++) {
         const double jump = m->driver.out[2 * i] - before[2 * i];
-        if (fabs(jump) > ct_run_jump_tolerance * fmax(1, fabs(before[2 * i])))
+        if (ct_run_is_coordinate_jump(jump, before[2 * i]))
             return ct_run_report_jump(r, r->e->driver[i].name, r->e->driver[i].mark, jump, t);
     }
     ct_evaluator_constraint(m);

@@ -287,7 +287,7 @@ struct ct_run *ct_run_prepare(struct ct_ctx *ctx, struct ct_arena *a,
     r->assembled = CT_NEWN(a, double, r->ny);
     r->stage = CT_NEWN(a, double, r->ny);
     r->is_given = CT_NEWN(a, bool, r->m->nu + 1);
-    r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * e->ndriver + r->m->nrow + 1);
+    r->scratch = CT_NEWN(a, double, 3 * r->m->nu + 2 * (e->ndriver + r->m->nrow) + 1);
     r->impulse = ct_impulse_create(a, r->m);
     r->value = CT_NEWN(a, double, e->nresult + 1);
     r->largest = CT_NEWN(a, double, e->nresult + 1);

@@ -144,8 +144,9 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y);
 /// well.
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed);
-/// Smallest jump of a driver's value or rate that is not round-off [rad, m, 1/s].
-extern const double ct_run_jump_tolerance;
+/// Is a change of a driven coordinate of this size at an event, or the residual of a row after it,
+/// more than round-off [rad, m]?
+bool ct_run_is_coordinate_jump(double jump, double size);
 /// Always false, with CT_E_DRIVER_JUMP.
 bool ct_run_report_jump(struct ct_run *r, const char *name, struct ct_mark mark, double jump,
                         double t);
