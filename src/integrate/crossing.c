@@ -42,7 +42,7 @@ const double ct_crossing_roundoff = 5e-13;
 // With a residual of the constraints in the middle above the mismatch limit and so many tolerances,
 // no shorter crossing is tried. Default: trials in vain against crossings given up too early. Test:
 // crossing.
-static const double held_tolerance = 100;
+static const double most_residual = 100;
 
 struct work {
     double c[STAGES], norm[STAGES]; // norms of find_norms, of all stages
@@ -196,7 +196,7 @@ static enum ct_eval evaluate(const struct task *s, int j)
 }
 
 // Updates stage j with weights a; *moved becomes the norm of its change, if that is larger.
-static enum ct_eval put_stage(const struct task *s, int j, const double *a, double *moved)
+static enum ct_eval update_stage(const struct task *s, int j, const double *a, double *change)
 {
     struct work *w = s->w;
     const int n = s->p->ny;
@@ -206,7 +206,7 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
         return CT_EVAL_RETRY;
     for (int i = 0; i < n; i++)
         stage[i] -= w->point[i];
-    *moved = fmax(*moved, ct_stepper_norm(s->p, s->tolerance, s->y, w->point, stage));
+    *change = fmax(*change, ct_stepper_norm(s->p, s->tolerance, s->y, w->point, stage));
     memcpy(stage, w->point, (size_t)n * sizeof *stage);
     return evaluate(s, j);
 }
@@ -214,18 +214,18 @@ static enum ct_eval put_stage(const struct task *s, int j, const double *a, doub
 // Starting values: stages before the gap by extrapolation from stage to stage and some sweeps over
 // these alone, which take less work than sweeps over all; then stages behind the gap by
 // extrapolation.
-static enum ct_eval guess(const struct task *s)
+static enum ct_eval find_starting_values(const struct task *s)
 {
     struct work *w = s->w;
-    double moved = 0;
+    double change = 0;
     enum ct_eval e = CT_EVAL_OK;
     for (int j = 1; j < SIDE && e == CT_EVAL_OK; j++)
-        e = put_stage(s, j, w->first[j], &moved);
+        e = update_stage(s, j, w->first[j], &change);
     for (int i = 0; i < LEFT_SWEEPS; i++)
         for (int j = 1; j < SIDE && e == CT_EVAL_OK; j++)
-            e = put_stage(s, j, w->left[j], &moved);
+            e = update_stage(s, j, w->left[j], &change);
     for (int j = SIDE; j < STAGES && e == CT_EVAL_OK; j++)
-        e = put_stage(s, j, w->first[j], &moved);
+        e = update_stage(s, j, w->first[j], &change);
     return e;
 }
 
@@ -237,17 +237,17 @@ static enum ct_eval iterate(const struct task *s, const double (*A)[STAGES], int
     const double fine = kappa * fmin(1, ct_crossing_mismatch_limit / s->tolerance->rtol);
     double before = INFINITY;
     for (int i = 0;; i++) {
-        double moved = 0;
+        double change = 0;
         enum ct_eval e = CT_EVAL_OK;
         for (int j = first; j < STAGES && e == CT_EVAL_OK; j++)
-            e = put_stage(s, j, A[j], &moved);
+            e = update_stage(s, j, A[j], &change);
         if (e != CT_EVAL_OK)
             return e;
-        if (moved <= fine)
+        if (change <= fine)
             return CT_EVAL_OK;
-        if (i > 1 && !(moved <= before / 2))
-            return moved <= roundoff ? CT_EVAL_OK : CT_EVAL_RETRY;
-        before = moved;
+        if (i > 1 && !(change <= before / 2))
+            return change <= roundoff ? CT_EVAL_OK : CT_EVAL_RETRY;
+        before = change;
     }
 }
 
@@ -291,16 +291,16 @@ static double allowed_mismatch(const struct ct_problem *p)
     return fmin(ct_crossing_mismatch_limit, fmax(met, DBL_EPSILON / p->accuracy));
 }
 
-// The error of a step with this residual `mismatch` of the dependent constraint. An error of the
+// The error of a step where the dependent constraint has the residual `mismatch`. An error of the
 // polynomial in the middle causes a residual of its square. Where this may explain the residual a
 // shorter step is tried; otherwise the mechanism is only nearly singular.
-static double judge(const struct task *s, double mismatch, double error)
+static double error_with_residual(const struct task *s, double mismatch, double error)
 {
     // the error in the middle over the error of the step, for constraints of curvature 1/m or 1/rad
     // Default: with less, crossings are given up too early. Test: singular.
-    const double in_gap = 30;
+    const double error_in_gap = 30;
     const double most = ct_vector_largest(s->y, (size_t)s->p->ny),
-                 own = in_gap * error * (s->tolerance->rtol * most + s->tolerance->atol);
+                 own = error_in_gap * error * (s->tolerance->rtol * most + s->tolerance->atol);
     const double part = mismatch / allowed_mismatch(s->p);
     if (part <= 1)
         return error;
@@ -347,7 +347,7 @@ static enum ct_eval stages_on(const struct task *s, const double *dy)
     memcpy(w->k, dy, bytes);
     for (int j = 0; j < STAGES; j++)
         memcpy(w->stage + j * n, s->y, bytes);
-    const enum ct_eval e = guess(s);
+    const enum ct_eval e = find_starting_values(s);
     return e == CT_EVAL_OK ? iterate(s, (const double(*)[STAGES])w->A, 1) : e;
 }
 
@@ -360,10 +360,11 @@ static double error_of(const struct task *s, const double *y1)
     point_at(p, s->h, 0.5, s->y, w, w->end);
     double mismatch;
     const double left = p->singular->residual(p->singular->user, middle, w->end, &mismatch);
-    if (left > ct_crossing_mismatch_limit + held_tolerance * s->tolerance->rtol)
+    if (left > ct_crossing_mismatch_limit + most_residual * s->tolerance->rtol)
         return INFINITY;
-    return fmax(judge(s, mismatch, estimate(s, w->begin > 0 ? w->rest : w->e, y1)),
-                left / ct_crossing_mismatch_limit);
+    return fmax(
+        error_with_residual(s, mismatch, estimate(s, w->begin > 0 ? w->rest : w->e, y1)),
+        left / ct_crossing_mismatch_limit);
 }
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,

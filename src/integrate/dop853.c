@@ -246,8 +246,8 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
 }
 
 // Stages 11 and 12 are both at the end of the step.
-static double swiftness(const struct ct_problem *p, double h, const double *y, const double *y1,
-                        void *work)
+static double stiffness_estimate(const struct ct_problem *p, double h, const double *y,
+                                 const double *y1, void *work)
 {
     enum { LAST = STAGES - 1, BEFORE = LAST - 1 };
     const int n = p->ny;
@@ -294,7 +294,7 @@ const struct ct_method ct_method_dop853 = {
     // estimate has its maximum at z = -4.95 and is zero at -5.65, so step size control alone would
     // go on to -6.4, where errors grow.
     .stability_limit = 4.8,
-    .stiffness_estimate = swiftness,
+    .stiffness_estimate = stiffness_estimate,
     .prepare = prepare,
     .dense = dense,
 };

@@ -99,9 +99,9 @@ static void quartic(double *out, double h, double theta, const double *y, const 
 }
 
 // out (n) = f at the point of the quartic at theta, minus the slope of the Hermite polynomial.
-static enum ct_eval miss(double *out, double theta, const struct ct_problem *p, double t,
-                         double h, const double *y, const double *y1, const struct work *w,
-                         struct ct_integrate_stats *stats)
+static enum ct_eval slope_defect(double *out, double theta, const struct ct_problem *p,
+                                 double t, double h, const double *y, const double *y1,
+                                 const struct work *w, struct ct_integrate_stats *stats)
 {
     const int n = p->ny;
     quartic(w->point, h, theta, y, y1, w, n);
@@ -117,9 +117,9 @@ static enum ct_eval prepare(const struct ct_problem *p, double t, double h, cons
                             const double *y1, void *work, struct ct_integrate_stats *stats)
 {
     struct work *w = work;
-    enum ct_eval e = miss(w->b, 1. / 2, p, t, h, y, y1, w, stats);
+    enum ct_eval e = slope_defect(w->b, 1. / 2, p, t, h, y, y1, w, stats);
     if (e == CT_EVAL_OK)
-        e = miss(w->a, 1. / 5, p, t, h, y, y1, w, stats);
+        e = slope_defect(w->a, 1. / 5, p, t, h, y, y1, w, stats);
     if (e != CT_EVAL_OK)
         return e;
     // slope of t^2 (1 - t)^2 (a + b t):  b / 16 at 1/2,  (24 a + 8 b) / 125 at 1/5

@@ -11,11 +11,11 @@
 #include <math.h>
 #include <string.h>
 
-// The absolute tolerance of a crossing is ct_crossing_roundoff. If it must begin nearer to the
-// singular configuration than usual, the tolerance grows with the square of that ratio, up to this
-// part of the accuracy (8.28). Default: with less, crossings fail for round-off. Test:
-// singular_approach.
-static const double unfelt = 0.1;
+// The absolute tolerance of a crossing is ct_crossing_roundoff. If the crossing must begin nearer
+// to the singular configuration than planned, the tolerance is multiplied by the square of that
+// ratio, up to this part of the accuracy (8.28). Default: with less, crossings fail for round-off.
+// Test: singular_approach.
+static const double most_roundoff_share = 0.1;
 
 static const struct ct_mark nowhere = {0};
 
@@ -56,7 +56,7 @@ static void allocate(struct ct_driver *r)
     double **const vectors[]
         = {&r->y0,    &r->y,      &r->dy,    &r->y1,       &r->dy1,
            &r->moved, &r->dmoved, &r->point, &r->roundoff, &r->arithmetic_roundoff,
-           &r->other};
+           &r->dpoint};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, r->p->ny);
     r->work = r->method->create(a, r->method, r->p);
@@ -65,9 +65,9 @@ static void allocate(struct ct_driver *r)
         r->sample_end = CT_NEWN(a, double, r->p->ny);
         r->dsample_end = CT_NEWN(a, double, r->p->ny);
     }
-    if (r->method->leaves_speeds) {
-        r->put_y = CT_NEWN(a, double, r->p->ny);
-        r->put_dy = CT_NEWN(a, double, r->p->ny);
+    if (r->method->violates_velocity_constraints) {
+        r->unprojected_y = CT_NEWN(a, double, r->p->ny);
+        r->unprojected_dy = CT_NEWN(a, double, r->p->ny);
     }
     if (r->p->singular && r->o->step == 0)
         r->crossing_work = ct_crossing.create(a, &ct_crossing, r->p);
@@ -82,17 +82,17 @@ static bool state_refused(struct ct_driver *r, enum ct_eval e)
                     "the equations of motion cannot be evaluated at t = %.9g", r->t);
 }
 
-static void start_anew(struct ct_driver *r)
+static void restart_method(struct ct_driver *r)
 {
     if (r->method->restart)
         r->method->restart(r->work);
     r->control.is_starting = true;
 }
 
-// The derivative and the signs of root functions at the start and after an event.
-static bool take_bearings(struct ct_driver *r)
+// Reinitialisation at the start and after an event: the derivative and the signs of root functions.
+static bool reinitialize(struct ct_driver *r)
 {
-    start_anew(r);
+    restart_method(r);
     enum ct_eval e = ct_stepper_rhs(r->p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK)
         e = ct_event_location_start(&r->events, r->t, r->control.h, r->y, r->dy);
@@ -101,7 +101,7 @@ static bool take_bearings(struct ct_driver *r)
 
 // Largest change of accelerations since the start, over the largest of them; INFINITY where there
 // are none.
-static double changed_by(const struct ct_driver *r)
+static double relative_change(const struct ct_driver *r)
 {
     const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
     double size = 0, change = 0;
@@ -115,26 +115,26 @@ static double changed_by(const struct ct_driver *r)
 // The rate at which accelerations begin to change, for the first step; 0 if not found. They are
 // evaluated along a parabola with the second derivative r->point, for increasing h, until they have
 // changed enough. In a motion from rest their change grows with h^2.
-static double find_rate(struct ct_driver *r, double h, double limit)
+static double estimate_rate(struct ct_driver *r, double h, double limit)
 {
     // Default: evaluations before the first step against its length. Test: integrate.
-    enum { LOOKS = 5 };
+    enum { MOST_TRIALS = 5 };
     // Default: changes that show a rate, beyond round-off and before the motion reverses. Test:
     // integrate.
     const double least = 0.02, most = 0.5, wanted = 0.05;
-    const double further = 100;
+    const double most_increase = 100;
     const struct ct_problem *p = r->p;
-    double change = changed_by(r);
-    for (int look = 0; look < LOOKS && change < least && h < limit; look++) {
-        const double by_change = change > 0 ? sqrt(wanted / change) : further;
-        h = fmin(h * fmin(by_change, further), limit);
+    double change = relative_change(r);
+    for (int look = 0; look < MOST_TRIALS && change < least && h < limit; look++) {
+        const double by_change = change > 0 ? sqrt(wanted / change) : most_increase;
+        h = fmin(h * fmin(by_change, most_increase), limit);
         for (int i = 0; i < p->ny; i++)
             r->y1[i] = r->y[i] + h * (r->dy[i] + h / 2 * r->point[i]);
         if (ct_stepper_rhs(p, r->t + h, r->y1, r->dy1, r->stats) != CT_EVAL_OK)
             return 0;
         for (int i = 0; i < p->ny; i++)
             r->point[i] = (r->dy1[i] - r->dy[i]) / h;
-        change = changed_by(r);
+        change = relative_change(r);
     }
     return change >= least && change <= most ? sqrt(2 * change) / h : 0;
 }
@@ -153,7 +153,7 @@ static double first_step(struct ct_driver *r, double limit)
         r->point[i] = (r->dy1[i] - r->dy[i]) / h;
     const double d2 = ct_stepper_norm(p, &r->tolerance, r->y, r->y, r->point);
     const double first = ct_step_control_first(r->method, h, d1, d2, limit);
-    const double rate = r->method->is_implicit ? 0 : find_rate(r, h, limit);
+    const double rate = r->method->is_implicit ? 0 : estimate_rate(r, h, limit);
     return rate > 0
              ? fmin(ct_step_control_first_at_rate(r->method, rate, r->tolerance.rtol), limit)
              : first;
@@ -169,13 +169,13 @@ static bool has_moved(struct ct_driver *r)
 {
     // A displacement up to this part of the tolerance is ignored. Chosen: evaluations against
     // accuracy. Without it the errors of seven closed mechanisms and tops change by a few per cent.
-    const double unnoticed = 0.01;
+    const double negligible = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)
         return false;
     for (int i = 0; i < p->ny; i++)
         r->point[i] = r->end[i] - r->y1[i];
-    return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= unnoticed);
+    return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= negligible);
 }
 
 // Steps of fixed length end on samples, so without root functions and `over_step` there is no dense
@@ -207,7 +207,7 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
 }
 
 // Ends a crossing at t1, within it: end, dend (out).
-static enum ct_eval cut(struct ct_driver *r, struct ct_planned_step *s)
+static enum ct_eval end_inside_crossing(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
     r->end = r->moved;
@@ -236,14 +236,15 @@ static const struct ct_tolerance *tolerance_of(const struct ct_driver *r,
                                                      : r->crossing_begin / r->singular_in;
     const double nearer = fmax(1, sooner),
                  noise = fmin(ct_crossing_roundoff * nearer * nearer,
-                              fmax(ct_crossing_roundoff, unfelt * r->p->accuracy));
+                              fmax(ct_crossing_roundoff, most_roundoff_share * r->p->accuracy));
     *tol = (struct ct_tolerance){r->tolerance.rtol, fmax(r->tolerance.atol, noise * largest)};
     return tol;
 }
 
-static bool is_put(const struct ct_driver *r, const struct ct_planned_step *s)
+static bool needs_projected_speeds(const struct ct_driver *r, const struct ct_planned_step *s)
 {
-    return s->method == &ct_crossing && r->method->leaves_speeds && r->p->project;
+    return s->method == &ct_crossing && r->method->violates_velocity_constraints
+        && r->p->project;
 }
 
 // A crossing begins on the constraints. The speeds of some methods meet them only to the order of
@@ -255,18 +256,18 @@ static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_
         = 10; // Definition: outputs are promised within ten tolerances, docs/cli.md
     const struct ct_problem *p = r->p;
     const size_t bytes = (size_t)p->ny * sizeof *r->y;
-    if (!is_put(r, s))
+    if (!needs_projected_speeds(r, s))
         return CT_EVAL_OK;
     const double part = most * p->accuracy / r->tolerance.rtol;
     const struct ct_tolerance allowed = {part * r->tolerance.rtol, part * r->tolerance.atol};
-    memcpy(r->put_y, r->y, bytes);
-    memcpy(r->put_dy, r->dy, bytes);
+    memcpy(r->unprojected_y, r->y, bytes);
+    memcpy(r->unprojected_dy, r->dy, bytes);
     const enum ct_eval e = p->project(p->user, r->t, r->y);
     if (e != CT_EVAL_OK)
         return e;
     for (int i = 0; i < p->ny; i++)
-        r->point[i] = r->y[i] - r->put_y[i];
-    if (!(ct_stepper_norm(p, &allowed, r->put_y, r->y, r->point) <= 1))
+        r->point[i] = r->y[i] - r->unprojected_y[i];
+    if (!(ct_stepper_norm(p, &allowed, r->unprojected_y, r->y, r->point) <= 1))
         return CT_EVAL_RETRY;
     return p->rhs(p->user, r->t, r->y, r->dy);
 }
@@ -275,10 +276,10 @@ static enum ct_eval project_speeds(struct ct_driver *r, const struct ct_planned_
 static void restore_speeds(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const size_t bytes = (size_t)r->p->ny * sizeof *r->y;
-    if (!is_put(r, s))
+    if (!needs_projected_speeds(r, s))
         return;
-    memcpy(r->y, r->put_y, bytes);
-    memcpy(r->dy, r->put_dy, bytes);
+    memcpy(r->y, r->unprojected_y, bytes);
+    memcpy(r->dy, r->unprojected_dy, bytes);
 }
 
 // One attempt at a step from y to end, with projection. If the error estimate is the reason of a
@@ -290,7 +291,7 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *
     double error = 0;
     s->error = 0;
     s->is_interpolated = false;
-    r->is_open = false;
+    r->projection_failed = false;
     if (s->method == &ct_crossing)
         ct_crossing_begin(s->work, s->begin);
     enum ct_eval e = project_speeds(r, s);
@@ -306,8 +307,8 @@ static inline enum ct_eval attempt(struct ct_driver *r, struct ct_planned_step *
     if (error > 1)
         return CT_EVAL_RETRY;
     const bool is_cut = r->t + s->h > s->t1 && s->method == &ct_crossing;
-    e = is_cut ? cut(r, s) : project_end(r, s->method, s->t1);
-    r->is_open = e == CT_EVAL_RETRY;
+    e = is_cut ? end_inside_crossing(r, s) : project_end(r, s->method, s->t1);
+    r->projection_failed = e == CT_EVAL_RETRY;
     return e;
 }
 
@@ -322,7 +323,7 @@ static enum ct_eval interpolate(struct ct_driver *r, struct ct_planned_step *s)
 
 // Are sensitive outputs (8.11) accurate at the next sample? If not, steps end on samples from here
 // on.
-static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *s)
+static enum ct_eval check_dense_output(struct ct_driver *r, struct ct_planned_step *s)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double theta = (r->o->sample[r->sample] - r->t) / s->h;
@@ -332,8 +333,8 @@ static enum ct_eval look_at_sample(struct ct_driver *r, struct ct_planned_step *
     ct_stepper_point(&span, theta, r->point);
     const enum ct_eval e
         = s->method->dense_error(r->p, r->t, s->h, theta, r->point, s->work, &error, r->stats);
-    s->is_off_between = e == CT_EVAL_OK && error > 1;
-    return s->is_off_between ? CT_EVAL_RETRY : e;
+    s->is_inaccurate_between = e == CT_EVAL_OK && error > 1;
+    return s->is_inaccurate_between ? CT_EVAL_RETRY : e;
 }
 
 static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_planned_step *s)
@@ -344,8 +345,8 @@ static enum ct_eval interpolate_for_samples(struct ct_driver *r, struct ct_plann
     const enum ct_eval e = interpolate(r, s);
     if (e != CT_EVAL_OK)
         return e;
-    s->is_damping = ct_driver_is_damping(r, s);
-    return s->is_damping || !has_sample ? CT_EVAL_OK : look_at_sample(r, s);
+    s->damps_fast_mode = ct_driver_damps_fast_mode(r, s);
+    return s->damps_fast_mode || !has_sample ? CT_EVAL_OK : check_dense_output(r, s);
 }
 
 // Repeats the step up to the event that dense output shows at t + h. Then h is corrected by
@@ -377,7 +378,8 @@ static enum ct_eval step_to_event(struct ct_driver *r, struct ct_planned_step *s
 // Ends a crossing on an event, at theta of the step. Here dense output is as accurate as the step,
 // so it is not repeated. One Newton correction of the time makes the root function zero to
 // round-off.
-static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s, double theta)
+static enum ct_eval end_crossing_on_event(struct ct_driver *r, struct ct_planned_step *s,
+                                          double theta)
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double dt;
@@ -388,7 +390,7 @@ static enum ct_eval cut_on_event(struct ct_driver *r, struct ct_planned_step *s,
         return e;
     s->t1 += fabs(dt) <= ct_event_location_resolution(r->t, s->h) ? dt : 0;
     s->reaches_stop = false;
-    return cut(r, s);
+    return end_inside_crossing(r, s);
 }
 
 // If a state event lies within the step, the step is made to end there.
@@ -403,19 +405,19 @@ static enum ct_eval end_on_event(struct ct_driver *r, struct ct_planned_step *s)
         e = ct_event_location_search(&r->events, &span, r->end, &theta);
     if (e != CT_EVAL_OK || theta > 1)
         return e;
-    s->leaves_rest = theta == 0;
-    if (s->leaves_rest)
+    s->leaves_zero = theta == 0;
+    if (s->leaves_zero)
         return CT_EVAL_RETRY;
     s->is_event = true;
     if (s->method == &ct_crossing)
-        return cut_on_event(r, s, theta);
+        return end_crossing_on_event(r, s, theta);
     const double rest = (1 - theta) * s->h;
     return rest <= ct_event_location_resolution(r->t, s->h) ? CT_EVAL_OK
                                                             : step_to_event(r, s, theta * s->h);
 }
 
 // Tells the problem that the step is accepted.
-static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_planned_step *s)
+static enum ct_eval notify_accepted(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const struct ct_problem *p = r->p;
     const bool is_across = s->method == &ct_crossing;
@@ -425,7 +427,7 @@ static enum ct_eval tell_accepted(struct ct_driver *r, const struct ct_planned_s
 }
 
 // Signs of root functions after an event in the gap of a crossing, where f is r->dy.
-static enum ct_eval take_sides(struct ct_driver *r)
+static enum ct_eval find_root_signs(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
     const enum ct_eval e = p->resumed ? p->resumed(p->user, r->t, r->y, r->dy) : CT_EVAL_OK;
@@ -436,27 +438,26 @@ static enum ct_eval take_sides(struct ct_driver *r)
 
 // Signs of root functions at the start of the remainder of a crossing, with f interpolated from its
 // stages.
-static enum ct_eval take_bearings_of_remainder(struct ct_driver *r,
-                                               const struct ct_planned_step *s)
+static enum ct_eval reinitialize_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 {
     if (!ct_driver_has_remainder(r) || r->remainder.is_known)
         return CT_EVAL_OK;
     r->remainder.is_known = true;
     ct_crossing_slope(s->work, r->p->ny, 0, r->dy);
-    return take_sides(r);
+    return find_root_signs(r);
 }
 
 // What follows an attempt whose error is small enough; h is the step as it was attempted.
 static enum ct_eval finish_step(struct ct_driver *r, struct ct_planned_step *s, double h)
 {
-    enum ct_eval e = take_bearings_of_remainder(r, s);
+    enum ct_eval e = reinitialize_remainder(r, s);
     if (e == CT_EVAL_OK)
         e = end_on_event(r, s);
     if (e == CT_EVAL_OK)
         e = interpolate_for_samples(r, s);
     if (e == CT_EVAL_OK && r->p->nroot)
         e = ct_event_location_accept(&r->events, s->t1, h, r->end, s->is_event);
-    return e == CT_EVAL_OK ? tell_accepted(r, s) : e;
+    return e == CT_EVAL_OK ? notify_accepted(r, s) : e;
 }
 
 // A run ends with the message that the mechanism locks when the time left to that configuration is
@@ -478,7 +479,7 @@ static bool report_lock(const struct ct_driver *r)
         r->t + r->singular_in);
 }
 
-static bool step_too_small(struct ct_driver *r, double h)
+static bool report_small_step(struct ct_driver *r, double h)
 {
     if (r->is_locked)
         return report_lock(r);
@@ -493,7 +494,7 @@ static bool step_too_small(struct ct_driver *r, double h)
             "leads across: it locks there, or several motions go on; start farther from it, "
             "take a larger tolerance, or change a length slightly",
             r->t, r->singular_in);
-    if (r->is_open)
+    if (r->projection_failed)
         return ct_error(
             r->ctx, nowhere, CT_E_STEP_OPEN,
             "the constraints cannot be met beyond t = %.9g: motions contradict each other, or "
@@ -510,16 +511,16 @@ static bool step_too_small(struct ct_driver *r, double h)
 }
 
 // The remainder of a crossing has failed: ordinary steps go on from the event.
-static bool leave_remainder(struct ct_driver *r)
+static bool abandon_remainder(struct ct_driver *r)
 {
     const struct ct_problem *p = r->p;
     enum ct_eval e = ct_stepper_rhs(p, r->t, r->y, r->dy, r->stats);
     if (e == CT_EVAL_OK && p->accepted)
         e = p->accepted(p->user, r->t, r->y, r->dy, true);
     if (e == CT_EVAL_OK && !r->remainder.is_known)
-        e = take_sides(r);
+        e = find_root_signs(r);
     r->remainder = (struct ct_crossing_remainder){.h = 0};
-    ct_driver_look_ahead(r, r->t);
+    ct_driver_predict_singularity(r, r->t);
     return e == CT_EVAL_OK || state_refused(r, e);
 }
 
@@ -527,12 +528,12 @@ static bool leave_remainder(struct ct_driver *r)
 static bool adapt_after_failed_step(struct ct_driver *r, const struct ct_planned_step *s,
                                     double h, double error)
 {
-    const bool had_rest = ct_driver_has_remainder(r);
+    const bool had_remainder = ct_driver_has_remainder(r);
     if (s->method == &ct_crossing)
         ct_driver_adapt_after_failed_crossing(r, error);
     else
         ct_driver_adapt_after_refusal(r, h, error);
-    return had_rest == ct_driver_has_remainder(r) || leave_remainder(r);
+    return had_remainder == ct_driver_has_remainder(r) || abandon_remainder(r);
 }
 
 // --- events ----------------------------------------------------------------------------------
@@ -555,11 +556,11 @@ static bool handle_event(struct ct_driver *r, bool is_state, bool is_time)
     r->failed_crossings = 0;
     r->is_locked = false;
     if (dy) {
-        start_anew(r);
+        restart_method(r);
         return true;
     }
-    ct_driver_look_ahead(r, r->t);
-    return take_bearings(r);
+    ct_driver_predict_singularity(r, r->t);
+    return reinitialize(r);
 }
 
 // One accepted step from y to end.
@@ -572,7 +573,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
         if (is_at_lock(r))
             return report_lock(r);
         if (ct_driver_is_too_small(r, s))
-            return step_too_small(r, h);
+            return report_small_step(r, h);
         if (!is_crossing)
             s->h = s->t1 - r->t; // as rounded, so that steps add up to the time
         enum ct_eval e = attempt(r, s);
@@ -581,7 +582,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             e = finish_step(r, s, h);
         if (e == CT_EVAL_FATAL)
             return false;
-        if (s->leaves_rest) {
+        if (s->leaves_zero) {
             restore_speeds(r, s);
             r->stats->rejected_steps++;
             if (!handle_event(r, true, false))
@@ -590,7 +591,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
             r->is_stop_time = is_time;
             continue;
         }
-        if (s->is_off_between) {
+        if (s->is_inaccurate_between) {
             r->ends_on_samples = true;
             r->stats->rejected_steps++;
             r->stop = stop = ct_driver_next_stop(r, &is_time);
@@ -602,7 +603,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
                 ct_driver_adapt_after_crossing(r, s);
             else if (r->o->step == 0)
                 ct_step_control_accept(&r->control, r->method, h, error);
-            ct_driver_look_ahead(r, s->t1);
+            ct_driver_predict_singularity(r, s->t1);
             return true;
         }
         restore_speeds(r, s);
@@ -619,7 +620,7 @@ static bool find_step(struct ct_driver *r, double stop, bool is_time, struct ct_
 
 // --- the loop over steps ---------------------------------------------------------------------
 
-static void count_turns(struct ct_driver *r, double t1)
+static void scale_tolerance(struct ct_driver *r, double t1)
 {
     const struct ct_integrate_options *o = r->o;
     if (ct_periodic_tolerance_step(&r->periodic, t1, r->y0, r->y, r->end, r->p->nq, r->p->nu))
@@ -630,7 +631,7 @@ static void count_turns(struct ct_driver *r, double t1)
 static void commit(struct ct_driver *r, const struct ct_planned_step *s)
 {
     if (r->o->least_rtol > 0 && r->o->step == 0)
-        count_turns(r, s->t1);
+        scale_tolerance(r, s->t1);
     double *y = r->y, *dy = r->dy;
     r->y = r->end;
     r->dy = r->dend;
@@ -647,7 +648,7 @@ static void commit(struct ct_driver *r, const struct ct_planned_step *s)
 }
 
 // Is the remainder of a crossing to come?
-static bool is_on_the_way(const struct ct_driver *r)
+static bool has_remainder_to_come(const struct ct_driver *r)
 {
     return ct_driver_has_remainder(r) && r->t < r->o->t1;
 }
@@ -670,15 +671,15 @@ static bool advance(struct ct_driver *r)
     commit(r, &s);
     if (is_event && !handle_event(r, s.is_event, is_time))
         return false;
-    return is_on_the_way(r) || ct_driver_give_samples_here(r);
+    return has_remainder_to_come(r) || ct_driver_give_samples_here(r);
 }
 
 static void forecast_steps(struct ct_driver *r)
 {
-    if (!r->o->forecast || r->is_announced || !(r->pace.to_come > r->o->many_steps))
+    if (!r->o->forecast || r->is_announced || !(r->progress.to_come > r->o->many_steps))
         return;
     r->is_announced = true;
-    r->o->forecast(r->p->user, r->t, r->y, r->pace.step, r->pace.to_come);
+    r->o->forecast(r->p->user, r->t, r->y, r->progress.step, r->progress.to_come);
 }
 
 static bool run_steps(struct ct_driver *r)
@@ -692,15 +693,16 @@ static bool run_steps(struct ct_driver *r)
                 r->t);
         if (!advance(r))
             return false;
-        if (r->stats->steps >= r->pace.next
-            && ct_step_control_exceeds_limit(&r->pace, r->stats->steps, most, r->t,
+        if (r->stats->steps >= r->progress.next
+            && ct_step_control_exceeds_limit(&r->progress, r->stats->steps, most, r->t,
                                              r->o->t1 - r->t))
             return ct_error(r->ctx, nowhere, CT_E_STEP_COUNT,
                             "at t = %.3g after %ld steps, of %.2g s now: up to t = %.9g they "
                             "would be more than the %ld that are allowed",
-                            r->t, r->stats->steps, r->pace.step, r->o->t1, most);
+                            r->t, r->stats->steps, r->progress.step, r->o->t1, most);
         forecast_steps(r);
-        if (r->o->at_step && !is_on_the_way(r) && !r->o->at_step(r->p->user, r->t, r->y))
+        if (r->o->at_step && !has_remainder_to_come(r)
+            && !r->o->at_step(r->p->user, r->t, r->y))
             return true;
     }
     return true;
@@ -710,11 +712,11 @@ static bool start(struct ct_driver *r)
 {
     if (r->o->t0 < r->o->t1) { // else there are no steps
         bool is_time;
-        ct_driver_look_ahead(r, r->t);
+        ct_driver_predict_singularity(r, r->t);
         const double limit
             = fmin(ct_driver_step_limit(r), ct_driver_next_stop(r, &is_time) - r->t);
         r->control.h = limit; // a time scale for the signs of root functions
-        if (!take_bearings(r))
+        if (!reinitialize(r))
             return false;
         r->control.h = r->o->step > 0       ? r->o->step
                      : r->o->first_step > 0 ? r->o->first_step
@@ -745,7 +747,7 @@ bool ct_integrate(struct ct_ctx *ctx, const struct ct_method *method,
         .t = options->t0,
         .periodic = ct_periodic_tolerance_start(options->t0, options->t1, &tolerance),
         .control = ct_step_control_start(),
-        .pace = {.t = options->t0},
+        .progress = {.t = options->t0},
         .singular_in = INFINITY,
         .reach = INFINITY,
         .stop = -INFINITY,

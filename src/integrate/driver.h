@@ -34,35 +34,35 @@ struct ct_driver {
         double stop, next, left;
     } even;
     struct ct_step_control control;
-    struct ct_pace pace;
+    struct ct_step_progress progress;
     bool is_announced; // `forecast` has been called
     double *y, *dy;    // the last accepted state and its derivative  (ny), as all that follow
     double *y1, *dy1;  // end of the step before projection
-    double *put_y, *put_dy; // y, dy before speeds were projected for a crossing
-    double *end, *dend;     // end of the step after projection; may be y1, dy1
+    double *unprojected_y, *unprojected_dy; // y, dy before speeds were projected for a crossing
+    double *end, *dend;                     // end of the step after projection; may be y1, dy1
     double *moved, *dmoved; // storage of end, dend where they differ from y1, dy1
     double *point;          // workspace
     void *work;             // workspace of the method
     void *sample_work; // for separate steps to samples; NULL: dense output is always accurate
     double *sample_end, *dsample_end; // ends of those steps  (ny)
-    int unchecked;  // steps to come whose dense output is not compared with such a step
-    bool has_erred; // dense output was inaccurate at the last comparison
-    int trusted;    // steps without comparison after an agreement
-    double fastest; // rate of the fastest mode in recent steps  [1/s]
+    int checks_to_skip;  // steps to come whose dense output is not compared with such a step
+    bool was_inaccurate; // dense output was inaccurate at the last comparison
+    int skipped_checks;  // steps without comparison after an agreement
+    double fastest;      // rate of the fastest mode in recent steps  [1/s]
     // the next singular configuration
-    void *crossing_work;   // workspace of ct_crossing; NULL: none are crossed
-    double singular_in;    // time from t to it
-    double reach;          // the crossing begins this long before it
-    double crossing_begin; // the same, where that time has passed already; else 0
-    int failed_crossings;  // attempts to cross it
-    bool is_locked;        // the motion ends in it
-    double predicted_at;   // its time as predicted at the last attempt
-    bool is_open;          // the last step failed in the projection onto the constraints alone
-    size_t sample;         // index of the next sample
-    bool ends_on_samples;  // sensitive outputs are inaccurate between steps
-    double *roundoff;      // round-off of f, once it has shown in error estimates  (ny)
+    void *crossing_work;    // workspace of ct_crossing; NULL: none are crossed
+    double singular_in;     // time from t to it
+    double reach;           // the crossing begins this long before it
+    double crossing_begin;  // the same, where that time has passed already; else 0
+    int failed_crossings;   // attempts to cross it
+    bool is_locked;         // the motion ends in it
+    double predicted_at;    // its time as predicted at the last attempt
+    bool projection_failed; // the last step failed in the projection onto the constraints alone
+    size_t sample;          // index of the next sample
+    bool ends_on_samples;   // sensitive outputs are inaccurate between steps
+    double *roundoff;       // round-off of f, once it has shown in error estimates  (ny)
     double *arithmetic_roundoff; // the part from the arithmetic of f itself  (ny)
-    double *other;               // workspace  (ny)
+    double *dpoint;              // workspace  (ny)
     int roundoff_steps;          // steps since it was measured
     struct ct_refusal refusal;   // of the attempt before this one
     struct ct_problem problem;   // a copy of the caller's, with the round-off of f
@@ -82,12 +82,12 @@ struct ct_planned_step {
     double begin; // start of the remainder of a crossing, as part of the whole crossing; else 0
     bool reaches_stop; // t1 is the stop it was planned for
     bool is_event;     // it ends with a state event
-    bool leaves_rest;  // a root that was zero changes: an event at the start of the step
+    bool leaves_zero;  // a root that was zero changes: an event at the start of the step
     bool
         leaves_remainder; // a crossing with an event in its gap: the remainder is the next step
     bool is_interpolated; // the method is prepared for dense output
-    bool is_off_between;  // sensitive outputs are inaccurate at a sample before its end
-    bool is_damping;      // it damps a fast mode: samples are computed by separate steps
+    bool is_inaccurate_between; // sensitive outputs are inaccurate at a sample before its end
+    bool damps_fast_mode;       // it damps a fast mode: samples are computed by separate steps
     double error;
 };
 
@@ -103,7 +103,7 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
 bool ct_driver_is_too_small(const struct ct_driver *r, const struct ct_planned_step *s);
 /// Predicts the time from t, the end of the last accepted step, to the next singular configuration,
 /// and where its crossing begins.
-void ct_driver_look_ahead(struct ct_driver *r, double t);
+void ct_driver_predict_singularity(struct ct_driver *r, double t);
 void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error);
 void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned_step *s);
 void ct_driver_adapt_after_failed_crossing(struct ct_driver *r, double error);
@@ -124,7 +124,7 @@ void ct_driver_note_step(struct ct_driver *r, double h, double error);
 /// Is there a sample inside the step?
 bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s);
 /// Does the step damp a fast mode that it does not resolve, so that its dense output is inaccurate?
-bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s);
+bool ct_driver_damps_fast_mode(struct ct_driver *r, const struct ct_planned_step *s);
 /// Samples before `end`, by dense output; in the gap of a crossing also the one at the end.
 bool ct_driver_give_samples_before(struct ct_driver *r, const struct ct_planned_step *s,
                                    double end);

@@ -19,7 +19,7 @@
 // faster, those of round-off with the first one, and 3 lies between. This holds for steps shorter
 // than 1 over the fastest frequency; longer ones are held by stability, and their errors have no
 // order.
-static const double between = 3;
+static const double order_between = 3;
 // Round-off is measured after each of so many steps, too, since it may keep steps short without a
 // refusal. Chosen: at a cost of nu/1000 evaluations a step, nu the number of speeds.
 enum { STEPS_BETWEEN = 1000 };
@@ -29,7 +29,7 @@ enum { STEPS_BETWEEN = 1000 };
 // ratio zeta answers a change x of position by the acceleration omega^2 x, and a change omega x of
 // speed by 2 zeta times that. Each speed is changed alone by du, as gyroscopic forces, which do not
 // damp, act on the other speeds.
-static void leave_out_damped(struct ct_driver *r, double du)
+static void exclude_damped_speeds(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
     // 2 zeta. Chosen: with zeta = 0.01 half of the amplitude is left after 11 periods.
@@ -46,7 +46,7 @@ static void leave_out_damped(struct ct_driver *r, double du)
 
 // dy (ny, out) = f where position i is changed by `part` times a factor in [1, 2). The factors
 // differ between positions and with k.
-static enum ct_eval move_places(struct ct_driver *r, double part, int k, double *dy)
+static enum ct_eval perturb_positions(struct ct_driver *r, double part, int k, double *dy)
 {
     const struct ct_problem *p = r->p;
     for (int i = 0; i < p->ny; i++)
@@ -59,21 +59,21 @@ static enum ct_eval move_places(struct ct_driver *r, double part, int k, double 
 // measurements counts, as a single one may be zero by chance.
 static void find_arithmetic_roundoff(struct ct_driver *r, double part)
 {
-    enum { LOOKS = 3 }; // Chosen: evaluations against a round-off missed by chance
+    enum { MEASUREMENTS = 3 }; // Chosen: evaluations against a round-off missed by chance
     const struct ct_problem *p = r->p;
     memset(r->arithmetic_roundoff, 0, (size_t)p->ny * sizeof *r->arithmetic_roundoff);
-    for (int k = 0; k < LOOKS; k++) {
-        if (move_places(r, part, k, r->dmoved) != CT_EVAL_OK
-            || move_places(r, -part, k, r->other) != CT_EVAL_OK)
+    for (int k = 0; k < MEASUREMENTS; k++) {
+        if (perturb_positions(r, part, k, r->dmoved) != CT_EVAL_OK
+            || perturb_positions(r, -part, k, r->dpoint) != CT_EVAL_OK)
             return;
         for (int i = p->nq; i < p->nq + p->nu; i++)
             r->arithmetic_roundoff[i]
                 = fmax(r->arithmetic_roundoff[i],
-                       fabs(r->dmoved[i] - r->dy[i] + (r->other[i] - r->dy[i])) / 2);
+                       fabs(r->dmoved[i] - r->dy[i] + (r->dpoint[i] - r->dy[i])) / 2);
     }
 }
 
-static void measure(struct ct_driver *r, double h)
+static void measure_roundoff(struct ct_driver *r, double h)
 {
     const struct ct_problem *p = r->p;
     r->problem.roundoff = NULL;
@@ -82,18 +82,18 @@ static void measure(struct ct_driver *r, double h)
     for (int i = 0; i < p->nq; i++)
         largest = fmax(largest, fabs(r->y[i]));
     if (!(largest > 0)
-        || move_places(r, CT_PERTURBATION * largest, 0, r->roundoff) != CT_EVAL_OK)
+        || perturb_positions(r, CT_PERTURBATION * largest, 0, r->roundoff) != CT_EVAL_OK)
         return;
     for (int i = 0; i < p->ny; i++) {
         const bool is_speed = i >= p->nq && i < p->nq + p->nu;
-        const double answer = is_speed ? fabs(r->roundoff[i] - r->dy[i]) : 0;
-        most = fmax(most, answer);
-        r->roundoff[i] = answer;
+        const double response = is_speed ? fabs(r->roundoff[i] - r->dy[i]) : 0;
+        most = fmax(most, response);
+        r->roundoff[i] = response;
     }
     r->problem.roundoff_step = sqrt(CT_PERTURBATION * largest / most);
     if (h > r->problem.roundoff_step)
         return;
-    leave_out_damped(r, CT_PERTURBATION * largest / r->problem.roundoff_step);
+    exclude_damped_speeds(r, CT_PERTURBATION * largest / r->problem.roundoff_step);
     find_arithmetic_roundoff(r, CT_PERTURBATION * largest);
     for (int i = p->nq; i < p->nq + p->nu; i++)
         r->roundoff[i] = r->roundoff[i] > 0
@@ -109,7 +109,7 @@ static bool shows_roundoff(const struct ct_driver *r, double h, double error)
 {
     const struct ct_refusal *last = &r->refusal;
     return !r->method->is_implicit && !r->problem.roundoff && last->error > 1 && h < last->h
-        && error > last->error * pow(h / last->h, between);
+        && error > last->error * pow(h / last->h, order_between);
 }
 
 bool ct_driver_is_roundoff(struct ct_driver *r, double h, double error)
@@ -119,14 +119,14 @@ bool ct_driver_is_roundoff(struct ct_driver *r, double h, double error)
     r->refusal.h = h;
     r->refusal.error = error;
     if (shows)
-        measure(r, h);
+        measure_roundoff(r, h);
     return shows && r->problem.roundoff;
 }
 
 void ct_driver_note_step(struct ct_driver *r, double h, double error)
 {
-    const bool is_held = r->o->step == 0 && !r->method->is_implicit;
-    if ((is_held && ++r->roundoff_steps == STEPS_BETWEEN) || shows_roundoff(r, h, error))
-        measure(r, h);
+    const bool is_controlled = r->o->step == 0 && !r->method->is_implicit;
+    if ((is_controlled && ++r->roundoff_steps == STEPS_BETWEEN) || shows_roundoff(r, h, error))
+        measure_roundoff(r, h);
     r->refusal = (struct ct_refusal){0};
 }

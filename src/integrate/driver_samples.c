@@ -78,40 +78,43 @@ bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_ste
     return r->sample < r->o->nsample && r->o->sample[r->sample] < s->t1;
 }
 
-// Is the error of the interpolant at the next sample, or without one in the middle of the step, too
-// large? It is compared with a separate step from the start of this one. After each agreement twice
-// as many steps go unchecked. After a disagreement the largest number of steps counts as
-// inaccurate.
-static bool interpolant_errs(struct ct_driver *r, const struct ct_planned_step *s)
+// Is the error of the interpolant at the next sample too large; without a sample, in the middle of
+// the step? It is the difference to a separate step from the start of this one. After each check
+// that passes, twice as many checks are skipped. After one that fails, the next MOST_SKIPPED steps
+// are treated as inaccurate.
+static bool is_interpolant_inaccurate(struct ct_driver *r, const struct ct_planned_step *s)
 {
-    // Default: evaluations against interpolants that err unseen. Test: integrate.
-    enum { MOST_UNASKED = 31 };
+    // Default: evaluations against inaccurate interpolants that are not found. Test: integrate.
+    enum { MOST_SKIPPED = 31 };
     // Default: evaluations against the error of samples. Test: integrate.
     const double much = 0.01;
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     const double h = ct_driver_has_sample(r, s) ? r->o->sample[r->sample] - r->t : s->h / 2;
     double unused;
-    if (r->unchecked > 0) {
-        r->unchecked--;
-        return r->has_erred;
+    if (r->checks_to_skip > 0) {
+        r->checks_to_skip--;
+        return r->was_inaccurate;
     }
-    r->has_erred = true;
+    r->was_inaccurate = true;
     if (s->method->step(r->p, r->t, h, r->y, r->dy, NULL, r->sample_end, r->dsample_end,
                         &unused, r->sample_work, r->stats)
         == CT_EVAL_OK) {
         ct_stepper_point(&span, h / s->h, r->point);
         for (int i = 0; i < r->p->ny; i++)
             r->point[i] -= r->sample_end[i];
-        r->has_erred = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
+        r->was_inaccurate
+            = !(ct_stepper_norm(r->p, &r->tolerance, r->y, r->y1, r->point) <= much);
     }
-    r->trusted = r->has_erred ? 0 : r->trusted < MOST_UNASKED ? 2 * r->trusted + 1 : r->trusted;
-    r->unchecked = r->has_erred ? MOST_UNASKED : r->trusted;
-    return r->has_erred;
+    r->skipped_checks = r->was_inaccurate                ? 0
+                      : r->skipped_checks < MOST_SKIPPED ? 2 * r->skipped_checks + 1
+                                                         : r->skipped_checks;
+    r->checks_to_skip = r->was_inaccurate ? MOST_SKIPPED : r->skipped_checks;
+    return r->was_inaccurate;
 }
 
-bool ct_driver_is_damping(struct ct_driver *r, const struct ct_planned_step *s)
+bool ct_driver_damps_fast_mode(struct ct_driver *r, const struct ct_planned_step *s)
 {
-    return is_unresolved(r, s) && interpolant_errs(r, s);
+    return is_unresolved(r, s) && is_interpolant_inaccurate(r, s);
 }
 
 // y (ny, out) = the state at a time t inside the step: from the interpolant where it is accurate,
@@ -121,7 +124,7 @@ static bool find_state(struct ct_driver *r, const struct ct_planned_step *s, dou
 {
     const struct ct_stepper_span span = {s->method, r->p, r->t, s->h, r->y, r->y1, s->work};
     double error;
-    if (!s->is_damping) {
+    if (!s->damps_fast_mode) {
         ct_stepper_point(&span, (t - r->t) / s->h, y);
         return true;
     }

@@ -14,17 +14,17 @@ static const double nearer = 0.5;
 // After so many failures the configuration counts as nearly singular only.
 // Default: crossings given up against trials in vain. Test: crossing.
 static const int most_crossings = 6;
-// A crossing may begin before its planned start, up to this factor of the planned time before the
-// configuration; after a failure only at the planned start. Default: a short step to the planned
-// start against longer crossings. Test: crossing.
-static const double early = 1.3, on_time = 1.02;
-// Predicted times that differ by such a factor belong to two configurations.
+// A crossing may begin before its planned start: its time before the configuration is at most the
+// planned one times this factor. After a failure only 2 % are allowed. Default: a short
+// step to the planned start against longer crossings. Test: crossing.
+static const double start_margin = 1.3, repeated_start_margin = 1.02;
+// Predicted times that differ by more than this factor belong to two configurations.
 // Default: predictions err, and configurations follow each other. Test: crossing.
-static const double other = 2;
+static const double other_configuration = 2;
 // A run whose end lies before the configuration, by less than this part of the length of the
 // approach, ends with a crossing, of which only the part up to the end is used.
 // Chosen: short steps near the configuration against a crossing.
-static const double beside = 0.5;
+static const double most_overshoot = 0.5;
 
 double ct_driver_step_limit(const struct ct_driver *r)
 {
@@ -122,7 +122,8 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
     s->method = r->method;
     s->work = r->work;
     s->reaches_stop = s->is_event = s->is_interpolated = false;
-    s->is_off_between = s->is_damping = s->leaves_remainder = s->leaves_rest = false;
+    s->is_inaccurate_between = s->damps_fast_mode = s->leaves_remainder = s->leaves_zero
+        = false;
     s->error = s->begin = 0;
     if (ct_driver_has_remainder(r)) {
         plan_remainder(r, stop, is_time, s);
@@ -131,8 +132,9 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
     // the run may end shortly before the singular configuration; one that starts within its reach
     // must come to it
     if (has_crossing(r) && reach > 0
-        && (isinf(r->crossing_begin) || r->singular_in - beside * reach < rest)) {
-        if (r->singular_in <= (r->failed_crossings ? on_time : early) * reach) {
+        && (isinf(r->crossing_begin) || r->singular_in - most_overshoot * reach < rest)) {
+        if (r->singular_in
+            <= (r->failed_crossings ? repeated_start_margin : start_margin) * reach) {
             plan_crossing(r, stop, is_time, s);
             return;
         }
@@ -160,7 +162,7 @@ void ct_driver_adapt_after_refusal(struct ct_driver *r, double h, double error)
         r->control.h = r->refusal.longest;
 }
 
-void ct_driver_look_ahead(struct ct_driver *r, double t)
+void ct_driver_predict_singularity(struct ct_driver *r, double t)
 {
     if (!r->crossing_work)
         return;
@@ -169,8 +171,9 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
     r->singular_in = r->p->singular->time_to_next(r->p->singular->user, &reach);
     // there is none, or another one, or failed attempts were made with a wrong prediction of its
     // time
-    if (!(r->singular_in < INFINITY) || r->singular_in > other * before
-        || (r->failed_crossings && other * r->singular_in < r->predicted_at - t)) {
+    if (!(r->singular_in < INFINITY) || r->singular_in > other_configuration * before
+        || (r->failed_crossings
+            && other_configuration * r->singular_in < r->predicted_at - t)) {
         r->reach = INFINITY;
         r->failed_crossings = 0;
     }
@@ -182,7 +185,7 @@ void ct_driver_look_ahead(struct ct_driver *r, double t)
 
 // Plans the length of the remainder. A crossing that began too near to the singular configuration
 // has a remainder as long as the usual approach.
-static void keep_remainder(struct ct_driver *r, const struct ct_planned_step *s)
+static void plan_next_remainder(struct ct_driver *r, const struct ct_planned_step *s)
 {
     const double whole
         = isfinite(r->crossing_begin) ? fmax(s->h / 2, r->crossing_begin) : s->h / 2;
@@ -198,7 +201,7 @@ void ct_driver_adapt_after_crossing(struct ct_driver *r, const struct ct_planned
     const struct ct_singularities *x = r->p->singular;
     if (!r->remainder.is_announced)
         r->remainder.is_announced = x->passed(x->user, &span, s->begin, s->t1);
-    keep_remainder(r, s);
+    plan_next_remainder(r, s);
     r->singular_in = r->reach = INFINITY;
     r->failed_crossings = 0;
     r->control.was_refused = false;

@@ -16,7 +16,7 @@ static const double probes[] = {0.25, 0.5, 0.75, 1};
 const double ct_event_location_margin = 0.1;
 // The minimum is located with three points, whose distance shrinks by this factor each time.
 // Default: crossings_close_together_are_both_seen fails with 0.9. Test: events.
-static const double closer = 0.125;
+static const double dip_shrink = 0.125;
 
 // Times are resolved to this part of max(|t|, h), and values of g to this part of their size in
 // the step: some thousand units of round-off, so that secants still see a change of g.
@@ -25,7 +25,7 @@ static const double resolution = 1e-12;
 
 // Spacing of the forward differences for slopes of g, as part of a step. Derived: the square root
 // of the unit round-off, where round-off and curvature err alike.
-static const double spacing = 0x1p-26;
+static const double difference_step = 0x1p-26;
 
 // The least number of steps of a run with events. Without it steps, and with them probes, could
 // grow without limit in a simple motion such as free fall. Default: what is missed against steps.
@@ -94,7 +94,7 @@ void ct_event_location_init(struct ct_event_location *w, const struct ct_problem
 static enum ct_eval find_sides(struct ct_event_location *w, double t, double h, const double *y,
                                const double *dy)
 {
-    const double later = spacing * h;
+    const double later = difference_step * h;
     for (int i = 0; i < w->p->ny; i++)
         w->point[i] = y[i] + later * dy[i];
     const enum ct_eval e = evaluate(w, t + later, w->point, w->g);
@@ -114,7 +114,7 @@ enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, doub
     enum ct_eval e = n ? evaluate(w, t, y, w->g0) : CT_EVAL_OK;
     if (e != CT_EVAL_OK || n == 0)
         return e;
-    bool has_doubt = false;
+    bool any_unknown = false;
     for (int i = 0; i < n; i++) {
         w->side[i] = (signed char)sign(w->g0[i]);
         // the value of a root that fired is round-off, unless the event has changed the state
@@ -122,17 +122,17 @@ enum ct_eval ct_event_location_start(struct ct_event_location *w, double t, doub
             w->side[i] = 0;
         else
             w->recently_fired[i] = 0;
-        has_doubt |= w->side[i] == 0;
+        any_unknown |= w->side[i] == 0;
     }
     if (w->p->sides)
         w->p->sides(w->p->user, w->side);
-    else if (has_doubt)
+    else if (any_unknown)
         e = find_sides(w, t, h, y, dy);
     memset(w->crossed, 0, (size_t)n);
     return e;
 }
 
-static bool any_rests(const struct ct_event_location *w)
+static bool any_stays_zero(const struct ct_event_location *w)
 {
     for (int i = 0; i < w->p->nroot; i++)
         if (w->side[i] == 0)
@@ -141,8 +141,8 @@ static bool any_rests(const struct ct_event_location *w)
 }
 
 // Root functions that stayed zero and are not zero at y fire, with their sign there.
-static enum ct_eval find_leaving(struct ct_event_location *w, double t, const double *y,
-                                 bool *any)
+static enum ct_eval find_leaving_zero(struct ct_event_location *w, double t, const double *y,
+                                      bool *any)
 {
     const enum ct_eval e = evaluate(w, t, y, w->g);
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
@@ -157,14 +157,15 @@ static enum ct_eval find_leaving(struct ct_event_location *w, double t, const do
 
 // Does a root function that stayed zero change in a step to y_end? The end is tested first, as it
 // is more accurate than dense output.
-static enum ct_eval search_leaving(struct ct_event_location *w, const struct ct_stepper_span *s,
-                                   const double *y_end, bool *any)
+static enum ct_eval search_leaving_zero(struct ct_event_location *w,
+                                        const struct ct_stepper_span *s, const double *y_end,
+                                        bool *any)
 {
     *any = false;
-    enum ct_eval e = find_leaving(w, s->t + s->h, y_end, any);
+    enum ct_eval e = find_leaving_zero(w, s->t + s->h, y_end, any);
     for (int j = 0; probes[j] < 1 && e == CT_EVAL_OK && !*any; j++) {
         ct_stepper_point(s, probes[j], w->point);
-        e = find_leaving(w, s->t + probes[j] * s->h, w->point, any);
+        e = find_leaving_zero(w, s->t + probes[j] * s->h, w->point, any);
     }
     return e;
 }
@@ -179,7 +180,7 @@ static bool has_crossed(const struct ct_event_location *w, int i, const double *
 
 // At a probe without an event: root functions that have left the range of round-off after they
 // fired.
-static void note_away(struct ct_event_location *w, const double *g)
+static void clear_recently_fired(struct ct_event_location *w, const double *g)
 {
     for (int i = 0; i < w->p->nroot; i++)
         if (w->side[i] * g[i] > w->recently_fired[i])
@@ -196,7 +197,8 @@ static bool any_crossed(const struct ct_event_location *w, const double *g)
 
 // The first zero of root functions between low and high, by secants.
 // `bias` weighs the values at high against those at low (Illinois).
-static double guess(const struct ct_event_location *w, double low, double high, double bias)
+static double secant_zero(const struct ct_event_location *w, double low, double high,
+                          double bias)
 {
     double part = 1;
     for (int i = 0; i < w->p->nroot; i++) {
@@ -226,7 +228,7 @@ static enum ct_eval locate(struct ct_event_location *w, const struct ct_stepper_
     double bias = 1;
     double before = high - low; // the bracket two tries ago, with `tries` counting since
     for (int tries = 0, last = 0; high - low > width;) {
-        double x = guess(w, low, high, bias);
+        double x = secant_zero(w, low, high, bias);
         if (++tries > 2) {
             if (high - low > 0.5 * before)
                 x = 0.5 * (low + high);
@@ -254,10 +256,10 @@ static enum ct_eval locate(struct ct_event_location *w, const struct ct_stepper_
 }
 
 // The roots that fire at theta, from w->high, and their slopes there.
-static enum ct_eval mark(struct ct_event_location *w, const struct ct_stepper_span *s,
-                         double theta)
+static enum ct_eval mark_fired(struct ct_event_location *w, const struct ct_stepper_span *s,
+                               double theta)
 {
-    const double d = theta > 0.5 ? -spacing : spacing;
+    const double d = theta > 0.5 ? -difference_step : difference_step;
     const enum ct_eval e = evaluate_inside(w, s, theta + d, w->g);
     for (int i = 0; i < w->p->nroot && e == CT_EVAL_OK; i++) {
         w->crossed[i] = has_crossed(w, i, w->high) ? (signed char)-w->side[i] : 0;
@@ -295,10 +297,10 @@ static enum ct_eval find_dip(struct ct_event_location *w, const struct ct_steppe
 {
     double x = *theta, at[3] = {f[0], f[1], f[2]};
     *theta = 2;
-    while (apart > spacing && ct_event_location_may_dip(at[0], at[1], at[2])) {
+    while (apart > difference_step && ct_event_location_may_dip(at[0], at[1], at[2])) {
         const double bend = at[0] - 2 * at[1] + at[2];
         x -= apart * (at[2] - at[0]) / (2 * bend);
-        apart *= closer;
+        apart *= dip_shrink;
         x = fmin(fmax(x, apart), 1 - apart);
         for (int j = 0; j < 3; j++) {
             const double place = x + (j - 1) * apart;
@@ -343,17 +345,17 @@ static enum ct_eval search_dips(struct ct_event_location *w, const struct ct_ste
 
 // Locates the event in [low, high], with no sign change at low, in w->low, and one at high, in
 // w->high.
-static enum ct_eval narrow(struct ct_event_location *w, const struct ct_stepper_span *s,
-                           double low, double high, double *theta)
+static enum ct_eval locate_in(struct ct_event_location *w, const struct ct_stepper_span *s,
+                              double low, double high, double *theta)
 {
     const double width = fmin(0.5, ct_event_location_resolution(s->t, s->h) / s->h);
     const enum ct_eval e = locate(w, s, low, high, width, theta);
-    return e == CT_EVAL_OK ? mark(w, s, *theta) : e;
+    return e == CT_EVAL_OK ? mark_fired(w, s, *theta) : e;
 }
 
 // *theta (out): the first event between probes before `before`, that probes up to `end` do not
 // show; else 2.
-static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
+static enum ct_eval locate_dip(struct ct_event_location *w, const struct ct_stepper_span *s,
                                int end, double before, double *theta)
 {
     const size_t n = (size_t)w->p->nroot;
@@ -367,7 +369,7 @@ static enum ct_eval narrow_dip(struct ct_event_location *w, const struct ct_step
         k++;
     memcpy(w->low, w->probed + n * (size_t)k, n * sizeof *w->low);
     e = evaluate_inside(w, s, x, w->high);
-    return e == CT_EVAL_OK ? narrow(w, s, k ? probes[k - 1] : 0, x, theta) : e;
+    return e == CT_EVAL_OK ? locate_in(w, s, k ? probes[k - 1] : 0, x, theta) : e;
 }
 
 enum ct_eval ct_event_location_search(struct ct_event_location *w,
@@ -378,9 +380,9 @@ enum ct_eval ct_event_location_search(struct ct_event_location *w,
     double before = 0;
     *theta = 2;
     memset(w->crossed, 0, n);
-    if (any_rests(w)) {
+    if (any_stays_zero(w)) {
         bool leaves;
-        const enum ct_eval e = search_leaving(w, s, y_end, &leaves);
+        const enum ct_eval e = search_leaving_zero(w, s, y_end, &leaves);
         if (leaves)
             *theta = 0;
         if (leaves || e != CT_EVAL_OK)
@@ -396,17 +398,17 @@ enum ct_eval ct_event_location_search(struct ct_event_location *w,
             return e;
         memcpy(seen + n, w->high, n * sizeof *w->high);
         if (any_crossed(w, w->high)) {
-            e = narrow_dip(w, s, j + 1, before, theta);
+            e = locate_dip(w, s, j + 1, before, theta);
             if (e != CT_EVAL_OK || *theta <= 1)
                 return e;
             memcpy(w->low, seen, n * sizeof *w->low);
             memcpy(w->high, seen + n, n * sizeof *w->high);
-            return narrow(w, s, before, probes[j], theta);
+            return locate_in(w, s, before, probes[j], theta);
         }
-        note_away(w, w->high);
+        clear_recently_fired(w, w->high);
         before = probes[j];
     }
-    const enum ct_eval e = narrow_dip(w, s, COUNT(probes), 1, theta);
+    const enum ct_eval e = locate_dip(w, s, COUNT(probes), 1, theta);
     if (e == CT_EVAL_OK && *theta > 1)
         memcpy(w->low, w->probed + n * COUNT(probes), n * sizeof *w->low);
     return e;

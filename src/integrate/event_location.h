@@ -1,7 +1,7 @@
 // Event location: which root functions (state events) change sign within a step, and when.
 //
 //     side      the last sign of each root function, -1 or 1; 0: it stays zero
-//     rest      a root function that stays zero fires as soon as it is not zero, at the start of
+//     at rest   a root function that stays zero fires as soon as it is not zero, at the start of
 //               that step, since a smooth motion leaves zero at once or at an event
 //     probes    g is evaluated at a few times in a step, and where a parabola through three of
 //               them has a minimum near zero, so that two sign changes in one step are found

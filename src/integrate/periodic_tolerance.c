@@ -6,30 +6,32 @@
 // Steps between updates. They begin early, because errors of the first steps act on all periods.
 // Chosen: the work of updates against steps made with the tolerance before.
 enum { STEPS_BETWEEN = 16 };
-// Up to so many periods the tolerance of steps is that of the run.
+// Up to this number of periods the tolerance of steps is that of the run.
 // Chosen: evaluations against accuracy over long runs.
-static const double usual_turns = 20;
+static const double unscaled_periods = 20;
 
 // The smallest factor on the tolerance. Derived: that of a hundred times as many periods, as it
 // falls with their square. With less, round-off would exceed the tolerance.
-static const double least_share = 1e-4;
+static const double least_factor = 1e-4;
 
 struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
                                                          const struct ct_tolerance *tolerance)
 {
-    const double small = tolerance->rtol > 0 ? tolerance->atol / tolerance->rtol : INFINITY;
-    return (struct ct_periodic_tolerance){.t0 = t0, .t1 = t1, .small = small, .share = 1};
+    const double least_size
+        = tolerance->rtol > 0 ? tolerance->atol / tolerance->rtol : INFINITY;
+    return (struct ct_periodic_tolerance){
+        .t0 = t0, .t1 = t1, .least_size = least_size, .factor = 1};
 }
 
 // The number of periods so far. Derived: in a period a coordinate moves by twice its range, and a
 // speed changes by four times its largest value. Before the first reversal there is no period.
-static double turns_so_far(const struct ct_periodic_tolerance *r)
+static double periods_so_far(const struct ct_periodic_tolerance *r)
 {
-    const double far_q = fmax(sqrt(r->range_q), r->small),
-                 far_u = fmax(sqrt(r->range_u), r->small);
-    if (!(r->path_q > far_q && r->path_u > far_u))
+    const double span_q = fmax(sqrt(r->range_q), r->least_size),
+                 span_u = fmax(sqrt(r->range_u), r->least_size);
+    if (!(r->path_q > span_q && r->path_u > span_u))
         return 0;
-    return fmin((r->path_q / far_q - 1) / 2, (r->path_u / far_u - 1) / 4);
+    return fmin((r->path_q / span_q - 1) / 2, (r->path_u / span_u - 1) / 4);
 }
 
 bool ct_periodic_tolerance_add(struct ct_periodic_tolerance *r, double t, double dq, double q,
@@ -41,12 +43,12 @@ bool ct_periodic_tolerance_add(struct ct_periodic_tolerance *r, double t, double
     r->range_u = u > r->range_u ? u : r->range_u;
     if (++r->steps < STEPS_BETWEEN)
         return false;
-    const double before = r->share;
-    const double turns = turns_so_far(r) * (r->t1 - r->t0) / (t - r->t0);
-    const double ratio = fmin(1, usual_turns / turns);
+    const double before = r->factor;
+    const double periods = periods_so_far(r) * (r->t1 - r->t0) / (t - r->t0);
+    const double ratio = fmin(1, unscaled_periods / periods);
     r->steps = 0;
-    r->share = fmax(ratio * ratio, least_share);
-    return r->share != before;
+    r->factor = fmax(ratio * ratio, least_factor);
+    return r->factor != before;
 }
 
 bool ct_periodic_tolerance_step(struct ct_periodic_tolerance *r, double t, const double *y0,
@@ -69,6 +71,6 @@ bool ct_periodic_tolerance_step(struct ct_periodic_tolerance *r, double t, const
 struct ct_tolerance ct_periodic_tolerance_find(const struct ct_periodic_tolerance *r,
                                                double rtol, double atol, double least)
 {
-    const double share = fmin(fmax(r->share, least / rtol), 1);
-    return (struct ct_tolerance){share * rtol, share * atol};
+    const double factor = fmin(fmax(r->factor, least / rtol), 1);
+    return (struct ct_tolerance){factor * rtol, factor * atol};
 }

@@ -13,26 +13,27 @@
 
 struct ct_periodic_tolerance {
     double t0, t1; // of the run
-    double small;  // distances and speeds below it are measured against the absolute tolerance
+    double
+        least_size; // distances and speeds below it are measured against the absolute tolerance
     double path_q,
         // of coordinates: path length, square of the largest distance from the start
         range_q;
     double path_u, range_u; // of speeds: sum of their changes, square of the largest
     int steps;              // since the last update
-    double share;           // factor on the tolerance of a step
+    double factor;          // factor on the tolerance of a step
 };
 
-/// What is left of a tolerance at this share, where rtol is not to fall below `least`.
+/// The tolerance of steps: rtol and atol times the factor, where rtol is not to fall below `least`.
 struct ct_tolerance ct_periodic_tolerance_find(const struct ct_periodic_tolerance *r,
                                                double rtol, double atol, double least);
-/// Before the first step, of steps to this tolerance; share = 1.
+/// Before the first step, for steps with this tolerance; factor = 1.
 struct ct_periodic_tolerance ct_periodic_tolerance_start(double t0, double t1,
                                                          const struct ct_tolerance *tolerance);
 /// A step has ended at t: squared lengths of its change of the coordinates, of their distance from
-/// the start, of its change of the speeds, of the speeds. True if share is another now.
+/// the start, of its change of the speeds, of the speeds. True if the factor has changed.
 bool ct_periodic_tolerance_add(struct ct_periodic_tolerance *r, double t, double dq, double q,
                                double du, double u);
-/// The same of a step from y to y1 in a run from y0, of nq coordinates and nu speeds.
+/// The same for a step from y to y1 in a run that started at y0, with nq coordinates and nu speeds.
 bool ct_periodic_tolerance_step(struct ct_periodic_tolerance *r, double t, const double *y0,
                                 const double *y, const double *y1, int nq, int nu);
 

@@ -28,7 +28,7 @@ enum ct_eval {
 /// unknowns before it alone. Then K, C and M have rows of r, followed by rows of k, as derivatives
 /// at fixed k, and R = d(r, k)/dk. The whole derivative of r is r_q + r_k (1 - k_k)^-1 k_q, and so
 /// on.  (8.19)
-struct ct_slopes {
+struct ct_jacobian_pattern {
     int nK, nC, nM, nR, nD, nJ; // in this order; K, C, M, R by row
     int nauxiliary;
     const int *row, *column;
@@ -74,19 +74,19 @@ struct ct_dae {
                             double *J, double *D);
 
     /// The sparsity patterns of the same derivatives; NULL: not known.
-    const struct ct_slopes *slopes;
+    const struct ct_jacobian_pattern *jacobian_pattern;
     /// *value (out): the entries of K, C, M, R, D, J in turn, valid until the next call.
-    enum ct_eval (*evaluate_slopes)(void *user, double t, const double *q, const double *u,
-                                    const double *a, const double *lam, const double **value);
+    enum ct_eval (*evaluate_jacobian)(void *user, double t, const double *q, const double *u,
+                                      const double *a, const double *lam, const double **value);
     /// Indices of the present rows among most_rows, in the order of lam.
     const int *(*active_rows)(void *user);
     /// Symbolic analysis of the Newton matrix, [1] for stabilised forms; NULL: dense matrices.
     const struct ct_newton_pattern *plan[2];
 
     // special cases that make steps cheaper
-    bool is_plain;     // speed k is the derivative of coordinate k: q (+) d = q + d
-    bool has_no_power; // rates of quadratures are zero
-    int nstate;        // the last speeds are state variables, which move no coordinate
+    bool is_plain;                 // speed k is the derivative of coordinate k: q (+) d = q + d
+    bool quadratures_are_constant; // rates of quadratures are zero
+    int nstate; // the last speeds are state variables, which move no coordinate
 };
 
 /// Groups of states that are components of one quantity, such as a vector. The largest component is
@@ -164,8 +164,8 @@ struct ct_problem {
                             double least);
     /// Predicts outputs: they will change by `times` their change for a change way (ny) of y. NULL
     /// as above.
-    void (*expect_output)(void *user, double t, const double *y, const double *way,
-                          double times);
+    void (*predict_output)(void *user, double t, const double *y, const double *way,
+                           double times);
     /// As output_error, for sensitive outputs, which amplify errors of states (8.11). Where it is
     /// not NULL output_error leaves them out. 0: there are none.
     double (*sensitive_output_error)(void *user, double t, const double *y, const double *e,
@@ -301,10 +301,10 @@ struct ct_method {
     /// Needs problem.dae, and solves the constraints itself: its steps are not projected.
     bool is_implicit;
     /// Its speeds meet the velocity constraints only to the order of the method.
-    bool leaves_speeds;
+    bool violates_velocity_constraints;
     /// Step size control; 0: the usual values. The step size is kept where it would change by a
     /// factor between steady[0] and steady[1], which saves a factorisation.
-    double most_growth, steady[2];
+    double most_growth, kept_range[2];
     const void *coefficients; // of families of methods
     /// The workspace for a run. `restart` clears what it keeps from earlier steps, `accept` adds
     /// the last step; both may be NULL.

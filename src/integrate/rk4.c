@@ -16,7 +16,7 @@ struct work {
     struct ct_compensation carry;                // of fixed steps
     double *k;                                   // (ny x 4)
     double *point, *dy, *dy1, *middle, *dmiddle; // (ny) each
-    bool is_halved;
+    bool has_half_steps;
 };
 
 static void *create(struct ct_arena *a, const struct ct_method *method,
@@ -37,8 +37,8 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
 
 // point (n, out) = y + c h k. The stage k has just been stored number by number. A vector load
 // would wait for these stores, so few numbers are read one at a time (volatile).
-static inline void go(double *restrict point, const double *y, double h, double c,
-                      const double *k, int n)
+static inline void stage_point(double *restrict point, const double *y, double h, double c,
+                               const double *k, int n)
 {
     enum { FEW = 16 }; // Limit: of time; both ways give the same numbers
     const volatile double *one = k;
@@ -57,7 +57,7 @@ static enum ct_eval stages(const struct ct_problem *p, double t, double h, const
     ct_stepper_copy(w->k, dy, n);
     for (int s = 1; s < STAGES; s++) {
         double *k = w->k + s * n;
-        go(w->point, y, h, C[s], k - n, n);
+        stage_point(w->point, y, h, C[s], k - n, n);
         const enum ct_eval e = ct_stepper_rhs(p, t + C[s] * h, w->point, k, stats);
         if (e != CT_EVAL_OK)
             return e;
@@ -77,10 +77,10 @@ static enum ct_eval advance(const struct ct_problem *p, double t, double h, cons
 }
 
 // Two steps of h / 2 to y1; *err from the whole step.
-static enum ct_eval advance_halved(const struct ct_problem *p, double t, double h,
-                                   const double *y, const struct ct_tolerance *tolerance,
-                                   double *y1, double *err, const struct work *w,
-                                   struct ct_integrate_stats *stats)
+static enum ct_eval advance_with_estimate(const struct ct_problem *p, double t, double h,
+                                          const double *y, const struct ct_tolerance *tolerance,
+                                          double *y1, double *err, const struct work *w,
+                                          struct ct_integrate_stats *stats)
 {
     double *whole = w->dy1; // free until the end of the step
     enum ct_eval e = advance(p, t, h, y, w->dy, whole, w, stats);
@@ -104,8 +104,8 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
 {
     struct work *w = work;
     ct_stepper_copy(w->dy, dy, p->ny);
-    w->is_halved = tolerance != NULL;
-    enum ct_eval e = tolerance ? advance_halved(p, t, h, y, tolerance, y1, err, w, stats)
+    w->has_half_steps = tolerance != NULL;
+    enum ct_eval e = tolerance ? advance_with_estimate(p, t, h, y, tolerance, y1, err, w, stats)
                                : stages(p, t, h, y, dy, w, stats);
     if (e == CT_EVAL_OK && !tolerance)
         ct_stepper_advance(y1, y, h, B, w->k, STAGES, &w->carry);
@@ -120,7 +120,7 @@ static void dense(const struct ct_problem *p, double h, double theta, const doub
                   const double *y1, void *work, double *out)
 {
     const struct work *w = work;
-    if (!w->is_halved)
+    if (!w->has_half_steps)
         ct_stepper_hermite(out, theta, h, y, w->dy, y1, w->dy1, p->ny);
     else if (theta < 0.5)
         ct_stepper_hermite(out, 2 * theta, h / 2, y, w->dy, w->middle, w->dmiddle, p->ny);

@@ -21,7 +21,7 @@ static const double most_shrink = 0.2;
 static const double most_growth = 5;
 // Derived: FACOLD of DOPRI5, the least error that the controller remembers; smaller ones would make
 // it shrink the next step.
-static const double remembered_error = 1e-4;
+static const double least_previous_error = 1e-4;
 
 // Powers of errors need four digits: the exponent of a number and a polynomial of its mantissa take
 // a tenth of the time of log and exp. Derived: the coefficients are those of least largest error.
@@ -52,18 +52,19 @@ static double near_exp2(double x)
 
 struct ct_step_control ct_step_control_start(void)
 {
-    const double least = near_log2(remembered_error);
+    const double least = near_log2(least_previous_error);
     return (struct ct_step_control){.log_before = least, .log_least = least};
 }
 
-// A run ends early where its steps do not grow any more, that is by this factor over a window of a
-// thousandth of the steps allowed, and the end would take `endless` times the steps allowed.
-// Default: runs ended early against time lost on runs that cannot end. Test: failed_runs.
-static const double endless = 3, growing = 1.1;
+// A run ends early if the end would take `most_times_allowed` times the steps allowed, and steps do
+// not grow any more: by less than the factor `least_growth` from one window to the next, each a
+// thousandth of the steps allowed. Default: runs ended early against time lost on runs that cannot
+// end. Test: failed_runs.
+static const double most_times_allowed = 3, least_growth = 1.1;
 // Default: how often that is asked. Test: failed_runs.
 enum { WINDOWS = 1000 };
 
-bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,
+bool ct_step_control_exceeds_limit(struct ct_step_progress *p, long steps, long most, double t,
                                    double rest)
 {
     const long window = most / WINDOWS;
@@ -76,10 +77,10 @@ bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, dou
     const double before = p->gain;
     p->gain = t - p->t;
     p->t = t;
-    const bool has_grown = !(before > 0 && p->gain <= growing * before);
+    const bool has_grown = !(before > 0 && p->gain <= least_growth * before);
     p->step = p->gain / (double)window;
     p->to_come = has_grown ? 0 : rest / p->step;
-    return p->to_come > endless * (double)most;
+    return p->to_come > most_times_allowed * (double)most;
 }
 
 static double safety_of(const struct ct_method *m)
@@ -88,7 +89,7 @@ static double safety_of(const struct ct_method *m)
 }
 
 // Sets the parameters of the controller for method m.
-static void learn(struct ct_step_control *c, const struct ct_method *m)
+static void set_method(struct ct_step_control *c, const struct ct_method *m)
 {
     const double power = 1.0 / (m->error_order + 1);
     c->method = m;
@@ -96,28 +97,28 @@ static void learn(struct ct_step_control *c, const struct ct_method *m)
     c->alpha = power - 0.75 * c->beta;
     c->log_safety = log2(safety_of(m));
     for (int i = 0; i < 2; i++)
-        c->log_steady[i] = m->steady[i] > 0 ? log2(m->steady[i]) : -INFINITY;
+        c->log_kept_range[i] = m->kept_range[i] > 0 ? log2(m->kept_range[i]) : -INFINITY;
 }
 
 void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m, double h,
                             double error)
 {
     if (c->method != m)
-        learn(c, m);
-    c->is_starting = c->is_starting && error < remembered_error;
+        set_method(c, m);
+    c->is_starting = c->is_starting && error < least_previous_error;
     const double log_error = near_log2(error);
     // log2 of safety error_before^beta / error^alpha, the next step over this one, without limits
     const double power = c->log_safety + c->beta * c->log_before - c->alpha * log_error;
     c->log_before = ct_larger(log_error, c->log_least);
-    if (power > c->log_steady[0] && power < c->log_steady[1]) {
+    if (power > c->log_kept_range[0] && power < c->log_kept_range[1]) {
         // no store where h stays the same: so the next step does not wait for the error of this one
         if (c->was_refused || h > c->h)
             c->h = h;
         c->was_refused = false;
         return;
     }
-    const bool has_own = m->most_growth > 0 && !c->is_starting;
-    const double growth = has_own ? m->most_growth : most_growth;
+    const bool has_own_growth = m->most_growth > 0 && !c->is_starting;
+    const double growth = has_own_growth ? m->most_growth : most_growth;
     const double factor = ct_smaller(ct_larger(near_exp2(power), most_shrink), growth);
     if (c->was_refused) // after a refusal the step may not grow
         c->h = ct_smaller(factor, 1) * h;

@@ -16,9 +16,9 @@ struct ct_step_control {
     double log_least;
     // values of the method of the last step, computed when the method changes
     const struct ct_method *method;
-    double alpha, beta;               // powers of the errors of this step and the one before
-    double log_safety, log_steady[2]; // log2
-    bool was_refused;                 // the last attempt was refused
+    double alpha, beta; // powers of the errors of this step and the one before
+    double log_safety, log_kept_range[2]; // log2
+    bool was_refused;                     // the last attempt was refused
     bool is_starting; // since the start or an event errors are far below the tolerance
 };
 
@@ -52,14 +52,14 @@ void ct_step_control_refuse(struct ct_step_control *c, const struct ct_method *m
                             double error);
 
 /// The time gained with each thousandth of the steps allowed; all zero before the first.
-struct ct_pace {
+struct ct_step_progress {
     double t, gain;       // where the last thousandth ended, and its length
     long next;            // number of steps at its end
     double step, to_come; // then: mean step, steps up to the end; 0 while steps still grow
 };
 /// After so many of `most` steps t is reached, and `rest` is left: would the rest take several
 /// times the steps allowed? False while steps still grow.
-bool ct_step_control_exceeds_limit(struct ct_pace *p, long steps, long most, double t,
+bool ct_step_control_exceeds_limit(struct ct_step_progress *p, long steps, long most, double t,
                                    double rest);
 
 /// The length of the Euler step that estimates y'', from the norms d0, d1 of y and y' over the

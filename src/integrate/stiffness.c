@@ -1,6 +1,6 @@
-// See stiffness.h. The power method for the fastest motion: Golub and Van Loan (2013), key
-// golub2013, 7.3; that the step times it shows stiffness: Hairer and Wanner (1996), key hairer1996,
-// IV.2.
+// See stiffness.h. The power method for the fastest mode: Golub and Van Loan (2013), key golub2013,
+// 7.3; the product of step and rate as a test of stiffness: Hairer and Wanner (1996), key
+// hairer1996, IV.2.
 #include "integrate/stiffness.h"
 
 #include <float.h>
@@ -18,43 +18,43 @@ static const int tests_in_a_row = 3;
 static const double same_rate = 2;
 // From this h fast on the fastest mode may limit the step.
 // Default: trials in vain against stiffness not seen. Test: stiffness_detection_bushing.
-static const double limited_step = 0.5;
+static const double least_limited_step = 0.5;
 // From this h fast on no method resolves the fastest mode. The changes from step to step are then
 // errors at the limit of stability, and `slow` is not known.
 // Derived: a vibration needs two points in a period, a step of pi/omega.
-static const double unfollowed_step = 3;
+static const double unresolved_step = 3;
 // The least fast/slow of a stiff problem: closer modes must be resolved by any method.
 // Chosen: trials in vain against stiffness not seen.
 static const double least_separation = 10;
 // The same against the rate of change of positions, for vibrations whose speeds no output depends
 // on (8.10). Chosen: as many explicit steps, of some 1/fast each, are worth a trial.
-static const double far_off = 1000;
+static const double unobserved_separation = 1000;
 // The part of J^2 x outside the plane of x and J x up to which x counts as a single mode. Otherwise
 // the decay rate is not known. Default: the error of the decay rate against modes without one.
 // Test: integrate.
-static const double one_motion = 0.1;
+static const double single_mode = 0.1;
 // A motion with h slow below this does not limit the step. Then round-off of positions, which the
 // forces amplify, may limit it far from the limit of stability.
 // Derived: (1e-3)^5, the error of a method of order 5, is a few round-off errors. Test: bushing.
-static const double idle_step = 1e-3;
+static const double undemanding_step = 1e-3;
 // Fewer steps to come are worth neither a trial nor the preparation of an implicit method.
 // Chosen: the work of a trial against that of the rest of the run.
-static const double steps_worth_it = 1000;
-// Until the next trial the number of steps doubles.
+static const double least_steps_to_come = 1000;
+// Before the next trial the number of steps grows at least by this factor.
 // Chosen: trials in vain against stiffness found late.
-static const long put_off_by = 2;
+static const long postponed_steps = 2;
 // The work of the explicit steps until the next trial, over that of the trial.
 // Chosen: trials in vain take less than a tenth of the work.
-static const double put_off_work = 10;
+static const double postponed_work = 10;
 
-// Steps of a trial: the first ones find the step size and do not count, the others do.
+// Steps of a trial: the first ones adapt the step size and are not counted, the others are.
 // Chosen: the work of a trial against the error of its result.
-static const int warming_steps = 6, counted_steps = 12;
+static const int uncounted_steps = 6, counted_steps = 12;
 // Steps that do not count where vibrations must be damped first. Derived: Radau IIA has |R(3 i)| =
 // 0.947, so that 40 steps of h omega = 3 leave 0.012 of the energy of a vibration.
 static const int damping_steps = 40;
 
-// ---- suspicion ----------------------------------------------------------------------------------
+// ---- the test -----------------------------------------------------------------------------------
 
 struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_problem *p,
                                          const struct ct_integrate_stats *stats, double rtol,
@@ -64,7 +64,7 @@ struct ct_stiffness *ct_stiffness_create(struct ct_arena *a, const struct ct_pro
     *s = (struct ct_stiffness){
         .p = p, .stats = stats, .rtol = rtol, .first = first, .last = last};
     double **const vectors[]
-        = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter, &s->once};
+        = {&s->v, &s->w, &s->f, &s->f0, &s->point, &s->y0, &s->quarter, &s->Jx};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, p->ny);
     for (int i = first; i < last; i++) // all speeds, with unequal parts
@@ -91,12 +91,12 @@ static bool apply_jacobian(struct ct_stiffness *s, double t, const double *y, co
     if (s->p->rhs(s->p->user, t, s->point, w) != CT_EVAL_OK)
         return false;
     for (int i = 0; i < n; i++)
-        w[i] = i < s->last ? (w[i] - s->f[i]) / e : 0; // quadratures feed nothing back
+        w[i] = i < s->last ? (w[i] - s->f[i]) / e : 0; // f does not depend on quadratures
     return true;
 }
 
-// v <- x / |x|; |x|.
-static double turn_to(struct ct_stiffness *s, const double *x)
+// v <- x / |x|. Returns |x|.
+static double normalize(struct ct_stiffness *s, const double *x)
 {
     const double size = length(x, 0, s->last);
     if (size > 0 && isfinite(size))
@@ -114,33 +114,33 @@ static double dot(const struct ct_stiffness *s, const double *a, const double *b
     return s->fast * s->fast * places + speeds;
 }
 
-// The rate at which the fastest motion dies: J^2 x = -2 decay J x - rate^2 x for a vibration, J x =
-// -decay x for one that only dies, by least squares for x, s->v before both applications, J x =
-// gain s->once, s->v after them. Negative where it grows, zero where x is not yet one motion.
+// The decay rate of the fastest mode: J^2 x = -2 decay J x - rate^2 x for a vibration, J x = -decay x
+// for a mode that does not oscillate, by least squares. J x = gain s->Jx, and s->v is the vector
+// after both applications of J. Negative where the mode grows, zero where x is not a single mode.
 // (8.32)
 static double find_decay(const struct ct_stiffness *s, const double *x, double gain)
 {
-    const double *Jx = s->once, *JJx = s->v, size = s->fast * s->fast;
+    const double *Jx = s->Jx, *JJx = s->v, size = s->fast * s->fast;
     const double xx = dot(s, x, x), xy = dot(s, x, Jx), yy = dot(s, Jx, Jx);
     const double xz = dot(s, x, JJx), yz = dot(s, Jx, JJx), zz = dot(s, JJx, JJx);
     const double det = xx * yy - xy * xy;
     if (!(det > sqrt(DBL_EPSILON) * xx * yy))
         return -gain * xy / xx;
     const double b = (xx * yz - xy * xz) / det, a = (yy * xz - xy * yz) / det;
-    if (!(zz - a * xz - b * yz < one_motion * one_motion * zz))
+    if (!(zz - a * xz - b * yz < single_mode * single_mode * zz))
         return 0;
     const double half = -b * size / (2 * gain);
     return half + sqrt(fmax(0, half * half + a * size));
 }
 
-// Estimates `fast` and `decay`. Two applications of J take positions of a vibration to speeds and
-// back; its rate is the square root of the product of both gains. The first estimate is repeated
-// while it grows.
+// Estimates `fast` and `decay`. J maps the positions of a vibration to speeds, and speeds to
+// positions, so its rate is the square root of the product of the gains of two applications. The
+// first estimate is repeated while it grows.
 static bool find_fast(struct ct_stiffness *s, double t, const double *y)
 {
     if (s->p->rhs(s->p->user, t, y, s->f) != CT_EVAL_OK)
         return false;
-    turn_to(s, memcpy(s->w, s->v, (size_t)s->p->ny * sizeof *s->w));
+    normalize(s, memcpy(s->w, s->v, (size_t)s->p->ny * sizeof *s->w));
     const bool is_first = s->fast == 0;
     double before;
     do {
@@ -150,9 +150,9 @@ static bool find_fast(struct ct_stiffness *s, double t, const double *y)
         for (int i = 0; i < 2; i++) {
             if (!apply_jacobian(s, t, y, s->v, s->w))
                 return false;
-            gain[i] = turn_to(s, s->w);
+            gain[i] = normalize(s, s->w);
             if (i == 0)
-                memcpy(s->once, s->v, (size_t)s->p->ny * sizeof *s->v);
+                memcpy(s->Jx, s->v, (size_t)s->p->ny * sizeof *s->v);
         }
         s->fast = sqrt(gain[0] * gain[1]);
         s->decay = find_decay(s, s->quarter, gain[0]);
@@ -192,7 +192,7 @@ static bool is_roundoff_visible(const struct ct_stiffness *s, const double *y)
 
 // The rate of change of positions: the largest speed over the largest position, or over 1 if that
 // is less.
-static double find_pace(const struct ct_stiffness *s, const double *y)
+static double find_motion_rate(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, speed = 0;
     for (int i = 0; i < s->first; i++)
@@ -203,7 +203,7 @@ static double find_pace(const struct ct_stiffness *s, const double *y)
 }
 
 // The same for a motion that starts at rest, from accelerations s->f.
-static double find_departure(const struct ct_stiffness *s, const double *y)
+static double find_rate_from_rest(const struct ct_stiffness *s, const double *y)
 {
     double place = 0, change = 0;
     for (int i = 0; i < s->first; i++)
@@ -217,26 +217,27 @@ static double find_departure(const struct ct_stiffness *s, const double *y)
 // configurations it is large for a moment only.
 static bool is_persistent(const struct ct_stiffness *s)
 {
-    return s->alike >= tests_in_a_row;
+    return s->similar_rates >= tests_in_a_row;
 }
 
 static void compare_rates(struct ct_stiffness *s, double before)
 {
     const bool is_same = s->fast < same_rate * before && before < same_rate * s->fast;
-    s->alike = is_same ? s->alike + 1 : 1;
+    s->similar_rates = is_same ? s->similar_rates + 1 : 1;
 }
 
 // Integrates the decay rate of the fastest mode since the last event; each test gives its value for
 // the steps before it. Without damping amplitudes change, too, because mass and stiffness change
-// along the motion, at the rate `pace`, which is subtracted.  (8.33)
-static void note_decay(struct ct_stiffness *s, bool is_known, double pace, double start,
+// along the motion, at the rate `motion_rate`, which is subtracted.  (8.33)
+static void note_decay(struct ct_stiffness *s, bool is_known, double motion_rate, double start,
                        double t)
 {
     if (s->excited > start)
-        s->died = 0;
+        s->integrated_decay = 0;
     if (is_known)
-        s->died = fmax(0, s->died + (s->decay - pace) * (t - fmax(start, s->excited)));
-    s->is_dead = s->died > -log(s->rtol);
+        s->integrated_decay = fmax(
+            0, s->integrated_decay + (s->decay - motion_rate) * (t - fmax(start, s->excited)));
+    s->has_decayed = s->integrated_decay > -log(s->rtol);
 }
 
 static bool test(struct ct_stiffness *s, double t, const double *y)
@@ -251,16 +252,17 @@ static bool test(struct ct_stiffness *s, double t, const double *y)
     if (s->p->rhs(s->p->user, s->t0, s->y0, s->f0) != CT_EVAL_OK || !find_fast(s, t, y))
         return false;
     s->slow = find_slow(s, t - s->t0);
-    const double reach = s->step * s->fast, pace = find_pace(s, y);
-    s->is_far = s->p->requested_speeds && s->fast > far_off * pace;
+    const double reach = s->step * s->fast, motion_rate = find_motion_rate(s, y);
+    s->is_far = s->p->requested_speeds && s->fast > unobserved_separation * motion_rate;
     compare_rates(s, fast_before);
-    s->is_followed = reach < unfollowed_step && is_persistent(s);
-    s->is_unstable = fmax(reach, (t - s->t0) * s->fast) >= unfollowed_step && is_persistent(s);
+    s->is_resolved = reach < unresolved_step && is_persistent(s);
+    s->is_unstable = fmax(reach, (t - s->t0) * s->fast) >= unresolved_step && is_persistent(s);
     const bool is_apart = s->is_far || s->fast > least_separation * s->slow;
-    note_decay(s, is_apart && is_persistent(s), pace, start, t);
-    const bool is_idle = s->is_far || s->step * s->slow < idle_step;
-    const bool is_held_up = reach > limited_step || (is_idle && is_roundoff_visible(s, y));
-    return reach > unfollowed_step || (is_held_up && is_apart);
+    note_decay(s, is_apart && is_persistent(s), motion_rate, start, t);
+    const bool is_undemanding = s->is_far || s->step * s->slow < undemanding_step;
+    const bool is_step_limited
+        = reach > least_limited_step || (is_undemanding && is_roundoff_visible(s, y));
+    return reach > unresolved_step || (is_step_limited && is_apart);
 }
 
 bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end)
@@ -274,8 +276,8 @@ bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, doub
         return false;
     s->in_a_row = test(s, t, y) ? s->in_a_row + 1 : 0;
     const bool is_due = s->in_a_row >= tests_in_a_row && s->count >= s->next_trial;
-    const bool is_overtaken = s->step < s->other_pace * s->evaluations;
-    return (is_due || is_overtaken) && end - t > steps_worth_it * s->step;
+    const bool is_overtaken = s->step < s->other_time_per_work * s->evaluations;
+    return (is_due || is_overtaken) && end - t > least_steps_to_come * s->step;
 }
 
 bool ct_stiffness_is_unstable(const struct ct_stiffness *s)
@@ -294,7 +296,7 @@ bool ct_stiffness_has_tested(const struct ct_stiffness *s)
 }
 
 // x (ny) <- J x/fast at y, where f is s->f.
-static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x)
+static bool apply_scaled_jacobian(struct ct_stiffness *s, double t, const double *y, double *x)
 {
     const double size = length(x, 0, s->last);
     if (!(size > 0))
@@ -313,14 +315,14 @@ static bool turn_on(struct ct_stiffness *s, double t, const double *y, double *x
 static bool find_second_derivative(struct ct_stiffness *s, double t, const double *y,
                                    double *out)
 {
-    // Backwards in time, where tables are defined. Derived: the difference errs by dt fast/2, that
-    // is 5e-4, and by a round-off of 1e3 eps.
+    // Backwards in time, where tabulated inputs are defined. Derived: the difference errs by dt
+    // fast/2, that is 5e-4, and by a round-off of 1e3 eps.
     const double dt = 1e-3 / s->fast;
     if (s->p->rhs(s->p->user, t - dt, y, out) != CT_EVAL_OK)
         return false;
     double *along = s->quarter;
     memcpy(along, s->f, (size_t)s->p->ny * sizeof *along);
-    if (!turn_on(s, t, y, along))
+    if (!apply_scaled_jacobian(s, t, y, along))
         return false;
     for (int i = 0; i < s->p->ny; i++)
         out[i] = i < s->last ? along[i] * s->fast + (s->f[i] - out[i]) / dt : 0;
@@ -330,7 +332,7 @@ static bool find_second_derivative(struct ct_stiffness *s, double t, const doubl
 bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double *y, int order,
                                  const double **e, const double **later)
 {
-    if (!s->is_followed)
+    if (!s->is_resolved)
         return false;
     double *x = s->f0;
     if (!find_second_derivative(s, t, y, x))
@@ -338,12 +340,12 @@ bool ct_stiffness_find_vibration(struct ct_stiffness *s, double t, const double 
     for (int i = 0; i < s->p->ny; i++)
         x[i] /= s->fast * s->fast;
     for (int quarter = 1; quarter < order; quarter++)
-        if (!turn_on(s, t, y, x))
+        if (!apply_scaled_jacobian(s, t, y, x))
             return false;
     memcpy(s->quarter, x, (size_t)s->p->ny * sizeof *x);
     *e = s->quarter;
     *later = x;
-    return turn_on(s, t, y, x);
+    return apply_scaled_jacobian(s, t, y, x);
 }
 
 bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
@@ -351,10 +353,11 @@ bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, dou
 {
     if (s->first == s->last || !find_fast(s, t, y))
         return false;
-    const bool is_far = s->fast > far_off * fmax(find_pace(s, y), find_departure(s, y));
-    s->step = unfollowed_step * pow(rtol, 1. / method->order) / s->fast;
+    const bool is_far = s->fast > unobserved_separation
+                                      * fmax(find_motion_rate(s, y), find_rate_from_rest(s, y));
+    s->step = unresolved_step * pow(rtol, 1. / method->order) / s->fast;
     s->evaluations = method->tableau->stages - 1;
-    return is_far && end - t > steps_worth_it * s->step;
+    return is_far && end - t > least_steps_to_come * s->step;
 }
 
 // The error constant of the stability function: b' A^p 1 - 1/(p + 1)!, b the last row of A.
@@ -388,21 +391,22 @@ void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
 {
     const double steps = spent / fmax(1, s->evaluations * cost->evaluation);
     // Limit: a count that a long of 32 bits holds.
-    s->next_trial = s->count + (long)fmin(1e9, put_off_work * steps);
-    if (s->next_trial < put_off_by * s->count)
-        s->next_trial = put_off_by * s->count;
+    s->next_trial = s->count + (long)fmin(1e9, postponed_work * steps);
+    if (s->next_trial < postponed_steps * s->count)
+        s->next_trial = postponed_steps * s->count;
     s->window_t = t; // counts begin anew with the next steps
     s->window_evaluations = 0;
     s->in_a_row = 0;
-    s->other_pace = 0;
+    s->other_time_per_work = 0;
 }
 
-void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost)
+void ct_stiffness_compare_with(struct ct_stiffness *s, double time_per_work,
+                               const struct ct_cost *cost)
 {
-    s->other_pace = pace * cost->evaluation;
+    s->other_time_per_work = time_per_work * cost->evaluation;
 }
 
-double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost)
+double ct_stiffness_time_per_work(const struct ct_stiffness *s, const struct ct_cost *cost)
 {
     return s->step / (s->evaluations * cost->evaluation);
 }
@@ -427,14 +431,14 @@ double ct_trial_work(const struct ct_trial *r)
     return work(r);
 }
 
-static int warming(const struct ct_trial *r)
+static int steps_before_counting(const struct ct_trial *r)
 {
-    return r->has_to_damp ? damping_steps : warming_steps;
+    return r->must_damp ? damping_steps : uncounted_steps;
 }
 
 bool ct_trial_step(struct ct_trial *r, double t)
 {
-    const int first = warming(r);
+    const int first = steps_before_counting(r);
     r->t = t;
     if (++r->nstep == first) {
         r->t0 = t;
@@ -443,15 +447,15 @@ bool ct_trial_step(struct ct_trial *r, double t)
     return r->nstep < first + counted_steps;
 }
 
-double ct_trial_pace(const struct ct_trial *r)
+double ct_trial_time_per_work(const struct ct_trial *r)
 {
-    if (r->nstep <= warming(r)
+    if (r->nstep <= steps_before_counting(r)
         && r->t >= r->end) // the rest of the run is less than the trial: all of it counts
         return (r->t - r->start) / work(r);
-    return r->nstep > warming(r) ? (r->t - r->t0) / (work(r) - r->spent0) : 0;
+    return r->nstep > steps_before_counting(r) ? (r->t - r->t0) / (work(r) - r->spent0) : 0;
 }
 
-bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace)
+bool ct_trial_is_slower(struct ct_trial *r, double t, double event, double time_per_work)
 {
     r->t = t;
     if (event > r->t0) { // counting begins behind the first step from there
@@ -464,8 +468,9 @@ bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace)
         return false;
     const double spent = work(r);
     const double recent = (t - r->window.t) / (spent - r->window.spent);
-    r->pace = (t - r->t0) / (spent - r->spent0);
+    r->time_per_work = (t - r->t0) / (spent - r->spent0);
     r->window.t = t;
     r->window.spent = spent;
-    return r->pace < pace && recent <= r->pace && r->nstep > test_every;
+    return r->time_per_work < time_per_work && recent <= r->time_per_work
+        && r->nstep > test_every;
 }

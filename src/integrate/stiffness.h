@@ -15,31 +15,32 @@
 
 struct ct_stiffness {
     const struct ct_problem *p;
-    double rtol;                                          // of outputs
-    int first, last;                                      // of y: the accelerations in f
-    double *v, *w, *f, *f0, *point, *y0, *quarter, *once; // (ny)
-    double t0;                                            // time of y0
+    double rtol;                                        // of outputs
+    int first, last;                                    // of y: the accelerations in f
+    double *v, *w, *f, *f0, *point, *y0, *quarter, *Jx; // (ny)
+    double t0;                                          // time of y0
     long count, next_trial; // steps so far; the number of steps before the next trial
     // results of the last test
-    bool is_far;      // the fastest mode is far above the motion, and its speeds are no outputs
-    bool is_followed; // steps resolve the fastest mode, whose rate has stayed about the same
-    bool is_dead;     // the fastest mode has decayed below the tolerance
+    bool
+        is_far; // the fastest mode is much faster than the motion, and its speeds are no outputs
+    bool is_resolved; // steps resolve the fastest mode, whose rate has stayed about the same
+    bool has_decayed; // the fastest mode has decayed below the tolerance
     int in_a_row;     // positive tests in a row
     bool
         is_unstable; // steps are limited by stability, at a rate that has stayed about the same
 
-    int alike;       // tests in a row with about the same rate
-    double window_t; // time of the last test, with its counts
+    int similar_rates; // tests in a row with about the same rate
+    double window_t;   // time of the last test, with its counts
     long window_steps;
     const struct ct_integrate_stats *stats; // of the run, current
     long window_evaluations;
-    double fast, slow;  // [1/s]
-    double decay;       // decay rate of the fastest mode [1/s]
-    double died;        // integral of the decay rate since `excited`
-    double excited;     // time of the last event, set by the caller
-    double step;        // mean step since the test before [s]
-    double evaluations; // mean number for a step since then
-    double other_pace;  // time gained by the implicit method for the work of an evaluation  [s]
+    double fast, slow;          // [1/s]
+    double decay;               // decay rate of the fastest mode [1/s]
+    double integrated_decay;    // integral of the decay rate since `excited`
+    double excited;             // time of the last event, set by the caller
+    double step;                // mean step since the test before [s]
+    double evaluations;         // mean number for a step since then
+    double other_time_per_work; // of the implicit method, for the work of an evaluation  [s]
 };
 
 /// The work of operations, in common units.
@@ -57,11 +58,11 @@ double ct_cost_step(const struct ct_cost *cost);
 struct ct_trial {
     struct ct_cost cost;
     const struct ct_integrate_stats *stats; // of the trial, while it runs
-    bool has_to_damp; // vibrations that the other method has kept, before steps get long
+    bool must_damp; // the steps before counting damp vibrations that the explicit method kept
     int nstep;
     double start, end;    // from where on, and the end of the run
     double t0, t, spent0; // where counting began, where it is, the work before
-    double pace;          // of all steps, where a trial does not end
+    double time_per_work; // of all steps, where a trial does not end
     struct {
         double t, spent; // where it begins, the work before
     } window;            // of the last steps
@@ -79,8 +80,8 @@ int ct_stiffness_fastest(struct ct_stiffness *s, double t, const double *y);
 /// were positive and many steps are to come.
 bool ct_stiffness_detect(struct ct_stiffness *s, double t, const double *y, double end);
 /// Before the first step from t, y of an explicit method: would it take many steps to resolve, to
-/// rtol, vibrations that are much faster than the motion? ct_stiffness_pace then refers to such
-/// steps.
+/// rtol, vibrations that are much faster than the motion? ct_stiffness_time_per_work then refers to
+/// such steps.
 bool ct_stiffness_predict(struct ct_stiffness *s, double t, const double *y, double end,
                           const struct ct_method *method, double rtol);
 /// Was there a test in the last call of ct_stiffness_detect?
@@ -104,24 +105,25 @@ double ct_stiffness_accurate_step(const struct ct_method *method, double fast, d
 /// trial before the number of steps has doubled and their work is many times that of the trial.
 void ct_stiffness_postpone(struct ct_stiffness *s, double t, double spent,
                            const struct ct_cost *cost);
-/// After the implicit method, which gained `pace` of time for its work, has been left: a trial is
+/// After the implicit method, which advanced by `time_per_work`, has been left: a trial is
 /// due as soon as explicit steps gain less.
-void ct_stiffness_compare_with(struct ct_stiffness *s, double pace, const struct ct_cost *cost);
+void ct_stiffness_compare_with(struct ct_stiffness *s, double time_per_work,
+                               const struct ct_cost *cost);
 
 /// Time gained for the work of an explicit run between its last two tests.
-double ct_stiffness_pace(const struct ct_stiffness *s, const struct ct_cost *cost);
+double ct_stiffness_time_per_work(const struct ct_stiffness *s, const struct ct_cost *cost);
 
 /// After each step of a trial; false: it has come far enough.
 bool ct_trial_step(struct ct_trial *r, double t);
-/// All it has cost.
+/// The work of the whole trial.
 double ct_trial_work(const struct ct_trial *r);
 /// Time gained for the work of the steps that counted, 0 if there were none.
-double ct_trial_pace(const struct ct_trial *r);
+double ct_trial_time_per_work(const struct ct_trial *r);
 /// Called after each step with the implicit method; the run continues the trial. True if the time
-/// gained for its work since the last event has fallen below `pace`, that of the explicit method,
-/// and the last hundred steps gain no more than the average since the event. Events reset the
-/// count, because they may excite vibrations. While these decay the last steps gain more than the
-/// average, and the implicit method is kept.
-bool ct_trial_has_lost(struct ct_trial *r, double t, double event, double pace);
+/// gained for its work since the last event has fallen below `time_per_work`, that of the explicit
+/// method, and the last hundred steps gain no more than the average since the event. Events reset
+/// the count, because they may excite vibrations. While these decay the last steps gain more than
+/// the average, and the implicit method is kept.
+bool ct_trial_is_slower(struct ct_trial *r, double t, double event, double time_per_work);
 
 #endif

@@ -54,5 +54,13 @@ embed|embed_side|embed_view:coordinate partition
 striding:crossing
 ct_flexible_felt:ct_flexible_effective_base
 march:follow the path
+unfelt:negligible, or the share of the error that it may take
+swiftest|furthest:largest speed, largest position
+toss:pseudo-random number
+take_bearings:reinitialize
+warming_steps:steps before counting
+leaves_speeds:violates_velocity_constraints
+put_off_by:postponed steps
+turn_to|turn_on:normalize, apply the Jacobian
 END
 exit $bad

@@ -658,7 +658,7 @@ static void the_rate_at_which_the_fastest_motion_dies_is_found(void **unused)
         const struct ct_stiffness *s = watch_two(a, &stats, 0, INFINITY);
         const double want = d > rate ? d + sqrt(d * d - rate * rate) : d;
         check_close("decay", s->decay, want, 1e-3 * fmax(fabs(want), 1));
-        assert_true(s->is_dead == (6 * want > log(1e6)));
+        assert_true(s->has_decayed == (6 * want > log(1e6)));
         ct_arena_destroy(a);
     }
 }
@@ -671,7 +671,7 @@ static void several_fastest_motions_are_not_taken_to_die(void **unused)
     struct ct_arena *a = ct_arena_create();
     const struct ct_integrate_stats stats = {0};
     memcpy(dying, (double[2][2]){{1000, 200}, {1000.5, 0}}, sizeof dying);
-    assert_false(watch_two(a, &stats, 0, INFINITY)->is_dead);
+    assert_false(watch_two(a, &stats, 0, INFINITY)->has_decayed);
     ct_arena_destroy(a);
 }
 
@@ -682,8 +682,8 @@ static void what_dies_at_the_pace_of_the_motion_is_not_dead(void **unused)
     struct ct_arena *a = ct_arena_create();
     const struct ct_integrate_stats stats = {0};
     memcpy(dying, (double[2][2]){{1e3, 50}, {1, 0.1}}, sizeof dying);
-    assert_true(watch_two(a, &stats, 25, INFINITY)->is_dead);
-    assert_false(watch_two(a, &stats, 75, INFINITY)->is_dead);
+    assert_true(watch_two(a, &stats, 25, INFINITY)->has_decayed);
+    assert_false(watch_two(a, &stats, 75, INFINITY)->has_decayed);
     ct_arena_destroy(a);
 }
 
@@ -693,10 +693,10 @@ static void what_an_event_excites_has_to_die_again(void **unused)
     struct ct_arena *a = ct_arena_create();
     const struct ct_integrate_stats stats = {0};
     memcpy(dying, (double[2][2]){{1e3, 5}, {1, 0.1}}, sizeof dying);
-    assert_true(watch_two(a, &stats, 0, INFINITY)->is_dead);
+    assert_true(watch_two(a, &stats, 0, INFINITY)->has_decayed);
     const struct ct_stiffness *s = watch_two(a, &stats, 0, 4.5);
-    check_close("died", s->died, 1.5 * 5, 0.1);
-    assert_false(s->is_dead);
+    check_close("integrated_decay", s->integrated_decay, 1.5 * 5, 0.1);
+    assert_false(s->has_decayed);
     ct_arena_destroy(a);
 }
 

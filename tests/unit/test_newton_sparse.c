@@ -194,9 +194,9 @@ static double compare_vibrations(struct pair *p)
                                  .times = 1,
                                  .small = 1,
                                  .least = 1e-3,
-                                 .furthest = size,
-                                 .swiftest = size,
-                                 .ahead = ahead};
+                                 .largest_position = size,
+                                 .largest_speed = size,
+                                 .predicted = ahead};
     for (int k = 0; k < nu; k++)
         ample[k] = 1;
     for (int k = 0; k < 2; k++) {
@@ -208,7 +208,7 @@ static double compare_vibrations(struct pair *p)
         x[2] = p->it[k]->energy;
         const struct ct_vibration w = ct_newton_iteration_vibration(p->it[k], 3.6, 1e-3, d, u);
         x[3] = w.present;
-        x[4] = w.lost;
+        x[4] = w.dissipation;
         ct_newton_iteration_predict_energy(p->it[k], 1e-3, 1, u);
         x[5] = p->it[k]->energy;
         ct_newton_iteration_predict_motion(p->it[k], &p->problem[k], 0, p->y, u, ahead);
@@ -252,7 +252,7 @@ static void compare_at(const char *name, struct pair *p, double h)
     double error[2] = {0};
     renew(p, h);
     const bool is_stabilised = p->it[0]->is_stabilised;
-    const bool has_inner = p->dae[0].slopes->nauxiliary > 0;
+    const bool has_inner = p->dae[0].jacobian_pattern->nauxiliary > 0;
     compare_solutions(p, real_pace / h, error);
     if (is_stabilised)
         compare_solutions(p, complex_pace / h, error);

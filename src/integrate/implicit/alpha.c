@@ -16,22 +16,22 @@ struct memory {
     double *a, *u_dot, *lam; // (nu), (nu), (rows)
     double *jerk;            // u'' in the middle of that step  (nu)
     double *slope,
-        *bend;                    // first and second divided differences of u'  (nu)
-    double *lam_slope, *lam_bend; // the same of lam  (rows)
-    double *a_noise, *jerk_noise; // round-off errors of a and `jerk`, with constraints  (nu)
-    double *rate;                 // rates of quadratures at the start of that step  (ny)
+        *slope_difference; // first and second divided differences of u'  (nu)
+    double *lam_slope, *lam_slope_difference; // the same of lam  (rows)
+    double *a_roundoff,
+        *jerk_roundoff; // round-off errors of a and `jerk`, with constraints  (nu)
+    double *rate;       // rates of quadratures at the start of that step  (ny)
 };
 
 // Coefficients of a step of size h after one of size `before`: derivatives of speeds, of a and of
 // accelerations by positions in a correction, and (8.1).
 struct factors {
     double h, before, by_speed, by_u_dot;
-    double a_by_speed, u_dot_by_speed; // of a correction of speeds
-    double pace, across, ratio;        // 1/h, 1/(h + before), h/before
-    double pace_of_a, back;            // 1/(gamma h), (1 - gamma)/gamma
-    double a_then, a_now,
-        // (8.1): a = a_then u' at the end + a_now u' at the start - a_before a0
-        a_before;
+    double a_by_speed, u_dot_by_speed;  // of a correction of speeds
+    double per_h, per_two_steps, ratio; // 1/h, 1/(h + before), h/before
+    double per_gamma_h, a0_factor;      // 1/(gamma h), (1 - gamma)/gamma
+    // (8.1): a = u_dot1_weight u' at the end + u_dot0_weight u' at the start - a0_weight a0
+    double u_dot1_weight, u_dot0_weight, a0_weight;
     double u_a0, u_a, d_a0, d_a; // changes of speeds and positions by a0 and a
 };
 
@@ -45,18 +45,18 @@ struct state {
     const struct ct_alpha *c;
     struct ct_newton_iteration *it;
     struct factors f;
-    double share;                          // 1/(1 - alpha_m)
-    double by_places, by_speeds;           // (8.3) over h^2, (8.8) over h^3 u'''
+    double a_factor;                            // 1/(1 - alpha_m)
+    double position_factor, speed_error_factor; // (8.3) over h^2, (8.8) over h^3 u'''
     bool is_fresh, has_jerk;               // there is no step before; u'' at the start is known
     struct memory memory[2], *start, *end; // of the step
     double *a0, *jerk;                     // (nu): a at the start, for this step's size; u''
     // increment of positions (nu), speeds (nu) and positions (nq) at the end
     double *d, *u, *q;
-    double *noise;   // error of speeds that the Newton iteration leaves  (nu)
+    double *speed_roundoff; // error of speeds that the Newton iteration leaves  (nu)
     double *dd, *du; // corrections (nu each), stored in turn in (ny + nu), followed by zeros
     double *eta, *dlam;
     double *r, *phi, *v; // stored in turn
-    struct correction last;
+    struct correction last_correction;
     double *rate1, *out;      // for dense output: d' at the end; an increment (nu)
     double *end_rate, *error; // rates at the end and errors, of quadratures alone  (ny)
 };
@@ -77,14 +77,14 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
     s->start = &s->memory[0];
     s->end = &s->memory[1];
     s->c = method->coefficients;
-    s->share = 1 / (1 - s->c->alpha_m);
-    s->by_places = s->c->beta + 1. / 12 - s->c->gamma / 2;
-    s->by_speeds = speed_factor(s->c);
+    s->a_factor = 1 / (1 - s->c->alpha_m);
+    s->position_factor = s->c->beta + 1. / 12 - s->c->gamma / 2;
+    s->speed_error_factor = speed_factor(s->c);
     s->it = ct_newton_iteration_create(a, p, s->c->is_stabilised, false);
     double **const speeds[] = {&s->start->slope,
-                               &s->start->bend,
+                               &s->start->slope_difference,
                                &s->end->slope,
-                               &s->end->bend,
+                               &s->end->slope_difference,
                                &s->start->a,
                                &s->start->u_dot,
                                &s->start->jerk,
@@ -97,17 +97,17 @@ void *ct_alpha_create(struct ct_arena *a, const struct ct_method *method,
                                &s->u,
                                &s->rate1,
                                &s->out,
-                               &s->noise,
-                               &s->start->a_noise,
-                               &s->start->jerk_noise,
-                               &s->end->a_noise,
-                               &s->end->jerk_noise};
+                               &s->speed_roundoff,
+                               &s->start->a_roundoff,
+                               &s->start->jerk_roundoff,
+                               &s->end->a_roundoff,
+                               &s->end->jerk_roundoff};
     double **const rows[] = {&s->start->lam,
                              &s->end->lam,
                              &s->start->lam_slope,
                              &s->end->lam_slope,
-                             &s->start->lam_bend,
-                             &s->end->lam_bend,
+                             &s->start->lam_slope_difference,
+                             &s->end->lam_slope_difference,
                              &s->eta,
                              &s->dlam};
     for (size_t i = 0; i < COUNT(speeds); i++)
@@ -156,14 +156,14 @@ static void find_factors(struct state *s, double h)
                             .by_u_dot = by_u_dot,
                             .a_by_speed = by_a / by_speed,
                             .u_dot_by_speed = by_u_dot / by_speed,
-                            .pace = 1 / h,
-                            .across = 1 / (h + before),
+                            .per_h = 1 / h,
+                            .per_two_steps = 1 / (h + before),
                             .ratio = h / before,
-                            .pace_of_a = 1 / (c->gamma * h),
-                            .back = (1 - c->gamma) / c->gamma,
-                            .a_then = (1 - c->alpha_f) * s->share,
-                            .a_now = c->alpha_f * s->share,
-                            .a_before = c->alpha_m * s->share,
+                            .per_gamma_h = 1 / (c->gamma * h),
+                            .a0_factor = (1 - c->gamma) / c->gamma,
+                            .u_dot1_weight = (1 - c->alpha_f) * s->a_factor,
+                            .u_dot0_weight = c->alpha_f * s->a_factor,
+                            .a0_weight = c->alpha_m * s->a_factor,
                             .u_a0 = h * (1 - c->gamma),
                             .u_a = h * c->gamma,
                             .d_a0 = h * h * (0.5 - c->beta),
@@ -193,7 +193,7 @@ static enum ct_eval find_jerk(struct state *s, const struct ct_problem *p, doubl
 static enum ct_eval start_multipliers(struct state *s, double t, const double *y)
 {
     for (int i = 0; i < s->it->m; i++)
-        s->start->lam_slope[i] = s->start->lam_bend[i] = 0;
+        s->start->lam_slope[i] = s->start->lam_slope_difference[i] = 0;
     return s->dae->start(s->dae->user, t, y, s->du, s->start->lam);
 }
 
@@ -241,19 +241,23 @@ static inline void predict_for(struct state *s, double h, const double *y, const
     const struct factors f = s->f;
     const double *u0 = y + dae->nq;
     const bool is_known = !s->is_fresh && s->c->is_stabilised;
-    const double further = is_known ? h : 0, last = is_known ? h + s->start->h : 0;
+    const double from_start = is_known ? h : 0, from_before = is_known ? h + s->start->h : 0;
     for (int k = 0; k < nu; k++) {
         const double u_dot = s->start->u_dot[k], a0 = s->a0[k];
-        const double then = u_dot + further * (s->start->slope[k] + last * s->start->bend[k]);
-        const double a = f.a_then * then + f.a_now * u_dot - f.a_before * a0;
-        s->end->u_dot[k] = then;
+        const double u_dot1
+            = u_dot
+            + from_start * (s->start->slope[k] + from_before * s->start->slope_difference[k]);
+        const double a = f.u_dot1_weight * u_dot1 + f.u_dot0_weight * u_dot - f.a0_weight * a0;
+        s->end->u_dot[k] = u_dot1;
         s->end->a[k] = a;
         s->u[k] = u0[k] + (f.u_a0 * a0 + f.u_a * a);
         s->d[k] = h * u0[k] + (f.d_a0 * a0 + f.d_a * a);
     }
     for (int i = 0; i < s->it->m; i++)
-        s->end->lam[i] = s->start->lam[i]
-                       + further * (s->start->lam_slope[i] + last * s->start->lam_bend[i]);
+        s->end->lam[i]
+            = s->start->lam[i]
+            + from_start
+                  * (s->start->lam_slope[i] + from_before * s->start->lam_slope_difference[i]);
     ct_newton_iteration_move(dae, y, s->d, s->q);
 }
 
@@ -279,14 +283,14 @@ static inline void solve(struct state *s, const int nu, const int m)
     if (m)
         ct_newton_iteration_add_constraint_force(it, s->du, s->du, -s->f.by_speed, s->eta, nu,
                                                  m); // eta changes positions alone
-    s->last = (struct correction){s->dd, s->du, s->dlam};
+    s->last_correction = (struct correction){s->dd, s->du, s->dlam};
 }
 
 // Adds the correction and returns its norm.
 static inline double add_correction(struct state *s, const int nu, const int m)
 {
     const struct factors f = s->f;
-    const struct correction c = s->last;
+    const struct correction c = s->last_correction;
     for (int k = 0; k < nu; k++) {
         const double du = c.u[k];
         s->d[k] += c.d[k];
@@ -298,7 +302,7 @@ static inline double add_correction(struct state *s, const int nu, const int m)
         s->end->lam[i] += c.lam[i];
     // index-3 form: speeds have round-off over h, so convergence is tested for positions
     return s->c->is_stabilised ? ct_newton_iteration_norm(s->it, c.d, c.u, nu, 1)
-                               : ct_newton_iteration_norm_of_places(s->it, c.d, c.u, nu);
+                               : ct_newton_iteration_norm_of_positions(s->it, c.d, c.u, nu);
 }
 
 static inline double solve_and_add(struct state *s, const int nu, const int m)
@@ -333,16 +337,17 @@ static enum ct_eval correct(struct state *s, double t1, const double *y,
     const enum ct_eval e = find_correction(s, t1, y, &size);
     if (e == CT_EVAL_OK)
         *verdict = ct_newton_iteration_test_convergence(
-            s->it, size, s->last.d, s->c->is_stabilised ? s->last.u : NULL, 1);
+            s->it, size, s->last_correction.d,
+            s->c->is_stabilised ? s->last_correction.u : NULL, 1);
     return e;
 }
 
 // The error of speeds after the last correction; at round-off, the correction itself.
-static void note_roundoff(struct state *s)
+static void store_roundoff(struct state *s)
 {
-    const double left = ct_smaller(s->it->tail, 1);
+    const double remaining = ct_smaller(s->it->tail, 1);
     for (int k = 0; k < s->it->nu && s->it->m; k++)
-        s->noise[k] = left * fabs(s->last.u[k]);
+        s->speed_roundoff[k] = remaining * fabs(s->last_correction.u[k]);
 }
 
 static enum ct_eval iterate(struct state *s, double t1, double h, const double *y,
@@ -362,9 +367,10 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
         while (e == CT_EVAL_OK && verdict == CT_ITERATING)
             e = correct(s, t1, y, &verdict, stats);
         if (e == CT_EVAL_OK && s->it->m)
-            ct_newton_iteration_note_multipliers(s->it, s->end->lam, s->last.lam, s->it->m);
+            ct_newton_iteration_note_multipliers(s->it, s->end->lam, s->last_correction.lam,
+                                                 s->it->m);
         if (e == CT_EVAL_OK && verdict == CT_CONVERGED)
-            note_roundoff(s);
+            store_roundoff(s);
         if (e == CT_EVAL_FATAL || verdict == CT_CONVERGED)
             return e;
     } while (ct_newton_iteration_can_refresh(s->it));
@@ -379,16 +385,19 @@ static enum ct_eval iterate(struct state *s, double t1, double h, const double *
 // shorter steps would not reduce it.
 static inline void subtract_roundoff(struct state *s, double h, const int nu)
 {
-    const double back = s->f.back, pace = s->f.pace_of_a;
+    const double a0_factor = s->f.a0_factor, per_h = s->f.per_gamma_h;
     const double ratio = s->f.ratio;
-    const double speeds = s->is_fresh ? 0 : h * h * h * 2 * s->f.across * fabs(s->by_speeds);
+    const double speeds
+        = s->is_fresh ? 0 : h * h * h * 2 * s->f.per_two_steps * fabs(s->speed_error_factor);
     for (int k = 0; k < nu; k++) {
-        const double a0 = ratio * s->start->a_noise[k], a1 = s->noise[k] * pace + back * a0;
-        s->end->a_noise[k] = a1;
-        s->end->jerk_noise[k] = s->f.pace * (a0 + a1);
-        const double noise
-            = speeds * (s->end->jerk_noise[k] + (s->is_fresh ? 0 : s->start->jerk_noise[k]));
-        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - noise), s->du[k]);
+        const double a0 = ratio * s->start->a_roundoff[k],
+                     a1 = s->speed_roundoff[k] * per_h + a0_factor * a0;
+        s->end->a_roundoff[k] = a1;
+        s->end->jerk_roundoff[k] = s->f.per_h * (a0 + a1);
+        const double roundoff
+            = speeds
+            * (s->end->jerk_roundoff[k] + (s->is_fresh ? 0 : s->start->jerk_roundoff[k]));
+        s->du[k] = copysign(ct_larger(0, fabs(s->du[k]) - roundoff), s->du[k]);
     }
 }
 
@@ -397,9 +406,9 @@ static inline void subtract_roundoff(struct state *s, double h, const int nu)
 // estimate of order 1 serves.
 static void find_state_errors(struct state *s, double h)
 {
-    const double speeds = h * h * h * 2 * s->f.across * s->by_speeds;
+    const double speeds = h * h * h * 2 * s->f.per_two_steps * s->speed_error_factor;
     for (int k = s->dae->nu - s->dae->nstate; k < s->dae->nu; k++)
-        s->du[k] = s->is_fresh ? h * s->by_places * (s->end->a[k] - s->a0[k])
+        s->du[k] = s->is_fresh ? h * s->position_factor * (s->end->a[k] - s->a0[k])
                                : speeds * (s->end->jerk[k] - s->start->jerk[k]);
 }
 
@@ -407,14 +416,14 @@ static void find_state_errors(struct state *s, double h)
 // positions and of state variables of the model.
 static inline double find_errors(struct state *s, double h, const int nu)
 {
-    const double places = h * h * s->by_places, pace = s->f.pace;
+    const double position_factor = h * h * s->position_factor, per_h = s->f.per_h;
     const bool knows_speeds = s->c->is_stabilised && !s->is_fresh;
-    const double slope = knows_speeds ? 2 * s->f.across : 0;
-    const double speeds = h * h * h * slope * s->by_speeds;
+    const double slope = knows_speeds ? 2 * s->f.per_two_steps : 0;
+    const double speeds = h * h * h * slope * s->speed_error_factor;
     for (int k = 0; k < nu; k++) {
         const double change = s->end->a[k] - s->a0[k];
-        const double jerk = pace * change;
-        s->dd[k] = places * change;
+        const double jerk = per_h * change;
+        s->dd[k] = position_factor * change;
         s->du[k] = speeds * (jerk - s->start->jerk[k]);
         s->end->jerk[k] = jerk;
     }
@@ -422,7 +431,7 @@ static inline double find_errors(struct state *s, double h, const int nu)
         subtract_roundoff(s, h, nu);
     if (s->dae->nstate)
         find_state_errors(s, h);
-    return ct_newton_iteration_norm_of_places(s->it, s->dd, s->du, nu);
+    return ct_newton_iteration_norm_of_positions(s->it, s->dd, s->du, nu);
 }
 
 // The error estimate: leading error terms of positions (8.3) and of speeds (8.8). u''' is a
@@ -448,7 +457,7 @@ static double estimate_quadratures(struct state *s, const struct ct_problem *p,
                                    const double *dy1)
 {
     const int first = s->dae->nq + s->dae->nu;
-    if (s->dae->has_no_power)
+    if (s->dae->quadratures_are_constant)
         return 0;
     const double ratio = s->is_fresh ? 0 : h / s->start->h;
     for (int i = first; i < p->ny; i++)
@@ -470,7 +479,7 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
         e = p->project(p->user, t1, y1);
     if (e == CT_EVAL_OK)
         e = ct_stepper_rhs(p, t1, y1, dy1, stats);
-    if (s->dae->has_no_power)
+    if (s->dae->quadratures_are_constant)
         return e;
     for (int i = nq + nu; i < p->ny && e == CT_EVAL_OK; i++)
         y1[i] = y[i] + h / 2 * (dy[i] + dy1[i]);
@@ -478,18 +487,18 @@ static enum ct_eval finish(struct state *s, const struct ct_problem *p, double t
 }
 
 // Divided differences of accelerations and multipliers, for the extrapolation in the next step.
-static inline void note_accelerations(struct state *s, double h, const int nu)
+static inline void store_differences(struct state *s, double h, const int nu)
 {
-    const double pace = s->f.pace, across = s->f.across; // zero in a first step
+    const double per_h = s->f.per_h, per_two_steps = s->f.per_two_steps; // zero in a first step
     for (int k = 0; k < nu; k++) {
-        const double slope = pace * (s->end->u_dot[k] - s->start->u_dot[k]);
+        const double slope = per_h * (s->end->u_dot[k] - s->start->u_dot[k]);
         s->end->slope[k] = slope;
-        s->end->bend[k] = across * (slope - s->start->slope[k]);
+        s->end->slope_difference[k] = per_two_steps * (slope - s->start->slope[k]);
     }
     for (int i = 0; i < s->it->m; i++) {
-        const double slope = pace * (s->end->lam[i] - s->start->lam[i]);
+        const double slope = per_h * (s->end->lam[i] - s->start->lam[i]);
         s->end->lam_slope[i] = slope;
-        s->end->lam_bend[i] = across * (slope - s->start->lam_slope[i]);
+        s->end->lam_slope_difference[i] = per_two_steps * (slope - s->start->lam_slope[i]);
     }
     s->end->h = h;
 }
@@ -512,12 +521,12 @@ enum ct_eval ct_alpha_step(const struct ct_problem *p, double t, double h, const
         *err = ct_larger(estimate(s, p, tolerance, t + h, h, y1),
                          estimate_quadratures(s, p, tolerance, h, y, dy, y1, dy1));
     if (s->dae->nu == 1)
-        note_accelerations(s, h, 1);
+        store_differences(s, h, 1);
     else if (s->dae->nu == 3)
-        note_accelerations(s, h, 3);
+        store_differences(s, h, 3);
     else
-        note_accelerations(s, h, s->dae->nu);
-    if (s->dae->has_no_power)
+        store_differences(s, h, s->dae->nu);
+    if (s->dae->quadratures_are_constant)
         return CT_EVAL_OK;
     ct_stepper_copy(s->end->rate + first, dy + first, p->ny - first);
     ct_stepper_copy(s->end_rate + first, dy1 + first, p->ny - first);

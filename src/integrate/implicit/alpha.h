@@ -34,8 +34,8 @@ void ct_alpha_dense(const struct ct_problem *p, double h, double theta, const do
 
 // The entries of ct_method that all members share. Step size control as in (8.3).
 #define CT_ALPHA_METHOD                                                                        \
-    .order = 2, .error_order = 2, .is_implicit = true, .most_growth = 2, .steady = {0.8, 1.3}, \
-    .create = ct_alpha_create, .restart = ct_alpha_restart, .accept = ct_alpha_accept,         \
-    .step = ct_alpha_step, .dense = ct_alpha_dense
+    .order = 2, .error_order = 2, .is_implicit = true, .most_growth = 2,                       \
+    .kept_range = {0.8, 1.3}, .create = ct_alpha_create, .restart = ct_alpha_restart,          \
+    .accept = ct_alpha_accept, .step = ct_alpha_step, .dense = ct_alpha_dense
 
 #endif

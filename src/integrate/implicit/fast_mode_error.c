@@ -14,26 +14,26 @@
 // The cutoff frequency of the filter, over the rate of the motion (8.10).
 // Default: vibrations that are resolved without need against a slow motion that is filtered out.
 // Test: vibration_error
-static const double much_faster = 10;
+static const double cutoff_ratio = 10;
 
 // The rate of the motion: the largest |u|/min(|q|, 1), where coordinates below the absolute
 // tolerance do not count.  [1/s]
-static double pace_of(const struct ct_newton_iteration *it, double small, const double *y)
+static double motion_rate(const struct ct_newton_iteration *it, double small, const double *y)
 {
     const double *u = y + it->dae->nq;
-    double pace = 0;
+    double rate = 0;
     for (int k = 0; k < it->nu; k++) {
         const int i = it->dae->q_of[k];
         if (i == CT_MOVES_NOTHING)
             continue;
         const double way = i < 0 ? 1 : ct_smaller(fabs(y[i]), 1);
-        pace = ct_larger(pace, (fabs(u[k]) + small) / (way + small));
+        rate = ct_larger(rate, (fabs(u[k]) + small) / (way + small));
     }
-    return pace;
+    return rate;
 }
 
 // b (n): its first nu entries become the low-pass filtered u.
-static void pass_slow(struct ct_newton_iteration *it, const double *u)
+static void low_pass(struct ct_newton_iteration *it, const double *u)
 {
     const int nu = it->nu, n = it->n;
     double *b = it->b;
@@ -46,11 +46,11 @@ static void pass_slow(struct ct_newton_iteration *it, const double *u)
 }
 
 // The part of a unit change of speed k that passes the low-pass filter.
-static double remains(struct ct_newton_iteration *it, int k)
+static double passed_part(struct ct_newton_iteration *it, int k)
 {
-    memset(it->off, 0, (size_t)it->nu * sizeof *it->off);
-    it->off[k] = 1;
-    pass_slow(it, it->off);
+    memset(it->error_state, 0, (size_t)it->nu * sizeof *it->error_state);
+    it->error_state[k] = 1;
+    low_pass(it, it->error_state);
     return it->b[k];
 }
 
@@ -74,9 +74,9 @@ static void find_slow_speeds(struct ct_newton_iteration *it)
 {
     const double half = 0.5; // Definition: the cutoff, where c^2/(c^2 + omega^2) is one half
     if (it->sparse)
-        ct_newton_slow_parts(it->sparse, it->off);
+        ct_newton_slow_parts(it->sparse, it->error_state);
     for (int k = 0; k < it->nu; k++)
-        it->is_slow[k] = (it->sparse ? it->off[k] : remains(it, k)) > half;
+        it->is_slow[k] = (it->sparse ? it->error_state[k] : passed_part(it, k)) > half;
 }
 
 // Factors of the low-pass filter with cutoff frequency c. Those for up to twice or half of c are
@@ -96,14 +96,14 @@ static bool factor_slow(struct ct_newton_iteration *it, double c)
 }
 
 // The square root of a kinetic energy that does not affect the slow motion: that of the smallest
-// slow mass at the largest `ample` of slow speeds.
-static double negligible_energy(const struct ct_newton_iteration *it, const double *ample)
+// slow mass at the largest `fast_scale` of slow speeds.
+static double negligible_energy(const struct ct_newton_iteration *it, const double *fast_scale)
 {
     double light = INFINITY, most = 0;
     for (int k = 0; k < it->nu; k++)
         if (it->is_slow[k]) {
             light = fmin(light, it->mass[k]);
-            most = fmax(most, ample[k]);
+            most = fmax(most, fast_scale[k]);
         }
     return isfinite(light) ? sqrt(light) * most : 0;
 }
@@ -124,15 +124,15 @@ static double mass_form(const struct ct_newton_iteration *it, const double *x)
 }
 
 // x' M x and x' K x of the fast part of x.
-static void measure_fast(struct ct_newton_iteration *it, const double *x, double *mass,
-                         double *stiffness)
+static void fast_forms(struct ct_newton_iteration *it, const double *x, double *mass,
+                       double *stiffness)
 {
-    pass_slow(it, x);
+    low_pass(it, x);
     for (int k = 0; k < it->nu; k++)
-        it->off[k] = x[k] - it->b[k];
-    *mass = mass_form(it, it->off);
-    *stiffness = it->sparse ? ct_newton_stiffness_form(it->sparse, it->off)
-                            : form_of(it->K, it->off, it->nu);
+        it->error_state[k] = x[k] - it->b[k];
+    *mass = mass_form(it, it->error_state);
+    *stiffness = it->sparse ? ct_newton_stiffness_form(it->sparse, it->error_state)
+                            : form_of(it->K, it->error_state, it->nu);
 }
 
 void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double small,
@@ -148,9 +148,9 @@ void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double smal
 void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double small,
                                         double time, const double *accelerations)
 {
-    pass_slow(it, accelerations);
-    memcpy(it->off, it->b, (size_t)it->nu * sizeof *it->off);
-    const double force = mass_form(it, it->off); // squared, over a mass
+    low_pass(it, accelerations);
+    memcpy(it->error_state, it->b, (size_t)it->nu * sizeof *it->error_state);
+    const double force = mass_form(it, it->error_state); // squared, over a mass
     const double on_the_way = 2 * small * sqrt(it->largest_mass * force),
                  at_the_end = force * time * time;
     it->energy = ct_larger(it->energy, ct_smaller(on_the_way, at_the_end));
@@ -160,15 +160,15 @@ struct ct_vibration ct_newton_iteration_vibration(struct ct_newton_iteration *it
                                                   double h, const double *d, const double *u)
 {
     double mu, ku, md, kd;
-    measure_fast(it, u, &mu, &ku);
-    measure_fast(it, d, &md, &kd);
+    fast_forms(it, u, &mu, &ku);
+    fast_forms(it, d, &md, &kd);
     const double z2 = (h * h * ku + kd) / (mu + md / (h * h)); // Rayleigh's quotient of both
     if (!(z2 > 0))
         return (struct ct_vibration){0};
     const double filtered = 1 + gamma * gamma / z2;
-    const double lost = (mu + z2 / (h * h) * md) * filtered;
+    const double dissipation = (mu + z2 / (h * h) * md) * filtered;
     const double times = 1 + 3600 * (1 + z2 * (0.06 + 0.0025 * z2)) / (z2 * z2 * z2);
-    return (struct ct_vibration){lost, lost * times, sqrt(filtered * times)};
+    return (struct ct_vibration){dissipation, dissipation * times, sqrt(filtered * times)};
 }
 
 double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
@@ -177,60 +177,60 @@ double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
                                          const double *y, const double *d, const double *u)
 {
     const int nu = it->nu;
-    double *places = it->fast, *speeds = it->fast + nu;
+    double *positions = it->fast, *speeds = it->fast + nu;
     if (!p->output_change)
         return 0;
-    pass_slow(it, d);
+    low_pass(it, d);
     for (int k = 0; k < nu; k++)
-        places[k] = v->times * (d[k] - it->b[k]);
-    pass_slow(it, u);
+        positions[k] = v->times * (d[k] - it->b[k]);
+    low_pass(it, u);
     for (int k = 0; k < nu; k++)
         speeds[k] = v->times * (u[k] - it->b[k]);
-    return p->output_change(p->user, t, y, ct_newton_iteration_states(it, y, places, speeds),
+    return p->output_change(p->user, t, y, ct_newton_iteration_states(it, y, positions, speeds),
                             0);
 }
 
 double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struct ct_problem *p,
                                      const struct ct_tolerance *tolerance, const double *y,
-                                     const double *ample, const double *d, const double *u,
+                                     const double *fast_scale, const double *d, const double *u,
                                      double *slow)
 {
     const int nu = it->nu;
-    double *b = it->b, *places = it->fast, *speeds = it->fast + nu;
+    double *b = it->b, *positions = it->fast, *speeds = it->fast + nu;
     const double small = tolerance->atol / tolerance->rtol;
     *slow = INFINITY;
-    if (!isfinite(small) || !factor_slow(it, much_faster * pace_of(it, small, y)))
+    if (!isfinite(small) || !factor_slow(it, cutoff_ratio * motion_rate(it, small, y)))
         return INFINITY;
-    const double unfelt = negligible_energy(it, ample);
-    pass_slow(it, d);
+    const double negligible = negligible_energy(it, fast_scale);
+    low_pass(it, d);
     for (int k = 0; k < nu; k++)
-        places[k] = p->requested_positions[k] ? d[k] : b[k];
-    pass_slow(it, u);
+        positions[k] = p->requested_positions[k] ? d[k] : b[k];
+    low_pass(it, u);
     for (int k = 0; k < nu; k++) {
-        const double borne = fmax(ample[k], unfelt / sqrt(it->mass[k]));
-        const double fast = (u[k] - b[k]) / (borne * it->share[nu + k]);
+        const double scale = fmax(fast_scale[k], negligible / sqrt(it->mass[k]));
+        const double fast = (u[k] - b[k]) / (scale * it->inverse_weight[nu + k]);
         speeds[k] = p->requested_speeds[k] ? u[k] : hypot(b[k], fast);
     }
-    *slow = ct_newton_iteration_norm(it, places, speeds, nu, 1);
+    *slow = ct_newton_iteration_norm(it, positions, speeds, nu, 1);
     return ct_newton_iteration_norm(it, d, speeds, nu, 1);
 }
 
 // out (nu) = the fast part of x. out may be x.
-static void keep_fast(struct ct_newton_iteration *it, double *out, const double *x)
+static void high_pass(struct ct_newton_iteration *it, double *out, const double *x)
 {
-    pass_slow(it, x);
+    low_pass(it, x);
     for (int k = 0; k < it->nu; k++)
         out[k] = x[k] - it->b[k];
 }
 
-// Band-pass filter: x (nu) <- times (1 - S) S^2 x, S the low-pass filter `pass_slow`.
-static void pass_band(struct ct_newton_iteration *it, double *x, double times)
+// Band-pass filter: x (nu) <- times (1 - S) S^2 x, S the low-pass filter `low_pass`.
+static void band_pass(struct ct_newton_iteration *it, double *x, double times)
 {
     for (int i = 0; i < 2; i++) {
-        pass_slow(it, x);
+        low_pass(it, x);
         memcpy(x, it->b, (size_t)it->nu * sizeof *x);
     }
-    keep_fast(it, x, x);
+    high_pass(it, x, x);
     for (int k = 0; k < it->nu; k++)
         x[k] *= times;
 }
@@ -241,47 +241,47 @@ static const double sample = 0x1p-14;
 
 void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
                                         const struct ct_problem *p, double t, const double *y,
-                                        const double *a, double *ahead)
+                                        const double *a, double *predicted)
 {
     const int nu = it->nu;
     const double time = p->duration, *u = y + it->dae->nq;
-    double *part = it->fast, far = 1;
-    memset(ahead, 0, 2 * (size_t)nu * sizeof *ahead);
+    double *part = it->fast, scale = 1;
+    memset(predicted, 0, 2 * (size_t)nu * sizeof *predicted);
     it->is_band_factor = true;
     if (has_factors(it, 1 / time)) {
         for (int k = 0; k < nu; k++)
             part[k] = time * (u[k] + time * a[k]);
-        pass_slow(it, part);
-        memcpy(ahead, it->b, (size_t)nu * sizeof *ahead);
-        pass_slow(it, a);
+        low_pass(it, part);
+        memcpy(predicted, it->b, (size_t)nu * sizeof *predicted);
+        low_pass(it, a);
         for (int k = 0; k < nu; k++) {
-            ahead[nu + k] = time * it->b[k];
-            far = ct_larger(far, fabs(ahead[k]));
+            predicted[nu + k] = time * it->b[k];
+            scale = ct_larger(scale, fabs(predicted[k]));
         }
     }
     for (int k = 0; k < 2 * nu; k++) {
-        ahead[k] = isfinite(ahead[k] / far) ? ahead[k] / far : 0;
-        part[k] = sample * ahead[k];
+        predicted[k] = isfinite(predicted[k] / scale) ? predicted[k] / scale : 0;
+        part[k] = sample * predicted[k];
     }
-    if (p->expect_output)
-        p->expect_output(p->user, t, y, ct_newton_iteration_states(it, y, part, part + nu),
-                         1 / sample);
+    if (p->predict_output)
+        p->predict_output(p->user, t, y, ct_newton_iteration_states(it, y, part, part + nu),
+                          1 / sample);
 }
 
-// The largest relative change of states that are outputs, for changes `places` of positions and
+// The largest relative change of states that are outputs, for changes `positions` of positions and
 // `speeds` (nu). It is relative to the largest value of each so far, or the one predicted if that
 // is larger.
 static double output_change_of_states(const struct ct_newton_iteration *it,
                                       const struct ct_problem *p, const struct ct_band *b,
-                                      const double *places, const double *speeds)
+                                      const double *positions, const double *speeds)
 {
     const int nu = it->nu;
     double most = 0;
     for (int k = 0; k < nu; k++) {
-        const double place = ct_larger(b->furthest[k], fabs(b->ahead[k])),
-                     speed = ct_larger(b->swiftest[k], fabs(b->ahead[nu + k]));
-        if (it->dae->q_of[k] >= 0 && p->requested_positions[k] && places[k] != 0)
-            most = ct_larger(most, fabs(places[k]) / ct_larger(place, b->least));
+        const double position = ct_larger(b->largest_position[k], fabs(b->predicted[k])),
+                     speed = ct_larger(b->largest_speed[k], fabs(b->predicted[nu + k]));
+        if (it->dae->q_of[k] >= 0 && p->requested_positions[k] && positions[k] != 0)
+            most = ct_larger(most, fabs(positions[k]) / ct_larger(position, b->least));
         if (p->requested_speeds[k] && speeds[k] != 0)
             most = ct_larger(most, fabs(speeds[k]) / ct_larger(speed, b->least));
     }
@@ -289,12 +289,12 @@ static double output_change_of_states(const struct ct_newton_iteration *it,
 }
 
 // A vibration with positions and speeds (nu), advanced by a quarter of its period.
-static void turn_quarter(double *places, double *speeds, double rate, int nu)
+static void advance_quarter_period(double *positions, double *speeds, double rate, int nu)
 {
     for (int k = 0; k < nu; k++) {
-        const double place = places[k];
-        places[k] = speeds[k] / rate;
-        speeds[k] = -rate * place;
+        const double position = positions[k];
+        positions[k] = speeds[k] / rate;
+        speeds[k] = -rate * position;
     }
 }
 
@@ -304,22 +304,22 @@ double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
                                                  const double *y, const double *d,
                                                  const double *u)
 {
-    double *places = it->fast, *speeds = it->fast + it->nu, felt[2];
-    if (!isfinite(b->small) || !factor_slow(it, much_faster * pace_of(it, b->small, y)))
+    double *positions = it->fast, *speeds = it->fast + it->nu, change[2];
+    if (!isfinite(b->small) || !factor_slow(it, cutoff_ratio * motion_rate(it, b->small, y)))
         return 0;
-    keep_fast(it, places, d);
-    keep_fast(it, speeds, u);
+    high_pass(it, positions, d);
+    high_pass(it, speeds, u);
     it->is_band_factor = true;
     if (!has_factors(it, b->rate))
         return 0;
-    pass_band(it, places, b->times);
-    pass_band(it, speeds, b->times);
+    band_pass(it, positions, b->times);
+    band_pass(it, speeds, b->times);
     for (int quarter = 0; quarter < 2; quarter++) {
-        const double *e = ct_newton_iteration_states(it, y, places, speeds);
-        felt[quarter]
-            = ct_larger(output_change_of_states(it, p, b, places, speeds),
+        const double *e = ct_newton_iteration_states(it, y, positions, speeds);
+        change[quarter]
+            = ct_larger(output_change_of_states(it, p, b, positions, speeds),
                         p->output_change ? p->output_change(p->user, t, y, e, b->least) : 0);
-        turn_quarter(places, speeds, b->rate, it->nu);
+        advance_quarter_period(positions, speeds, b->rate, it->nu);
     }
-    return hypot(felt[0], felt[1]);
+    return hypot(change[0], change[1]);
 }

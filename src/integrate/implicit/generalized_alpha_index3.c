@@ -14,7 +14,7 @@ static const struct ct_alpha coefficients = {
 
 const struct ct_method ct_method_generalized_alpha_index3 = {
     CT_ALPHA_METHOD,
-    .leaves_speeds = true,
+    .violates_velocity_constraints = true,
     .name = "generalized-alpha-index3",
     .summary = "generalised-alpha with rho = 0.8 on the index-3 form: speeds meet the "
                "constraints to order 2",

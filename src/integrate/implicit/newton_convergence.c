@@ -9,10 +9,10 @@
 #include <float.h>
 #include <string.h>
 
-// A correction up to this many times the measured effect of round-off counts as round-off: stages
-// add theirs, and a single measurement may find too little.
-// Default: steps refused for round-off against errors accepted. Test: implicit
-static const double together = 8;
+// A correction up to this many times the measured effect of round-off counts as round-off: the
+// round-off of stages adds up, and a single measurement may find too little. Default: steps refused
+// for round-off against errors accepted. Test: implicit
+static const double roundoff_margin = 8;
 
 void ct_newton_iteration_start(struct ct_newton_iteration *it)
 {
@@ -21,7 +21,7 @@ void ct_newton_iteration_start(struct ct_newton_iteration *it)
     it->rate = 0;
     // the value of the last step to the power 3/4, RADAU5 has 4/5; not used where iterations go
     // down to round-off
-    it->tail = it->is_finest ? 1 : sqrt(tail * sqrt(tail));
+    it->tail = it->runs_to_roundoff ? 1 : sqrt(tail * sqrt(tail));
 }
 
 void ct_newton_iteration_continue(struct ct_newton_iteration *it)
@@ -32,7 +32,7 @@ void ct_newton_iteration_continue(struct ct_newton_iteration *it)
 }
 
 // A pseudo-random number in [1, 2) or (-2, -1] for each k. A regular pattern would miss some modes.
-static double toss(unsigned k)
+static double pseudo_random(unsigned k)
 {
     const double odd = 0x1p-24; // Definition: scales an integer of 24 bits to [0, 1)
     k = (k + 1) * 2654435769u;  // 2^32 over the golden ratio
@@ -65,7 +65,7 @@ static bool perturb_residuals(struct ct_newton_iteration *it, double *here)
         const double place = copysign(ct_larger(fabs(at), dae->scale), at);
         p->d[k] = dae->q_of[k] == CT_MOVES_NOTHING
                     ? 0
-                    : toss((unsigned)k) * ct_position_roundoff * DBL_EPSILON * place;
+                    : pseudo_random((unsigned)k) * ct_position_roundoff * DBL_EPSILON * place;
     }
     ct_newton_iteration_move(dae, it->y, p->d, p->q);
     if (!find_residuals(it, it->y, here, p->phi) || !find_residuals(it, p->q, p->r, p->rows))
@@ -122,17 +122,17 @@ static bool is_within(const struct ct_newton_iteration *it, const double *d, int
 // second one may be as large as the first, and the third a thousandth of it.
 static bool is_too_early(const struct ct_newton_iteration *it)
 {
-    return it->is_finest && it->count == 2;
+    return it->runs_to_roundoff && it->count == 2;
 }
 
 // The convergence rate, where a correction is `rate` times the one before. It is the geometric mean
 // of the last two, since they often alternate. In an iteration down to round-off the largest one
 // counts, without the first.
-static void take_rate(struct ct_newton_iteration *it, double rate)
+static void update_rate(struct ct_newton_iteration *it, double rate)
 {
     it->slowest = it->count > 3 ? ct_larger(rate, it->slowest) : rate;
     it->rate = it->count > 2 ? sqrt(rate * it->rate) : rate;
-    const double counts = it->is_finest ? it->slowest : it->rate;
+    const double counts = it->runs_to_roundoff ? it->slowest : it->rate;
     it->tail = counts < 1 ? counts / (1 - counts) : INFINITY;
 }
 
@@ -145,14 +145,14 @@ static bool is_roundoff(const struct ct_newton_iteration *it, double rate, doubl
 // Has the iteration stalled at a correction that round-off of the forces explains? Stiff forces at
 // large positions, as in a beam of many elements, have such round-off, and shorter steps hardly
 // reduce it.
-static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, double size,
+static bool is_force_roundoff(struct ct_newton_iteration *it, double rate, double size,
                               bool has_speeds)
 {
-    if (rate < 1 || it->is_finest)
+    if (rate < 1 || it->runs_to_roundoff)
         return false;
     const double *noise = ct_newton_iteration_roundoff(it);
     const double *u = has_speeds ? noise + it->nu : NULL;
-    return size <= together * ct_newton_iteration_norm(it, noise, u, it->nu, 1);
+    return size <= roundoff_margin * ct_newton_iteration_norm(it, noise, u, it->nu, 1);
 }
 
 // Are all corrections below half a unit round-off of the largest position and speed? What is left
@@ -160,16 +160,16 @@ static bool is_roundoff_noise(struct ct_newton_iteration *it, double rate, doubl
 static bool is_below_roundoff(const struct ct_newton_iteration *it, double size,
                               const double *d, const double *u, int n)
 {
-    return it->m && u && !it->is_finest && it->kappa > 0 && size <= it->roundoff_size
+    return it->m && u && !it->runs_to_roundoff && it->kappa > 0 && size <= it->roundoff_size
         && is_within(it, d, n, it->roundoff_position)
         && is_within(it, u, n, it->roundoff_speed);
 }
 
 // In an iteration down to round-off: is this correction small enough to accept where it stalls or
 // reaches the limit?
-static bool is_fine(const struct ct_newton_iteration *it, double size)
+static bool is_stalled_at_roundoff(const struct ct_newton_iteration *it, double size)
 {
-    return it->is_finest && size <= it->roundoff_size;
+    return it->runs_to_roundoff && size <= it->roundoff_size;
 }
 
 enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iteration *it,
@@ -183,18 +183,18 @@ enum ct_convergence ct_newton_iteration_test_convergence(struct ct_newton_iterat
         if (is_roundoff(it, rate, size)
             || (rate >= 1 && !is_too_early(it) && is_within(it, d, k, it->least))
             || is_below_roundoff(it, size, d, u, k)
-            || is_roundoff_noise(it, rate, size, u != NULL))
+            || is_force_roundoff(it, rate, size, u != NULL))
             return CT_CONVERGED;
-        take_rate(it, rate);
+        update_rate(it, rate);
         if (it->rate >= 1 && it->count > 3)
-            return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
+            return is_stalled_at_roundoff(it, size) ? CT_CONVERGED : CT_DIVERGED;
     }
     it->size = size;
     if (size <= it->kappa || (it->tail * size <= it->kappa && !is_too_early(it)))
         return CT_CONVERGED;
     if (it->count < it->most)
         return CT_ITERATING;
-    return is_fine(it, size) ? CT_CONVERGED : CT_DIVERGED;
+    return is_stalled_at_roundoff(it, size) ? CT_CONVERGED : CT_DIVERGED;
 }
 
 bool ct_newton_iteration_can_refresh(struct ct_newton_iteration *it)

@@ -12,13 +12,13 @@
 // tolerance. Definition: FNEWT of RADAU5, Hairer and Wanner (1996), IV.8.
 static const double kappa_most = 0.03;
 // Without a tolerance the iteration goes down to round-off, since errors that it leaves add up over
-// steps of fixed length. Derived: with the factor kappa_finest of 1e-4 this is 1e-16, half of the
+// steps of fixed length. Derived: with the factor kappa_roundoff of 1e-4 this is 1e-16, half of the
 // unit round-off.
-static const struct ct_tolerance finest = {1e-12, 1e-12};
-static const double kappa_finest = 1e-4; // Derived: see above
+static const struct ct_tolerance roundoff_tolerance = {1e-12, 1e-12};
+static const double kappa_roundoff = 1e-4; // Derived: see above
 // It is accepted at this size, 1e-10 of the states, where it stalls or reaches the limit of
 // corrections. Chosen: steps refused for round-off against the error of the iteration.
-static const double rounding_finest = 100;
+static const double largest_stalled = 100;
 // A factor on kappa in the index-3 form, which tests positions alone. Errors of speeds are those of
 // positions over the step. Default: corrections against the error of speeds. Test: dae
 static const double kappa_index3 = 0.1;
@@ -26,11 +26,11 @@ static const double kappa_index3 = 0.1;
 // Default: corrections against refused steps. Test: stiffness_detection_bushing
 enum { MOST = 10 };
 // The same without a tolerance. Limit: then the message that the fixed step is too long.
-enum { MOST_FINEST = 30 };
+enum { MOST_TO_ROUNDOFF = 30 };
 
 // For full matrices of m rows, n equations.
-static void make_room(struct ct_arena *a, struct ct_newton_iteration *it, int m, int n,
-                      bool is_complex)
+static void allocate_matrices(struct ct_arena *a, struct ct_newton_iteration *it, int m, int n,
+                              bool is_complex)
 {
     const int nu = it->nu;
     double **const square[] = {&it->M, &it->C, &it->K};
@@ -70,10 +70,10 @@ struct ct_newton_iteration *ct_newton_iteration_create(struct ct_arena *a,
     it->tail = 1;
     it->sparse = ct_newton_create(a, dae, dae->plan[is_stabilised], is_complex);
     if (!it->sparse)
-        make_room(a, it, m, n, is_complex);
+        allocate_matrices(a, it, m, n, is_complex);
     it->b = CT_NEWN(a, double, 2 * n + 1);
-    it->share = CT_NEWN(a, double, 2 * nu + 1);
-    it->off = CT_NEWN(a, double, p->ny);
+    it->inverse_weight = CT_NEWN(a, double, 2 * nu + 1);
+    it->error_state = CT_NEWN(a, double, p->ny);
     it->fast = CT_NEWN(a, double, 2 * nu + 1);
     it->roundoff = CT_NEWN(a, double, 2 * nu + 1);
     it->probe = (struct ct_roundoff_probe){
@@ -110,9 +110,10 @@ static void weigh(struct ct_newton_iteration *it, double rtol, double atol, doub
         const int i = dae->q_of[k];
         const double size = size_of(it->groups, dae->nq + k, y);
         const bool is_state = i == CT_MOVES_NOTHING; // counts as a speed alone
-        it->share[k]
+        it->inverse_weight[k]
             = is_state ? 0 : 1 / (rtol * (i < 0 ? 1 : size_of(it->groups, i, y)) + atol);
-        it->share[it->nu + k] = 1 / ct_larger(rtol * size + atol, is_state ? 0 : least_speed);
+        it->inverse_weight[it->nu + k]
+            = 1 / ct_larger(rtol * size + atol, is_state ? 0 : least_speed);
     }
 }
 
@@ -123,8 +124,8 @@ static inline void weigh_plain(struct ct_newton_iteration *it, double rtol, doub
 {
     const double *u = y + nu;
     for (int k = 0; k < nu; k++) {
-        it->share[k] = 1 / (rtol * fabs(y[k]) + atol);
-        it->share[nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
+        it->inverse_weight[k] = 1 / (rtol * fabs(y[k]) + atol);
+        it->inverse_weight[nu + k] = 1 / ct_larger(rtol * fabs(u[k]) + atol, least_speed);
     }
 }
 
@@ -159,7 +160,7 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
                                const struct ct_tolerance *tolerance, double h, const double *y)
 {
     const struct ct_dae *dae = it->dae;
-    const struct ct_tolerance *tol = tolerance ? tolerance : &finest;
+    const struct ct_tolerance *tol = tolerance ? tolerance : &roundoff_tolerance;
     const double roundoff = DBL_EPSILON * largest_place(it, y);
     it->least = ct_position_roundoff * roundoff;
     const double least_speed = tolerance ? it->least / h : 0;
@@ -175,12 +176,12 @@ bool ct_newton_iteration_begin(struct ct_newton_iteration *it,
         weigh(it, tol->rtol, tol->atol, least_speed, y);
     if (it->kappa_for != tol->rtol + tol->atol) {
         it->kappa_for = tol->rtol + tol->atol;
-        it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_finest;
+        it->kappa = tolerance ? ct_smaller(kappa_most, sqrt(it->kappa_for)) : kappa_roundoff;
         it->kappa *= it->is_stabilised ? 1 : kappa_index3;
     }
-    it->is_finest = !tolerance;
-    it->roundoff_size = tolerance ? kappa_most : rounding_finest;
-    it->most = tolerance ? MOST : MOST_FINEST;
+    it->runs_to_roundoff = !tolerance;
+    it->roundoff_size = tolerance ? kappa_most : largest_stalled;
+    it->most = tolerance ? MOST : MOST_TO_ROUNDOFF;
     it->is_new = false;
     if (dae->most_rows == 0 && it->version >= 0) // there are none that could change
         return false;
@@ -216,8 +217,8 @@ static void fill_eta(const struct ct_newton_iteration *it, double *B, const doub
 }
 
 // B (n x n): copies A (rows x nu) into the first columns from row `first` on.
-static void fill_place(const struct ct_newton_iteration *it, double *B, const double *A,
-                       int rows, int first)
+static void fill_columns(const struct ct_newton_iteration *it, double *B, const double *A,
+                         int rows, int first)
 {
     for (int k = 0; k < it->nu; k++)
         memcpy(B + it->n * k + first, A + rows * k, (size_t)rows * sizeof *A);
@@ -239,8 +240,8 @@ void ct_newton_iteration_add_rotation(const struct ct_newton_iteration *it, doub
 }
 
 // B (n x n): subtracts A N from row `first` on, A (rows x nu); N' = -N.
-static void fill_turn(const struct ct_newton_iteration *it, double *B, const double *A,
-                      int rows, int first)
+static void fill_rotation(const struct ct_newton_iteration *it, double *B, const double *A,
+                          int rows, int first)
 {
     const int n = it->n;
     for (int k = 0; k < it->nu; k++) {
@@ -265,25 +266,25 @@ static void assemble(struct ct_newton_iteration *it)
     memset(it->S, 0, bytes);
     memset(it->X, 0, bytes);
     memset(it->W, 0, bytes);
-    fill_place(it, it->S, it->M, nu, 0);
-    fill_place(it, it->S, it->J, m, nu);
-    fill_place(it, it->X, it->C, nu, 0);
-    fill_place(it, it->W, it->K, nu, 0);
+    fill_columns(it, it->S, it->M, nu, 0);
+    fill_columns(it, it->S, it->J, m, nu);
+    fill_columns(it, it->X, it->C, nu, 0);
+    fill_columns(it, it->W, it->K, nu, 0);
     for (int j = 0; j < m; j++) // -J' in the last columns
         for (int k = 0; k < nu; k++)
             it->S[k + n * (n - m + j)] = -it->J[j + m * k];
     if (!it->is_stabilised)
         return;
-    fill_place(it, it->S, it->J, m, nu + m);
-    fill_place(it, it->W, it->D, m, nu + m);
+    fill_columns(it, it->S, it->J, m, nu + m);
+    fill_columns(it, it->W, it->D, m, nu + m);
     fill_eta(it, it->S, it->M, nu, 0);
     fill_eta(it, it->X, it->C, nu, 0);
     fill_eta(it, it->S, it->J, m, nu + m);
     if (!it->w)
         return;
-    fill_turn(it, it->X, it->M, nu, 0);
-    fill_turn(it, it->W, it->C, nu, 0);
-    fill_turn(it, it->W, it->J, m, nu + m);
+    fill_rotation(it, it->X, it->M, nu, 0);
+    fill_rotation(it, it->W, it->C, nu, 0);
+    fill_rotation(it, it->W, it->J, m, nu + m);
 }
 
 // The derivatives at a point, and from them the matrices S, X, W.
@@ -547,7 +548,7 @@ const double *ct_newton_iteration_states(struct ct_newton_iteration *it, const d
                                          const double *d, const double *u)
 {
     const int nq = it->dae->nq;
-    double *e = it->off;
+    double *e = it->error_state;
     if (it->dae->is_plain) {
         ct_stepper_copy(e, d, nq);
     } else {

@@ -70,12 +70,12 @@ struct ct_newton_iteration {
     double *w;     // speeds at which derivatives were evaluated (nu), for N; NULL: without N
     double *b, *x; // right-hand side (n, complex 2 n), solution (rows, complex 2 rows)
     double _Complex *bc;
-    double per_speed; // 1/nu; 0: there are none
-    double *share;    // one over the weights of positions and speeds in the norm  (2 nu)
-    double *off;      // workspace: an error of the states  (ny)
-    double *fast;     // workspace: positions and speeds of fast modes  (2 nu)
-    const double *y;  // state at the start of the step
-    double t;         // time of the derivatives
+    double per_speed;       // 1/nu; 0: there are none
+    double *inverse_weight; // one over the weights of positions and speeds in the norm  (2 nu)
+    double *error_state;    // workspace: an error of the states  (ny)
+    double *fast;           // workspace: positions and speeds of fast modes  (2 nu)
+    const double *y;        // state at the start of the step
+    double t;               // time of the derivatives
     double
         *roundoff; // corrections caused by round-off of forces and constraints, (8.17)  (2 nu)
     bool has_roundoff; // it belongs to the present factors
@@ -84,7 +84,7 @@ struct ct_newton_iteration {
     int count;                   // corrections so far
     double kappa, roundoff_size; // sizes of corrections: converged; not above round-off
     double kappa_for;            // the tolerance that kappa belongs to
-    bool is_finest;              // there is no tolerance: iterate down to round-off
+    bool runs_to_roundoff;       // there is no tolerance: iterate down to round-off
     double least;                // a change of positions by less is round-off  [m, rad]
     double roundoff_position, roundoff_speed; // half a unit round-off of the largest one
     double size;                              // of the last correction
@@ -222,11 +222,12 @@ ct_newton_iteration_add_constraint_force(const struct ct_newton_iteration *it, d
     }
 }
 
-static inline double ct_newton_iteration_square(const double *x, const double *share, int n)
+static inline double ct_newton_iteration_square(const double *x, const double *inverse_weight,
+                                                int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++)
-        sum += (x[i] * share[i]) * (x[i] * share[i]);
+        sum += (x[i] * inverse_weight[i]) * (x[i] * inverse_weight[i]);
     return sum;
 }
 
@@ -239,31 +240,31 @@ static inline double ct_newton_iteration_norm(const struct ct_newton_iteration *
 {
     double sum = 0;
     for (int s = 0; s < k; s++)
-        sum += ct_newton_iteration_square(d + s * nu, it->share, nu);
+        sum += ct_newton_iteration_square(d + s * nu, it->inverse_weight, nu);
     for (int s = 0; s < k && u; s++)
-        sum += ct_newton_iteration_square(u + s * nu, it->share + nu, nu);
+        sum += ct_newton_iteration_square(u + s * nu, it->inverse_weight + nu, nu);
     return sqrt(sum * (it->per_speed / ((u ? 2 : 1) * k)));
 }
 
 /// The same for positions and for the state variables of the model among the speeds.
-static inline double ct_newton_iteration_norm_of_places(const struct ct_newton_iteration *it,
-                                                        const double *d, const double *u,
-                                                        const int nu)
+static inline double ct_newton_iteration_norm_of_positions(const struct ct_newton_iteration *it,
+                                                           const double *d, const double *u,
+                                                           const int nu)
 {
     const int n = it->dae->nstate, first = nu - n;
     const double sum
-        = ct_newton_iteration_square(d, it->share, nu)
-        + (n ? ct_newton_iteration_square(u + first, it->share + nu + first, n) : 0);
+        = ct_newton_iteration_square(d, it->inverse_weight, nu)
+        + (n ? ct_newton_iteration_square(u + first, it->inverse_weight + nu + first, n) : 0);
     return sqrt(sum * it->per_speed);
 }
 
 /// The norm of errors d, u (nu) of positions and speeds at y, with speeds that are not outputs
-/// low-pass filtered (8.10). Their fast part counts over `ample` (nu) instead. *slow (out): the
-/// same with filtered positions. INFINITY where the filter cannot be factored. `off` is
+/// low-pass filtered (8.10). Their fast part counts over `fast_scale` (nu) instead. *slow (out):
+/// the same with filtered positions. INFINITY where the filter cannot be factored. `error_state` is
 /// overwritten.
 double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struct ct_problem *p,
                                      const struct ct_tolerance *tolerance, const double *y,
-                                     const double *ample, const double *d, const double *u,
+                                     const double *fast_scale, const double *d, const double *u,
                                      double *slow);
 
 /// Raises `energy` to twice the kinetic energy of these speeds, where speeds below `small` are
@@ -271,51 +272,51 @@ double ct_newton_iteration_slow_norm(struct ct_newton_iteration *it, const struc
 void ct_newton_iteration_note_energy(struct ct_newton_iteration *it, double small,
                                      const double *speeds);
 /// Raises `energy` to a prediction for motions that start at rest: the energy from the slow part of
-/// these accelerations after the distance `small`, or after `time` if that is less. `off` is
-/// overwritten.
+/// these accelerations after the distance `small`, or after `time` if that is less. `error_state`
+/// is overwritten.
 void ct_newton_iteration_predict_energy(struct ct_newton_iteration *it, double small,
                                         double time, const double *accelerations);
 
 /// Undamped vibrations in a step.
 struct ct_vibration {
-    double lost, present; // twice the energy that the step dissipates, and their energy
-    double times;         // their amplitude over their error estimate
+    double dissipation, present; // twice the energy that the step dissipates, and their energy
+    double times;                // their amplitude over their error estimate
 };
 /// The vibrations in a step h of Radau IIA whose error estimate is d, u (nu); gamma/h is c of its
-/// real system. `off` is overwritten.  (8.13)
+/// real system. `error_state` is overwritten.  (8.13)
 struct ct_vibration ct_newton_iteration_vibration(struct ct_newton_iteration *it, double gamma,
                                                   double h, const double *d, const double *u);
-/// The largest relative change of outputs at y without the vibrations v in errors d, u (nu). `off`
-/// is overwritten.
+/// The largest relative change of outputs at y without the vibrations v in errors d, u (nu).
+/// `error_state` is overwritten.
 double ct_newton_iteration_output_change(struct ct_newton_iteration *it,
                                          const struct ct_problem *p,
                                          const struct ct_vibration *v, double t,
                                          const double *y, const double *d, const double *u);
 
-/// Vibrations in a band of frequencies.
+/// Vibrations in a band of frequencies about `rate`, for the band-pass filter.
 struct ct_band {
-    double rate;                       // its frequency  [1/s]
-    double times;                      // their amplitude over their error estimate
-    double small;                      // positions and speeds below it are negligible
-    double least;                      // least scale of outputs
-    const double *furthest, *swiftest; // largest positions and speeds so far  (nu)
-    const double *ahead;               // predicted positions and speeds  (2 nu)
+    double rate;  // its frequency  [1/s]
+    double times; // their amplitude over their error estimate
+    double small; // positions and speeds below it are negligible
+    double least; // least scale of outputs
+    const double *largest_position, *largest_speed; // largest positions and speeds so far  (nu)
+    const double *predicted;                        // predicted positions and speeds  (2 nu)
 };
 /// ahead (2 nu, out): predicted changes of positions and speeds up to the end of the run, from the
 /// low-pass filtered speeds and accelerations a (nu) at y, and not above a unit. The outputs that
-/// follow are passed to `expect_output`. `off` is overwritten.  (8.22)
+/// follow are passed to `predict_output`. `error_state` is overwritten.  (8.22)
 void ct_newton_iteration_predict_motion(struct ct_newton_iteration *it,
                                         const struct ct_problem *p, double t, const double *y,
-                                        const double *a, double *ahead);
+                                        const double *a, double *predicted);
 /// The largest relative change of outputs at y by the part of errors d, u (nu) in this band, for
-/// any phase of the vibrations. `off` is overwritten.  (8.21)
+/// any phase of the vibrations. `error_state` is overwritten.  (8.21)
 double ct_newton_iteration_output_change_in_band(struct ct_newton_iteration *it,
                                                  const struct ct_problem *p,
                                                  const struct ct_band *b, double t,
                                                  const double *y, const double *d,
                                                  const double *u);
 
-/// Errors d, u (nu) of positions and speeds at y1 as one of the states (ny), in `off`.
+/// Errors d, u (nu) of positions and speeds at y1 as one of the states (ny), in `error_state`.
 const double *ct_newton_iteration_states(struct ct_newton_iteration *it, const double *y1,
                                          const double *d, const double *u);
 /// The error of a step that ends at y1, time t1: the larger of `states`, the norm of the error of

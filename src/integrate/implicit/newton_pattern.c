@@ -12,13 +12,13 @@ enum part { S, X, W };
 
 // Entries in the order in which they are found, with repetitions. The target of a term is an index
 // into this list until the pattern is known.
-struct places {
+struct entries {
     struct ct_arena *a;
     int *row, *column, *part;
     size_t n, row_cap, column_cap, part_cap;
 };
 
-static int add_place(struct places *s, enum part part, int row, int column)
+static int add_entry(struct entries *s, enum part part, int row, int column)
 {
     size_t n = s->n;
     CT_PUSH(s->a, s->row, n, s->row_cap, row);
@@ -39,9 +39,9 @@ static const int *find_rows(struct ct_arena *a, const struct ct_newton_list *A, 
     return start;
 }
 
-static void list_lists(struct ct_arena *a, struct ct_newton_pattern *p)
+static void fill_lists(struct ct_arena *a, struct ct_newton_pattern *p)
 {
-    const struct ct_slopes *s = p->slopes;
+    const struct ct_jacobian_pattern *s = p->jacobian_pattern;
     struct ct_newton_list *const list[] = {&p->K, &p->C, &p->M, &p->R, &p->D, &p->J};
     const int n[] = {s->nK, s->nC, s->nM, s->nR, s->nD, s->nJ};
     for (size_t i = 0; i < COUNT(list); i++) {
@@ -62,25 +62,25 @@ static int row_of(const struct ct_newton_pattern *p, int i)
 }
 
 // A list at row `first`, columns from `column` on.
-static void add_copies(struct ct_newton_pattern *p, struct places *s, enum part part,
+static void add_copies(struct ct_newton_pattern *p, struct entries *s, enum part part,
                        const struct ct_newton_list *A, int first, int column)
 {
     for (int i = 0; i < A->n; i++) {
         const int row = first ? first + A->row[i] : row_of(p, A->row[i]);
         const struct ct_newton_copy c
-            = {add_place(s, part, row, column + A->column[i]), A->first + i, 1};
+            = {add_entry(s, part, row, column + A->column[i]), A->first + i, 1};
         CT_PUSH(s->a, p->copy, p->ncopy, p->copy_cap, c);
     }
 }
 
 // -J', in the last columns.
-static void add_transposed(struct ct_newton_pattern *p, struct places *s)
+static void add_transposed(struct ct_newton_pattern *p, struct entries *s)
 {
     const struct ct_newton_list *J = &p->J;
     for (int i = 0; i < J->n; i++) {
         const int column = p->first_auxiliary - p->most_rows + J->row[i];
         const struct ct_newton_copy c
-            = {add_place(s, S, J->column[i], column), J->first + i, -1};
+            = {add_entry(s, S, J->column[i], column), J->first + i, -1};
         CT_PUSH(s->a, p->copy, p->ncopy, p->copy_cap, c);
     }
 }
@@ -104,7 +104,7 @@ static struct by_column sort_by_column(struct ct_arena *a, const struct ct_newto
 }
 
 // -A J' at row `first`, in the columns of eta.
-static void add_products(struct ct_newton_pattern *p, struct places *s, enum part part,
+static void add_products(struct ct_newton_pattern *p, struct entries *s, enum part part,
                          const struct ct_newton_list *A, int first)
 {
     const struct by_column by = sort_by_column(s->a, A, p->nu);
@@ -113,23 +113,23 @@ static void add_products(struct ct_newton_pattern *p, struct places *s, enum par
         for (int k = by.start[J->column[j]]; k < by.start[J->column[j] + 1]; k++) {
             const int i = by.entry[k];
             const int row = first ? first + A->row[i] : row_of(p, A->row[i]);
-            const int target = add_place(s, part, row, p->nu + J->row[j]);
+            const int target = add_entry(s, part, row, p->nu + J->row[j]);
             const struct ct_newton_product x = {target, A->first + i, J->first + j};
             CT_PUSH(s->a, p->product, p->nproduct, p->product_cap, x);
         }
 }
 
-static void add_turn(struct ct_newton_pattern *p, struct places *s, enum part part, int row,
-                     int column, int a, int speed, double half)
+static void add_rotation(struct ct_newton_pattern *p, struct entries *s, enum part part,
+                         int row, int column, int a, int speed, double half)
 {
-    const struct ct_newton_rotation t = {add_place(s, part, row, column), a, speed, half};
+    const struct ct_newton_rotation t = {add_entry(s, part, row, column), a, speed, half};
     CT_PUSH(s->a, p->rotation, p->nrotation, p->rotation_cap, t);
 }
 
 // -A N at row `first`: of a rotation's three columns a, b, c become (b w2 - c w1, c w0 - a w2, a w1
 // - b w0)/2.
-static void add_turns(struct ct_newton_pattern *p, struct places *s, const int *q_of,
-                      enum part part, const struct ct_newton_list *A, int first)
+static void add_rotations(struct ct_newton_pattern *p, struct entries *s, const int *q_of,
+                          enum part part, const struct ct_newton_list *A, int first)
 {
     const struct by_column by = sort_by_column(s->a, A, p->nu);
     for (int k = 0; k < p->nu; k++) {
@@ -140,15 +140,15 @@ static void add_turns(struct ct_newton_pattern *p, struct places *s, const int *
             for (int l = by.start[k + i]; l < by.start[k + i + 1]; l++) {
                 const int of = A->row[by.entry[l]], a = A->first + by.entry[l];
                 const int row = first ? first + of : row_of(p, of);
-                add_turn(p, s, part, row, k + next, a, k + other, -0.5);
-                add_turn(p, s, part, row, k + other, a, k + next, 0.5);
+                add_rotation(p, s, part, row, k + next, a, k + other, -0.5);
+                add_rotation(p, s, part, row, k + other, a, k + next, 0.5);
             }
         }
         k += 2;
     }
 }
 
-static void add_terms(struct ct_newton_pattern *p, struct places *s, const int *q_of)
+static void add_terms(struct ct_newton_pattern *p, struct entries *s, const int *q_of)
 {
     const int nu = p->nu, below = nu + p->most_rows;
     add_copies(p, s, S, &p->M, 0, 0);
@@ -164,27 +164,27 @@ static void add_terms(struct ct_newton_pattern *p, struct places *s, const int *
     add_products(p, s, S, &p->M, 0);
     add_products(p, s, X, &p->C, 0);
     add_products(p, s, S, &p->J, below);
-    add_turns(p, s, q_of, X, &p->M, 0);
-    add_turns(p, s, q_of, W, &p->C, 0);
-    add_turns(p, s, q_of, W, &p->J, below);
+    add_rotations(p, s, q_of, X, &p->M, 0);
+    add_rotations(p, s, q_of, W, &p->C, 0);
+    add_rotations(p, s, q_of, W, &p->J, below);
 }
 
 // Replaces targets by their index in the pattern: part * nz + entry.
-static void settle_targets(struct ct_newton_pattern *p, struct ct_arena *a,
-                           const struct places *s)
+static void resolve_targets(struct ct_newton_pattern *p, struct ct_arena *a,
+                            const struct entries *s)
 {
-    int *place = CT_NEWN(s->a, int, s->n + 1);
-    p->pattern = ct_pattern_create(a, p->n, s->row, s->column, (int)s->n, place);
+    int *entry = CT_NEWN(s->a, int, s->n + 1);
+    p->pattern = ct_pattern_create(a, p->n, s->row, s->column, (int)s->n, entry);
     const int nz = p->pattern->nz;
     for (size_t i = 0; i < p->ncopy; i++)
-        p->copy[i].target = s->part[p->copy[i].target] * nz + place[p->copy[i].target];
+        p->copy[i].target = s->part[p->copy[i].target] * nz + entry[p->copy[i].target];
     for (size_t i = 0; i < p->nproduct; i++)
-        p->product[i].target = s->part[p->product[i].target] * nz + place[p->product[i].target];
+        p->product[i].target = s->part[p->product[i].target] * nz + entry[p->product[i].target];
     for (size_t i = 0; i < p->nrotation; i++)
         p->rotation[i].target
-            = s->part[p->rotation[i].target] * nz + place[p->rotation[i].target];
+            = s->part[p->rotation[i].target] * nz + entry[p->rotation[i].target];
     for (int i = 0; i < p->n - p->nu; i++)
-        p->index[i] = place[p->index[i]];
+        p->index[i] = entry[p->index[i]];
 }
 
 // ---- numbers ------------------------------------------------------------------------------------
@@ -216,7 +216,7 @@ void ct_newton_pattern_form(const struct ct_newton_pattern *p, double *G, const 
 
 // Random values with large diagonals, for the analysis of the pattern before real values are known.
 // They are the same each time.
-static void invent(const struct ct_newton_pattern *p, double *v)
+static void set_random_values(const struct ct_newton_pattern *p, double *v)
 {
     unsigned long long seed = 1;
     for (int i = 0; i < p->nvalue; i++) {
@@ -238,17 +238,17 @@ static struct ct_pattern *find_graph(const struct ct_newton_pattern *p,
 {
     const struct ct_newton_list *const lists[] = {&p->M, &p->C, &p->K, &p->R, &p->J, &p->J};
     const int nunknown = p->nu + p->nauxiliary, nnode = nunknown + p->most_rows;
-    struct places s = {.a = scratch};
+    struct entries s = {.a = scratch};
     for (size_t k = 0; k < COUNT(lists); k++)
         for (int i = 0; i < lists[k]->n; i++) {
             const int row = lists[k]->row[i] + (k < 4 ? 0 : nunknown),
                       column = lists[k]->column[i] + (k == 3 ? p->nu : 0);
-            add_place(&s, S, k < 5 ? row : column, k < 5 ? column : row);
+            add_entry(&s, S, k < 5 ? row : column, k < 5 ? column : row);
         }
     for (int i = 0; i < nnode; i++)
-        add_place(&s, S, i, i);
-    int *place = CT_NEWN(scratch, int, s.n);
-    return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, place);
+        add_entry(&s, S, i, i);
+    int *entry = CT_NEWN(scratch, int, s.n);
+    return ct_pattern_create(scratch, nnode, s.row, s.column, (int)s.n, entry);
 }
 
 // first (n, out): the elimination order of speeds and auxiliary unknowns with little fill. The
@@ -290,7 +290,7 @@ static bool find_order(struct ct_newton_pattern *p, struct ct_arena *a,
     double *v = CT_NEWN(scratch, double, p->nvalue + 1);
     double *w = CT_NEWN(scratch, double, p->nu + 1);
     double *A = CT_NEWN(scratch, double, CT_NEWTON_PARTS * p->pattern->nz + 1);
-    invent(p, v);
+    set_random_values(p, v);
     for (int k = 0; k < p->nu; k++)
         w[k] = 1;
     ct_newton_pattern_assemble(p, A, v, w);
@@ -347,7 +347,7 @@ static bool may_pay(const struct ct_newton_pattern *p, struct ct_arena *scratch)
          < work_of_step(full_work(p->first_auxiliary));
 }
 
-static void *keep(struct ct_arena *a, const void *x, size_t n, size_t size)
+static void *copy_to_arena(struct ct_arena *a, const void *x, size_t n, size_t size)
 {
     void *kept = ct_arena_calloc(a, n + 1, size);
     return n ? memcpy(kept, x, n * size) : kept;
@@ -358,22 +358,22 @@ static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scrat
                                       const struct ct_dae *dae, bool is_stabilised, bool anyway)
 {
     struct ct_newton_pattern *p = CT_NEW(a, struct ct_newton_pattern);
-    struct places s = {.a = scratch};
-    p->slopes = dae->slopes;
+    struct entries s = {.a = scratch};
+    p->jacobian_pattern = dae->jacobian_pattern;
     p->nu = dae->nu;
     p->most_rows = dae->most_rows;
-    p->nauxiliary = dae->slopes->nauxiliary;
+    p->nauxiliary = dae->jacobian_pattern->nauxiliary;
     p->first_auxiliary = dae->nu + (is_stabilised ? 2 : 1) * dae->most_rows;
     p->n = p->first_auxiliary + p->nauxiliary;
     p->is_stabilised = is_stabilised;
     p->index = CT_NEWN(a, int, p->n - p->nu + 1);
-    list_lists(a, p);
+    fill_lists(a, p);
     if (!anyway && !may_pay(p, scratch))
         return NULL;
     add_terms(p, &s, dae->q_of);
     for (int i = 0; i < p->n - p->nu; i++)
-        p->index[i] = add_place(&s, S, p->nu + i, p->nu + i);
-    settle_targets(p, a, &s);
+        p->index[i] = add_entry(&s, S, p->nu + i, p->nu + i);
+    resolve_targets(p, a, &s);
     // Limit: patterns that are more than half full are not ordered, the dense matrix serves
     // instead.
     const double n = p->first_auxiliary, most = 0.5;
@@ -388,16 +388,16 @@ static struct ct_newton_pattern *make(struct ct_arena *a, struct ct_arena *scrat
         p->M_start = M.start;
         p->M_entry = M.entry;
     }
-    p->copy = keep(a, p->copy, p->ncopy, sizeof *p->copy);
-    p->product = keep(a, p->product, p->nproduct, sizeof *p->product);
-    p->rotation = keep(a, p->rotation, p->nrotation, sizeof *p->rotation);
+    p->copy = copy_to_arena(a, p->copy, p->ncopy, sizeof *p->copy);
+    p->product = copy_to_arena(a, p->product, p->nproduct, sizeof *p->product);
+    p->rotation = copy_to_arena(a, p->rotation, p->nrotation, sizeof *p->rotation);
     return p;
 }
 
 static struct ct_newton_pattern *plan(struct ct_arena *a, const struct ct_dae *dae,
                                       bool is_stabilised, bool anyway)
 {
-    if (!dae->slopes || dae->nu <= CT_MOST_INVERTED) // inverses serve those
+    if (!dae->jacobian_pattern || dae->nu <= CT_MOST_INVERTED) // inverses serve those
         return NULL;
     struct ct_arena *scratch = ct_arena_create_under(a);
     struct ct_newton_pattern *p = make(a, scratch, dae, is_stabilised, anyway);

@@ -29,7 +29,7 @@ struct ct_newton_list {
 };
 
 struct ct_newton_pattern {
-    const struct ct_slopes *slopes;
+    const struct ct_jacobian_pattern *jacobian_pattern;
     struct ct_newton_list K, C, M, R, D,
         J; // rows of K, C, M, R after nu belong to auxiliary unknowns
     int nu, most_rows, n, nvalue;

@@ -68,7 +68,7 @@ enum ct_eval ct_newton_evaluate(struct ct_newton *s, double t, const double *q, 
 {
     const struct ct_newton_pattern *p = s->p;
     const double *v;
-    const enum ct_eval e = s->dae->evaluate_slopes(s->dae->user, t, q, u, a, lam, &v);
+    const enum ct_eval e = s->dae->evaluate_jacobian(s->dae->user, t, q, u, a, lam, &v);
     if (e != CT_EVAL_OK)
         return e;
     memcpy(s->v, v, (size_t)p->nvalue * sizeof *v);
@@ -109,7 +109,7 @@ bool ct_newton_factor_complex(struct ct_newton *s, double _Complex w)
 }
 
 // Scatters the selected rows into all rows, with values `stride` apart, and gathers them again.
-static void spread(const struct ct_newton *s, double *all, const double *b, int stride)
+static void scatter(const struct ct_newton *s, double *all, const double *b, int stride)
 {
     const struct ct_newton_pattern *p = s->p;
     for (int k = 0; k < p->nu; k++)
@@ -125,7 +125,7 @@ static void spread(const struct ct_newton *s, double *all, const double *b, int 
     }
 }
 
-static void collect(const struct ct_newton *s, double *b, const double *all, int stride)
+static void gather(const struct ct_newton *s, double *b, const double *all, int stride)
 {
     const struct ct_newton_pattern *p = s->p;
     for (int k = 0; k < p->nu; k++)
@@ -138,9 +138,9 @@ static void collect(const struct ct_newton *s, double *b, const double *all, int
 
 static void solve(struct ct_newton *s, struct ct_factors *f, double *b)
 {
-    spread(s, s->b, b, 1);
+    scatter(s, s->b, b, 1);
     ct_factors_solve(f, s->b);
-    collect(s, b, s->b, 1);
+    gather(s, b, s->b, 1);
 }
 
 void ct_newton_solve(struct ct_newton *s, double *b)
@@ -165,11 +165,11 @@ void ct_newton_slow_parts(struct ct_newton *s, double *part)
 
 void ct_newton_solve_complex(struct ct_newton *s, double *b, int n)
 {
-    spread(s, s->b, b, 2);
-    spread(s, s->b + 1, b + n, 2);
+    scatter(s, s->b, b, 2);
+    scatter(s, s->b + 1, b + n, 2);
     ct_factors_solve(s->pair, s->b);
-    collect(s, b, s->b, 2);
-    collect(s, b + n, s->b + 1, 2);
+    gather(s, b, s->b, 2);
+    gather(s, b + n, s->b + 1, 2);
 }
 
 // ---- products -----------------------------------------------------------------------------------
@@ -194,8 +194,8 @@ static void add_product(const struct ct_newton *s, const struct ct_newton_list *
     for (int i = 0; i < p->nauxiliary; i++)
         s->k[i] = row_times(A, s->v, nu + i, x) + row_times(&p->R, s->v, nu + i, s->k);
     for (int row = 0; row < nu; row++) {
-        const double by_inner = p->nauxiliary ? row_times(&p->R, s->v, row, s->k) : 0;
-        y[row] += c * (row_times(A, s->v, row, x) + by_inner);
+        const double by_auxiliary = p->nauxiliary ? row_times(&p->R, s->v, row, s->k) : 0;
+        y[row] += c * (row_times(A, s->v, row, x) + by_auxiliary);
     }
 }
 
@@ -222,8 +222,8 @@ void ct_newton_add_motion(const struct ct_newton *s, double *y, double a, const 
         s->k[i] = row_times(M, s->v, nu + i, x) + row_times(C, s->v, nu + i, F)
                 + row_times(R, s->v, nu + i, s->k);
     for (int row = 0; row < nu; row++) {
-        const double by_inner = p->nauxiliary ? row_times(R, s->v, row, s->k) : 0;
-        y[row] += row_times(M, s->v, row, x) + row_times(C, s->v, row, F) + by_inner;
+        const double by_auxiliary = p->nauxiliary ? row_times(R, s->v, row, s->k) : 0;
+        y[row] += row_times(M, s->v, row, x) + row_times(C, s->v, row, F) + by_auxiliary;
     }
 }
 
@@ -269,7 +269,7 @@ double ct_newton_stiffness_form(const struct ct_newton *s, const double *x)
 }
 
 // The part of the diagonal entry k of M that comes from auxiliary unknowns.
-static double mass_by_inner(const struct ct_newton *s, int k)
+static double mass_by_auxiliary(const struct ct_newton *s, int k)
 {
     const struct ct_newton_pattern *p = s->p;
     const struct ct_newton_list *M = &p->M, *R = &p->R;
@@ -292,5 +292,5 @@ void ct_newton_masses(const struct ct_newton *s, double *mass)
         if (M->row[i] == M->column[i])
             mass[M->row[i]] += s->v[M->first + i];
     for (int k = 0; k < s->p->nu && s->p->nauxiliary; k++)
-        mass[k] += mass_by_inner(s, k);
+        mass[k] += mass_by_auxiliary(s, k);
 }

@@ -57,10 +57,10 @@ struct ct_radau {
     struct ct_radau_stages change;      // corrections, first in the basis of eigenvectors
     double h;                           // the step of the weights that follow
     double slope[STAGES][STAGES], defect_of[STAGES]; // A^-1/h and E/h
-    double ratio;                   // this step over the one before, of the weights that follow
-    double further[STAGES][STAGES]; // extrapolation of the last collocation polynomial
-    double further_lam[STAGES][STAGES]; // the same for multipliers
-    bool knows_multipliers;             // those of the last step are for the same rows
+    double ratio; // this step over the one before, of the weights that follow
+    double extrapolation[STAGES][STAGES]; // extrapolation of the last collocation polynomial
+    double extrapolation_lam[STAGES][STAGES]; // the same for multipliers
+    bool knows_multipliers;                   // those of the last step are for the same rows
     struct ct_tolerance step_tolerance, estimate_tolerance;
     double *rate, *F, *r;        // u' (nu); residuals of d' and u'  (nu x 3)
     double *phi, *v;             // (rows x 3)
@@ -69,14 +69,14 @@ struct ct_radau {
     double *gain, *defect;       // of quadratures: over h; error over h / GAMMA  (ny)
     double *power, *power1;      // their rates at both ends  (ny)
     // fast modes in the error estimate, see radau_error.c
-    bool counts_slow_only;    // fast modes of speeds did not count at the last estimate
-    int unchecked;            // steps until the next estimate
-    double *largest_speed;    // largest |u| at estimates so far  (nu)
-    double *largest_position; // largest coordinate of each speed  (nu)
-    double *expected;         // predicted positions and speeds  (2 nu)
-    struct ct_lost_vibration {
+    bool leaves_out_fast_modes; // fast modes of speeds did not count at the last estimate
+    int checks_to_skip;         // steps until the next estimate
+    double *largest_speed;      // largest |u| at estimates so far  (nu)
+    double *largest_position;   // largest coordinate of each speed  (nu)
+    double *predicted;          // predicted positions and speeds  (2 nu)
+    struct ct_dissipation_error {
         double all, rate; // change of outputs: without all vibrations; by dissipation, over h^5
-    } lost;
+    } dissipation;
     double largest_work; // at estimates so far
     struct {
         double h;     // the step of the last estimate; 0: none
@@ -130,7 +130,7 @@ enum ct_eval ct_radau_estimate(struct ct_radau *s, const struct ct_problem *p,
                                struct ct_integrate_stats *stats);
 /// The larger of err, the error of the states, and the errors of outputs and quadratures.
 double ct_radau_error_of_outputs(struct ct_radau *s, const struct ct_problem *p, double t1,
-                                 const double *y, const struct ct_tolerance *eased,
+                                 const double *y, const struct ct_tolerance *estimate_tol,
                                  const double *y1, double err);
 /// The tolerance of the error estimate, which is of order 3, that belongs to a tolerance of the
 /// step.
@@ -138,9 +138,9 @@ const struct ct_tolerance *ct_radau_estimate_tolerance(struct ct_radau *s,
                                                        const struct ct_tolerance *tolerance);
 /// The error that the Newton iteration leaves in sensitive outputs (8.11) at the end of the step,
 /// y1, dy1, where 1 is the tolerance. Small errors of positions are large errors of stiff forces.
-double ct_radau_imbalance(struct ct_radau *s, const struct ct_problem *p,
-                          const struct ct_tolerance *eased, double t1, const double *y1,
-                          const double *dy1, double states);
+double ct_radau_iteration_error(struct ct_radau *s, const struct ct_problem *p,
+                                const struct ct_tolerance *estimate_tol, double t1,
+                                const double *y1, const double *dy1, double states);
 /// ct_method.dense_error; slope: weights of the stages in the rates there.
 enum ct_eval ct_radau_dense_error(struct ct_radau *s, const struct ct_problem *p, double t,
                                   const double *slope, double *y, double *err,

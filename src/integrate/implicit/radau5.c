@@ -69,7 +69,7 @@ static void *create(struct ct_arena *a, const struct ct_method *method,
         *stages_of_rows[i] = CT_NEWN(a, double, STAGES *m + 1);
     for (size_t i = 0; i < COUNT(speeds); i++)
         *speeds[i] = CT_NEWN(a, double, nu + 1);
-    s->expected = CT_NEWN(a, double, 2 * nu + 1);
+    s->predicted = CT_NEWN(a, double, 2 * nu + 1);
     s->lam = CT_NEWN(a, double, m + 1);
     s->q = CT_NEWN(a, double, p->dae->nq + 1);
     s->gain = CT_NEWN(a, double, p->ny);
@@ -86,7 +86,7 @@ static void restart(void *work)
     s->is_fresh = true;
     s->was_tried = false;
     s->vibration_check.h = 0;
-    s->lost = (struct ct_lost_vibration){0};
+    s->dissipation = (struct ct_dissipation_error){0};
     ct_newton_iteration_forget(s->it);
 }
 
@@ -132,9 +132,9 @@ static void find_weights(struct ct_radau *s, double h)
     }
     s->h = h;
     for (int i = 0; i < STAGES && s->ratio != ratio; i++) {
-        lagrange(s->further[i], 1 + C[i] * ratio);
-        s->further[i][STAGES - 1] -= 1;
-        lagrange_inner(s->further_lam[i], 1 + C[i] * ratio);
+        lagrange(s->extrapolation[i], 1 + C[i] * ratio);
+        s->extrapolation[i][STAGES - 1] -= 1;
+        lagrange_inner(s->extrapolation_lam[i], 1 + C[i] * ratio);
     }
     s->ratio = ratio;
 }
@@ -154,13 +154,13 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
                 u[k] = C[i] * h * u_dot0[k];
             }
         } else {
-            ct_radau_weigh(d, s->further[i], s->before.d, nu);
-            ct_radau_weigh(u, s->further[i], s->before.u, nu);
+            ct_radau_weigh(d, s->extrapolation[i], s->before.d, nu);
+            ct_radau_weigh(u, s->extrapolation[i], s->before.u, nu);
         }
         for (int k = 0; k < m; k++)
             now->eta[k + i * m] = 0;
         if (s->knows_multipliers)
-            ct_radau_weigh(now->lam + i * m, s->further_lam[i], s->before.lam, m);
+            ct_radau_weigh(now->lam + i * m, s->extrapolation_lam[i], s->before.lam, m);
         else
             ct_stepper_copy(now->lam + i * m, s->lam, m);
     }
@@ -169,7 +169,7 @@ static void predict(struct ct_radau *s, double h, const double *u0, const double
 // ---- the iteration ------------------------------------------------------------------------------
 
 // Position and speed of stage i.
-static inline void place_stage(struct ct_radau *s, const double *y, int i)
+static inline void set_stage(struct ct_radau *s, const double *y, int i)
 {
     const int nq = s->dae->nq, nu = s->dae->nu;
     ct_newton_iteration_move(s->dae, y, s->now.d + i * nu, s->q);
@@ -186,7 +186,7 @@ static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y
     for (int i = 0; i < STAGES; i++) {
         double *F = s->F + i * nu;
         const double *rate = dae->is_plain ? s->u : s->rate;
-        place_stage(s, y, i);
+        set_stage(s, y, i);
         if (!dae->is_plain)
             dae->chart_rate(dae->user, z->d + i * nu, s->u, s->rate);
         ct_radau_weigh(F, s->slope[i], z->d, nu);
@@ -206,7 +206,7 @@ static enum ct_eval find_residuals(struct ct_radau *s, double t, const double *y
 }
 
 // Transforms stages z (n x 3) to the basis of eigenvectors (T^-1) or back (T).
-static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
+static inline void transform(double *z, const double (*turn)[STAGES], int n)
 {
     for (int k = 0; k < n; k++) {
         const double x[STAGES] = {z[k], z[k + n], z[k + 2 * n]};
@@ -216,7 +216,7 @@ static inline void turn_basis(double *z, const double (*turn)[STAGES], int n)
 }
 
 // The elimination of speeds in solve_complex, for sparse matrices.
-static void reduce_sparse(struct ct_radau *s, double a, double b)
+static void eliminate_speeds_sparse(struct ct_radau *s, double a, double b)
 {
     const struct ct_newton *matrix = s->it->sparse;
     const int nu = s->it->nu, m = s->it->m;
@@ -238,7 +238,7 @@ static inline void solve_complex(struct ct_radau *s, const int nu, const int m)
            *eta = s->change.eta + m;
     const bool is_sparse = nu > CT_MOST_INVERTED && it->sparse;
     if (is_sparse)
-        reduce_sparse(s, a, b);
+        eliminate_speeds_sparse(s, a, b);
     for (int j = 0; j < nu && !is_sparse; j++) {
         const double *M = it->M + nu * j, *damping = it->C + nu * j, *J = it->J + m * j;
         ct_vector_add(r, a * F[j] - b * G[j], M, (size_t)nu);
@@ -274,18 +274,18 @@ static inline void add(double *z, const double *change, int n)
 }
 
 // Solves for corrections, adds them to the stages and returns their norm.
-static inline double change_stages(struct ct_radau *s, const int nu, const int m)
+static inline double correct_stages(struct ct_radau *s, const int nu, const int m)
 {
-    turn_basis(s->F, T_INVERSE, nu);
-    turn_basis(s->r, T_INVERSE, nu);
-    turn_basis(s->phi, T_INVERSE, m);
-    turn_basis(s->v, T_INVERSE, m);
+    transform(s->F, T_INVERSE, nu);
+    transform(s->r, T_INVERSE, nu);
+    transform(s->phi, T_INVERSE, m);
+    transform(s->v, T_INVERSE, m);
     ct_radau_solve(s, nu, m);
     solve_complex(s, nu, m);
-    turn_basis(s->change.d, T, nu);
-    turn_basis(s->change.u, T, nu);
-    turn_basis(s->change.lam, T, m);
-    turn_basis(s->change.eta, T, m);
+    transform(s->change.d, T, nu);
+    transform(s->change.u, T, nu);
+    transform(s->change.lam, T, m);
+    transform(s->change.eta, T, m);
     add(s->now.d, s->change.d, STAGES * nu);
     add(s->now.u, s->change.u, STAGES * nu);
     add(s->now.lam, s->change.lam, STAGES * m);
@@ -304,10 +304,10 @@ static enum ct_eval correct(struct ct_radau *s, double t, const double *y,
         return e;
     // constant sizes let the compiler unroll loops for one and two degrees of freedom and for a
     // planar loop of three coordinates
-    const double size = nu == 3 && m == 2 ? change_stages(s, 3, 2)
-                      : m || nu > 2       ? change_stages(s, nu, m)
-                      : nu == 1           ? change_stages(s, 1, 0)
-                                          : change_stages(s, 2, 0);
+    const double size = nu == 3 && m == 2 ? correct_stages(s, 3, 2)
+                      : m || nu > 2       ? correct_stages(s, nu, m)
+                      : nu == 1           ? correct_stages(s, 1, 0)
+                                          : correct_stages(s, 2, 0);
     *verdict
         = ct_newton_iteration_test_convergence(s->it, size, s->change.d, s->change.u, STAGES);
     return CT_EVAL_OK;
@@ -323,7 +323,7 @@ static enum ct_eval refresh(struct ct_radau *s, double t, double h, const double
         return CT_EVAL_OK;
     if (s->is_fresh)
         return ct_newton_iteration_refresh(s->it, t, y, y + nq, dy + nq, s->lam, stats);
-    place_stage(s, y, middle);
+    set_stage(s, y, middle);
     ct_radau_weigh(s->u_dot, s->slope[middle], s->now.u, s->dae->nu);
     return ct_newton_iteration_refresh(s->it, t + C[middle] * h, s->q, s->u, s->u_dot, s->lam,
                                        stats);
@@ -361,8 +361,8 @@ static enum ct_eval iterate(struct ct_radau *s, double t, double h, const double
 }
 
 // Further corrections after convergence, down to round-off.
-static enum ct_eval iterate_on(struct ct_radau *s, double t, const double *y,
-                               struct ct_integrate_stats *stats)
+static enum ct_eval iterate_to_roundoff(struct ct_radau *s, double t, const double *y,
+                                        struct ct_integrate_stats *stats)
 {
     enum ct_convergence verdict = CT_ITERATING;
     ct_newton_iteration_continue(s->it);
@@ -387,7 +387,7 @@ static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, doubl
                            struct ct_integrate_stats *stats)
 {
     const int nq = s->dae->nq, nu = s->dae->nu, first = nq + nu, last = STAGES - 1;
-    const bool has_power = first < p->ny && !s->dae->has_no_power;
+    const bool has_power = first < p->ny && !s->dae->quadratures_are_constant;
     enum ct_eval e = CT_EVAL_OK;
     for (int k = first; k < p->ny; k++) {
         y1[k] = y[k];
@@ -395,7 +395,7 @@ static enum ct_eval finish(struct ct_radau *s, const struct ct_problem *p, doubl
         s->defect[k] = dy[k];
     }
     for (int i = has_power ? 0 : last; i < STAGES && e == CT_EVAL_OK; i++) {
-        place_stage(s, y, i);
+        set_stage(s, y, i);
         ct_stepper_copy(y1, s->q, nq);
         ct_stepper_copy(y1 + nq, s->u, nu);
         if (i == last && p->project) // removes the error that the iteration leaves
@@ -426,13 +426,15 @@ static enum ct_eval find_multipliers(struct ct_radau *s, double t, const double 
 }
 
 // y1 and dy1 from the stages, and the error of the states, where a tolerance is given.
-static enum ct_eval conclude(struct ct_radau *s, const struct ct_problem *p, double t, double h,
-                             const double *y, const double *dy,
-                             const struct ct_tolerance *eased, double *y1, double *dy1,
-                             double *err, struct ct_integrate_stats *stats)
+static enum ct_eval finish_with_estimate(struct ct_radau *s, const struct ct_problem *p,
+                                         double t, double h, const double *y, const double *dy,
+                                         const struct ct_tolerance *estimate_tol, double *y1,
+                                         double *dy1, double *err,
+                                         struct ct_integrate_stats *stats)
 {
-    enum ct_eval e
-        = eased ? ct_radau_estimate(s, p, eased, t, y, dy, y1, dy1, err, stats) : CT_EVAL_OK;
+    enum ct_eval e = estimate_tol
+                       ? ct_radau_estimate(s, p, estimate_tol, t, y, dy, y1, dy1, err, stats)
+                       : CT_EVAL_OK;
     if (e == CT_EVAL_OK)
         e = finish(s, p, t, h, y, dy, y1, dy1, stats);
     return e;
@@ -440,7 +442,7 @@ static enum ct_eval conclude(struct ct_radau *s, const struct ct_problem *p, dou
 
 // The error that the iteration may leave in sensitive outputs (8.11), as part of the tolerance.
 // Derived: the same as for states, kappa of RADAU5.
-static const double left_over = 0.03;
+static const double iteration_share = 0.03;
 
 static enum ct_eval step(const struct ct_problem *p, double t, double h, const double *y,
                          const double *dy, const struct ct_tolerance *tolerance, double *y1,
@@ -455,13 +457,13 @@ static enum ct_eval step(const struct ct_problem *p, double t, double h, const d
     if (e == CT_EVAL_OK)
         e = iterate(s, t, h, y, dy, stats);
     if (e == CT_EVAL_OK)
-        e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+        e = finish_with_estimate(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
     if (e == CT_EVAL_OK && tol
-        && ct_radau_imbalance(s, p, tol, t + h, y1, dy1, *err) > left_over) {
-        e = iterate_on(s, t, y, stats);
+        && ct_radau_iteration_error(s, p, tol, t + h, y1, dy1, *err) > iteration_share) {
+        e = iterate_to_roundoff(s, t, y, stats);
         if (e == CT_EVAL_OK)
-            e = conclude(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
-        if (e == CT_EVAL_OK && ct_radau_imbalance(s, p, tol, t + h, y1, dy1, *err) > 1)
+            e = finish_with_estimate(s, p, t, h, y, dy, tol, y1, dy1, err, stats);
+        if (e == CT_EVAL_OK && ct_radau_iteration_error(s, p, tol, t + h, y1, dy1, *err) > 1)
             e = CT_EVAL_RETRY;
     }
     if (e == CT_EVAL_OK && tol)
@@ -518,7 +520,7 @@ const struct ct_method ct_method_radau5 = {
     .order = 5,
     .error_order = 3,
     .is_implicit = true,
-    .steady = {1, 1.2},
+    .kept_range = {1, 1.2},
     .most_growth = 8,
     .create = create,
     .restart = restart,

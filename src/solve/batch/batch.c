@@ -477,7 +477,7 @@ bool ct_batch_load(struct ct_batch *s, int l, const struct ct_run_options *o)
         return false;
     ct_lane_limit_turn(s, l, 0, y);
     fill(s, l, y);
-    if (!ct_lane_take_bearings(s, l, 0, y, s->one_dy))
+    if (!ct_lane_reinitialize(s, l, 0, y, s->one_dy))
         return false;
     s->lane[l].state = CT_LANE_RUNNING;
     return true;

@@ -144,8 +144,8 @@ bool ct_lane_begin_events(struct ct_batch *s, int l, const struct ct_run_options
     return ct_run_settle_switches(r, 0, r->y, NULL) == CT_EVAL_OK && !s->m->has_rest;
 }
 
-bool ct_lane_take_bearings(struct ct_batch *s, int l, double t, const double *y,
-                           const double *dy)
+bool ct_lane_reinitialize(struct ct_batch *s, int l, double t, const double *y,
+                          const double *dy)
 {
     struct ct_lane *lane = &s->lane[l];
     if (!s->nroot)
@@ -265,7 +265,7 @@ static bool handle(struct ct_batch *s, int l, bool is_time)
     lane->control.is_starting = true;
     lane->pivot_last = INFINITY;
     ct_lane_limit_turn(s, l, t, s->one_y);
-    return ct_lane_take_bearings(s, l, t, s->one_y, s->one_dy);
+    return ct_lane_reinitialize(s, l, t, s->one_y, s->one_dy);
 }
 
 void ct_lane_pass(struct ct_batch *s, int l)

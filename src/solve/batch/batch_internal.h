@@ -217,8 +217,8 @@ void ct_lane_make_events(struct ct_batch *s);
 /// False: the motion cannot begin.
 bool ct_lane_begin_events(struct ct_batch *s, int lane, const struct ct_run_options *o);
 /// At t, y, where a member begins or an event has put it. False: roots cannot be evaluated.
-bool ct_lane_take_bearings(struct ct_batch *s, int lane, double t, const double *y,
-                           const double *dy);
+bool ct_lane_reinitialize(struct ct_batch *s, int lane, double t, const double *y,
+                          const double *dy);
 /// Plans the time at which steps must end next.
 double ct_lane_stop(const struct ct_lane *lane);
 /// A step with an event in it.

@@ -112,8 +112,8 @@ static const double *scatter(double *A, int n, size_t nu, const struct ct_slope 
     return value + ns;
 }
 
-static enum ct_eval evaluate_slopes(void *user, double t, const double *q, const double *u,
-                                    const double *a, const double *lam, const double **value)
+static enum ct_eval evaluate_jacobian(void *user, double t, const double *q, const double *u,
+                                      const double *a, const double *lam, const double **value)
 {
     struct ct_partition *s = user;
     set_input(s, t, q, u, a, lam);
@@ -133,7 +133,7 @@ static enum ct_eval tangent(void *user, double t, const double *q, const double 
     const struct ct_equations *e = s->m->e;
     const struct ct_residual *f = e->residual;
     const double *value;
-    const enum ct_eval result = evaluate_slopes(user, t, q, u, a, lam, &value);
+    const enum ct_eval result = evaluate_jacobian(user, t, q, u, a, lam, &value);
     if (result != CT_EVAL_OK)
         return result;
     int *place = s->iwork;
@@ -165,11 +165,12 @@ static int list_slopes(int *row, int *column, const struct ct_slope *s, size_t n
     return (int)n;
 }
 
-static const struct ct_slopes *find_slopes(struct ct_arena *a, const struct ct_equations *e)
+static const struct ct_jacobian_pattern *find_jacobian_pattern(struct ct_arena *a,
+                                                               const struct ct_equations *e)
 {
     const struct ct_residual *f = e->residual;
     const size_t n = f->ndq + f->ndu + f->nda + f->ndk + f->ndv + e->nJ;
-    struct ct_slopes *s = CT_NEW(a, struct ct_slopes);
+    struct ct_jacobian_pattern *s = CT_NEW(a, struct ct_jacobian_pattern);
     int *row = CT_NEWN(a, int, n + 1), *column = CT_NEWN(a, int, n + 1), i = 0;
     i += s->nK = list_slopes(row + i, column + i, f->dq, f->ndq);
     i += s->nC = list_slopes(row + i, column + i, f->du, f->ndu);
@@ -205,15 +206,15 @@ struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_partition *s)
                            .nstate = (int)e->nstate,
                            .scale = s->scale,
                            .is_plain = is_plain,
-                           .has_no_power = ct_ex_is_zero(e->power),
+                           .quadratures_are_constant = ct_ex_is_zero(e->power),
                            .rows = rows,
                            .retract = retract,
                            .chart_rate = chart_rate,
                            .start = start,
                            .residual = residual,
                            .tangent = tangent,
-                           .slopes = find_slopes(a, e),
-                           .evaluate_slopes = evaluate_slopes,
+                           .jacobian_pattern = find_jacobian_pattern(a, e),
+                           .evaluate_jacobian = evaluate_jacobian,
                            .active_rows = active_rows};
     dae->plan[1] = ct_newton_pattern_create(a, dae, true);
     dae->plan[0] = dae->most_rows ? ct_newton_pattern_create(a, dae, false) : dae->plan[1];

@@ -75,10 +75,12 @@ struct ct_constrained_output_record ct_constrained_output_record(struct ct_arena
 }
 
 void ct_constrained_output_clear(const struct ct_constrained_output *p,
-                                 struct ct_constrained_output_record *r, bool leaves_speeds)
+                                 struct ct_constrained_output_record *r,
+                                 bool violates_velocity_constraints)
 {
     const unsigned others
-        = 1u << CT_SYM_SWITCH | (leaves_speeds ? 1u << CT_SYM_U : 0); // what looks do not see
+        = 1u << CT_SYM_SWITCH
+        | (violates_velocity_constraints ? 1u << CT_SYM_U : 0); // what looks do not see
     r->skip = r->between = 0;
     for (size_t i = 0; i < r->n; i++) {
         r->is_found[i] = false;

@@ -34,11 +34,12 @@ ct_constrained_output_create(struct ct_arena *a, struct ct_controlled_outputs *o
                              const ct_ex *g);
 /// Of n outputs; all zero.
 struct ct_constrained_output_record ct_constrained_output_record(struct ct_arena *a, size_t n);
-/// A new run begins: nothing is known. p may be NULL: then no output is constrained. leaves_speeds:
-/// as in struct ct_method, speeds may violate the constraints after a step, so their outputs do
-/// count.
+/// A new run begins: nothing is known. p may be NULL: then no output is constrained.
+/// violates_velocity_constraints: as in struct ct_method, speeds may violate the constraints after
+/// a step, so their outputs do count.
 void ct_constrained_output_clear(const struct ct_constrained_output *p,
-                                 struct ct_constrained_output_record *r, bool leaves_speeds);
+                                 struct ct_constrained_output_record *r,
+                                 bool violates_velocity_constraints);
 /// Test which outputs the constraints determine at y (ny). While some are determined, only every
 /// second, fourth, then eighth call tests. Outputs that are not determined are not tested again.
 /// Nothing is found if the loops at y' cannot be closed. True: outputs were evaluated at another

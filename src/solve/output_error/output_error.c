@@ -265,7 +265,8 @@ void ct_output_error_start(struct ct_output_error *p, const struct ct_method *me
     for (size_t i = 0; i < p->n; i++) {
         ct_output_error_clear(&p->group[i].record);
         ct_constrained_output_clear(p->group[i].constrained_output,
-                                    &p->group[i].record.constrained, method->leaves_speeds);
+                                    &p->group[i].record.constrained,
+                                    method->violates_velocity_constraints);
         ct_output_sensitivity_start(p->group[i].sensitivity);
     }
 }

@@ -60,7 +60,7 @@ static double change_of_outputs(struct ct_run *r, double t, const double *y, con
 static double find_vibration_effect(struct ct_run *r, double t, const double *y)
 {
     const double before = ct_run_time_before_event(r, t), *e, *later;
-    if (r->stiffness->is_dead)
+    if (r->stiffness->has_decayed)
         return 0;
     if (r->has_sensitive_outputs)
         return 1;
@@ -78,9 +78,9 @@ bool ct_run_suspects_stiffness(struct ct_run *r, double t, const double *y)
     const bool may_stop = t > r->last_event && !(r->singular->time_to_singular < INFINITY);
     struct ct_stiffness *s = r->stiffness;
     if (r->method->is_implicit) {
-        const bool has_lost
-            = ct_trial_has_lost(&r->implicit, t, r->last_event, r->explicit_pace);
-        return (has_lost || r->has_jumped) && may_stop;
+        const bool is_slower
+            = ct_trial_is_slower(&r->implicit, t, r->last_event, r->explicit_time_per_work);
+        return (is_slower || r->has_jumped) && may_stop;
     }
     s->excited = r->last_event;
     const bool is_suspect = ct_stiffness_detect(s, t, y, r->o->duration);
@@ -147,7 +147,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
                              .stats = &r->stats,
                              .start = io->t0,
                              .end = io->t1,
-                             .has_to_damp = r->stiffness->is_far && !r->stiffness->is_dead};
+                             .must_damp = r->stiffness->is_far && !r->stiffness->has_decayed};
     const size_t ndiagnostic = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
     const double pending = r->pending, angle_rate = r->angle_rate,
                  t_angle_rate = r->t_angle_rate;
@@ -175,7 +175,7 @@ static double try_implicit(struct ct_run *r, const struct ct_problem *p,
     ct_evaluator_constraint(m);
     ct_partition_renew(r->s);
     r->spent = ct_trial_work(&trial);
-    return ct_trial_pace(&trial);
+    return ct_trial_time_per_work(&trial);
 }
 
 // Prepare the implicit method, and measure the time per work of the explicit one to compare with.
@@ -189,7 +189,7 @@ static void prepare_implicit(struct ct_run *r, struct ct_problem *p)
     r->method = r->o->stiff_method; // the functions called after a step depend on the method
     r->s->nearness = 1;
     r->implicit.cost = find_cost(r);
-    r->explicit_pace = ct_stiffness_pace(r->stiffness, &r->implicit.cost);
+    r->explicit_time_per_work = ct_stiffness_time_per_work(r->stiffness, &r->implicit.cost);
 }
 
 // The implicit method takes over. gain: NAN if there was no trial.
@@ -217,8 +217,9 @@ static void take_implicit(struct ct_run *r, struct ct_integrate_options *io, dou
 static double first_of_trial(const struct ct_run *r, const struct ct_integrate_options *io,
                              double least_gain)
 {
-    const double winning = least_gain * r->explicit_pace * ct_cost_step(&r->implicit.cost);
-    return r->stiffness->is_dead ? fmax(io->first_step, winning) : io->first_step;
+    const double winning
+        = least_gain * r->explicit_time_per_work * ct_cost_step(&r->implicit.cost);
+    return r->stiffness->has_decayed ? fmax(io->first_step, winning) : io->first_step;
 }
 
 // Change to the implicit method if it advances more for its work; true if it does. After a jump of
@@ -231,12 +232,12 @@ static bool switch_to_implicit(struct ct_run *r, struct ct_problem *p,
     // rods gained no time with a gain of 2.8, and its error was the tolerance instead of a
     // thousandth of it. Explicit steps at the limit of stability do not resolve the vibrations
     // either.
-    const bool gives_up = r->stiffness->is_far && !r->stiffness->is_dead
+    const bool gives_up = r->stiffness->is_far && !r->stiffness->has_decayed
                        && !ct_stiffness_is_unstable(r->stiffness);
     const double least_gain = gives_up ? 5 : 2;
     prepare_implicit(r, p);
     const double gain
-        = try_implicit(r, p, io, first_of_trial(r, io, least_gain)) / r->explicit_pace;
+        = try_implicit(r, p, io, first_of_trial(r, io, least_gain)) / r->explicit_time_per_work;
     if (gain < least_gain) {
         r->method = r->o->method;
         return false;
@@ -264,7 +265,8 @@ static void consider_explicit(struct ct_run *r, struct ct_problem *p,
         ct_stiffness_postpone(r->stiffness, io->t0, was_implicit ? 0 : r->spent,
                               &r->implicit.cost);
         if (was_implicit && !r->has_jumped)
-            ct_stiffness_compare_with(r->stiffness, r->implicit.pace, &r->implicit.cost);
+            ct_stiffness_compare_with(r->stiffness, r->implicit.time_per_work,
+                                      &r->implicit.cost);
     }
     r->has_jumped = false;
     r->report->method = r->method;

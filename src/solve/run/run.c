@@ -67,8 +67,8 @@ static double output_change(void *user, double t, const double *y, const double 
                                      least);
 }
 
-static void expect_output(void *user, double t, const double *y, const double *way,
-                          double times)
+static void predict_output(void *user, double t, const double *y, const double *way,
+                           double times)
 {
     struct ct_run *r = user;
     ct_output_error_expect_size(r->output_error, ct_run_time_before_event(r, t), y, way, times);
@@ -689,7 +689,7 @@ void ct_run_pose(struct ct_run *r, struct ct_problem *p, const bool *watched)
         .groups = ct_run_groups(r),
         .output_error = r->output_error ? output_error : NULL,
         .output_change = r->output_error ? output_change : NULL,
-        .expect_output = r->output_error ? expect_output : NULL,
+        .predict_output = r->output_error ? predict_output : NULL,
         .sensitive_output_error = r->output_error ? sensitive_output_error : NULL,
         .rhs = rhs,
         .project = has_constraints(r) ? project : NULL,

@@ -65,12 +65,12 @@ struct ct_run {
     const struct ct_problem *problem;     // that is integrated
     bool is_announced;                    // the forecast has been given
     struct ct_trial *trial;               // trial in progress; NULL: none
-    struct ct_trial implicit;   // time and work of the implicit method since it took over
-    double explicit_pace;       // time per work of the explicit method before
-    double spent;               // work of the last trial
-    bool is_suspect;            // steps were ended to consider another method
-    bool resolves_vibrations;   // steps are limited by the phase of vibrations
-    bool has_sensitive_outputs; // some output is sensitive at the start
+    struct ct_trial implicit;      // time and work of the implicit method since it took over
+    double explicit_time_per_work; // time per work of the explicit method before
+    double spent;                  // work of the last trial
+    bool is_suspect;               // steps were ended to consider another method
+    bool resolves_vibrations;      // steps are limited by the phase of vibrations
+    bool has_sensitive_outputs;    // some output is sensitive at the start
     // joints whose constraints are dependent at the start only; NULL: none
     const char *singular_joints;
     bool *is_given;  // (nu) speeds whose coordinates are given at the start
