@@ -1,10 +1,11 @@
 // See assembly.h.
 //
-// 1. Close the loops and meet the given values by Levenberg-Marquardt steps. The damping handles
+// 1. Close the loops and meet demanded values by Levenberg-Marquardt steps. The damping handles
 //    rows that become dependent at the solution.
-// 2. Minimise the distance of all other coordinates to their guesses by Gauss-Newton steps along
-//    the constraints, and close the loops after each step. This ends in a local minimum.
-// 3. Search for a nearer position from other starts.
+// 2. Minimise the distance of all other coordinates to their guesses by Gauss-Newton steps in
+//    the tangent space of the constraints. Close the loops after each step. This ends in a
+//    local minimum.
+// 3. Repeat 1 and 2 from other starting points in search of a nearer position.
 #include "solve/initial/assembly_internal.h"
 #include "formulate/beam/flexible_body.h"
 #include "numeric/dense.h"
@@ -16,8 +17,8 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 200 }; // Limit: of a search; a start that is not found is an error
-// Positions from which a closed position, and then a nearer one, is sought.
+enum { MOST_ITERATIONS = 200 }; // Limit: of one iteration; the assembly fails with a message
+// Starting points of the search for a closed position, and of that for a nearer one.
 // Default: time against positions nearer to the guesses. Test: nearest.
 enum { MOST_STARTS = 24 };
 static const double pi = 3.14159265358979323846; // Definition: of mathematics
@@ -29,7 +30,7 @@ static double measured(const struct ct_assembler *s, size_t i)
     return s->m->result.out[2 * i];
 }
 
-// Rotation vector from the target quaternion to the present one, component k: along it the rate of
+// Component k of the rotation vector from the target quaternion to the present one. The rate of
 // half its square is its product with the angular velocity, exactly.
 static double quaternion_error(const struct ct_assembler *s, size_t first, int k)
 {
@@ -72,8 +73,8 @@ static void add_row(struct ct_assembler *s, const int *column, const double *coe
     ct_sparse_rows_add(&s->A, column, coef, n, weight);
 }
 
-// Row i of the constraints, r its residual. Coefficients that are round-off of the row's natural
-// size (theory 6.5) are none: a row that repeats what the tree imposes leaves the speeds alone.
+// Row i of the constraints, r its residual. A row whose coefficients are round-off of its
+// natural size (theory 6.5) gets weight zero: it repeats a constraint that the tree satisfies.
 static void add_constraint(struct ct_assembler *s, size_t i, double r)
 {
     const struct ct_evaluator *m = s->m;
@@ -95,7 +96,7 @@ static void add_speed(struct ct_assembler *s, size_t i, double weight, double r)
             weight, r);
 }
 
-// Elastic coordinate i of all beams, which starts with what the model says.
+// Elastic coordinate i, counted over all beams.
 static const struct ct_elastic *elastic_of(const struct ct_assembler *s, size_t i)
 {
     const struct ct_flexible *f = s->e->build->flexible;
@@ -128,7 +129,7 @@ static void evaluate_rows(struct ct_assembler *s, bool with_memory)
     ct_sparse_rows_clear(&s->A);
 }
 
-// Rows of the positions at s->y: A d + r = 0.
+// Linearised position equations at s->y: A d + r = 0.
 static void position_rows(struct ct_assembler *s)
 {
     const size_t nc = s->e->ncoordinate;
@@ -148,7 +149,7 @@ static void position_rows(struct ct_assembler *s)
             add_speed(s, i, s->q[i].weight, r);
 }
 
-// The same for the speeds.
+// The same for speeds.
 static void velocity_rows(struct ct_assembler *s)
 {
     const size_t nc = s->e->ncoordinate;
@@ -167,7 +168,7 @@ static void velocity_rows(struct ct_assembler *s)
             add_speed(s, i, s->u[i].weight, out[2 * i + 1] - s->u[i].value);
 }
 
-// Largest residual of what must be met; sum of squares of what is wanted.
+// Largest residual of the rows that must be met.
 static double violation(const struct ct_assembler *s)
 {
     double worst = 0;
@@ -176,7 +177,8 @@ static double violation(const struct ct_assembler *s)
     return worst;
 }
 
-static double distance(const struct ct_assembler *s)
+// Sum of squares of the weighted deviations from the targets.
+static double square_distance(const struct ct_assembler *s)
 {
     double sum = 0;
     for (size_t i = s->nhard; i < s->A.n; i++)
@@ -186,7 +188,7 @@ static double distance(const struct ct_assembler *s)
 
 // ---- iterations ---------------------------------------------------------------------------------
 
-// Step into s->b towards what must be met: |A d + r|^2 + damping^2 |d|^2 becomes least.
+// s->b = d that minimises |A d + r|^2 + damping^2 |d|^2 over the rows that must be met.
 static void closing_step(struct ct_assembler *s, double damping)
 {
     for (size_t i = 0; i < s->nhard; i++)
@@ -195,19 +197,20 @@ static void closing_step(struct ct_assembler *s, double damping)
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// Gauss-Newton step into s->b: along the constraints, to the least distance from the guesses to
-// first order. Returns by how much the square of the distance falls to first order.
+// s->b = Gauss-Newton step: minimises the distance to first order, with the constraints
+// satisfied to first order. Returns the decrease of the squared distance to first order.
 static double nearest_step(struct ct_assembler *s)
 {
-    // Derived: 1e-6 of the smallest weight squared, so that steps are too short by 1e-6 of
-    // themselves, and four digits above round-off, which is what dependent rows leave.
+    // Derived: 1e-6 of the smallest weight squared. Steps are too short by 1e-6 of themselves.
+    // The damping is 1e4 times the round-off that dependent rows leave.
     const double damping = 1e-6 * ct_assembly_open_weight * ct_assembly_open_weight;
     const size_t n = s->A.n;
     double after = 0;
     memset(s->work, 0, n * sizeof *s->work);
     ct_damped_factor(s->nearest, &s->A, s->nhard, n, s->m->nu, damping);
-    // The first solution misses the constraints by the damping times their multipliers, which the
-    // second adds: near a singular configuration that is round-off, and seems to lead nearer.
+    // The first solution misses the constraints by the damping times their multipliers. The
+    // second solution corrects that. Near a singular configuration the error would be taken for
+    // a decrease.
     for (int solution = 0; solution < 2; solution++) {
         for (size_t i = 0; i < n; i++)
             s->b[i] = -s->r[i] - (i < s->nhard ? s->work[i] : 0);
@@ -217,7 +220,7 @@ static double nearest_step(struct ct_assembler *s)
     }
     for (size_t i = s->nhard; i < n; i++)
         after += s->work[i] * s->work[i];
-    return distance(s) - after;
+    return square_distance(s) - after;
 }
 
 // Close the loops from s->y by Levenberg-Marquardt steps; returns the largest residual.
@@ -227,8 +230,8 @@ static double close_loops(struct ct_assembler *s)
     for (int i = 0;; i++) {
         position_rows(s);
         const double worst = violation(s);
-        // convergence is quadratic: below the tolerance only round-off keeps a residual from
-        // halving
+        // convergence is quadratic: below the tolerance, a residual that is not halved is
+        // round-off
         if (!isfinite(worst) || worst <= 4 * DBL_EPSILON || i == MOST_ITERATIONS
             || (worst < ct_rank_tolerance && worst > before / 2))
             return worst;
@@ -238,7 +241,7 @@ static double close_loops(struct ct_assembler *s)
     }
 }
 
-// Copy the position to k, or back.
+// Copy coordinates and memory to k, or back.
 static void save(struct ct_assembler *s, struct ct_saved_position *k, bool back)
 {
     double *memory = s->m->input + s->m->at_memory;
@@ -247,18 +250,19 @@ static void save(struct ct_assembler *s, struct ct_saved_position *k, bool back)
     memcpy(back ? memory : k->memory, back ? k->memory : memory, nm * sizeof *memory);
 }
 
-// What round-off makes of the square of the distance, a sum, as a part of it.
-static double roundoff(const struct ct_assembler *s)
+// Relative round-off of the squared distance, a sum of that many terms.
+static double distance_roundoff(const struct ct_assembler *s)
 {
     return DBL_EPSILON * (double)(s->A.n - s->nhard);
 }
 
-// Take the step s->b or a part of it, with closed loops, so that it comes nearer to the guesses.
-// False where that would be less than round-off. gain: of the whole step to first order.
+// Take the step s->b or a fraction of it such that, with loops closed, the distance falls.
+// False if the decrease would be below round-off. gain: decrease for the whole step to first
+// order.
 static bool take_step(struct ct_assembler *s, double gain)
 {
     const size_t nu = s->m->nu;
-    const double before = distance(s), least = roundoff(s) * before;
+    const double before = square_distance(s), least = distance_roundoff(s) * before;
     double *d = s->step;
     memcpy(d, s->b, nu * sizeof *d);
     save(s, &s->before, false);
@@ -266,7 +270,7 @@ static bool take_step(struct ct_assembler *s, double gain)
         for (size_t k = 0; k < nu; k++)
             s->b[k] = part * d[k];
         ct_evaluator_retract(s->m, s->y, s->b);
-        if (close_loops(s) < ct_rank_tolerance && distance(s) < before)
+        if (close_loops(s) < ct_rank_tolerance && square_distance(s) < before)
             return true;
         save(s, &s->before, true);
     }
@@ -280,8 +284,9 @@ static double find_positions(struct ct_assembler *s)
     double worst = close_loops(s), before = INFINITY;
     for (int i = 0; i < MOST_ITERATIONS && worst < ct_rank_tolerance; i++) {
         const double gain = nearest_step(s), size = ct_vector_max_norm(s->b, s->m->nu);
-        // the last digits of the position are beyond those of the distance
-        const bool is_last = gain <= roundoff(s) * distance(s);
+        // the position can still be improved when the squared distance is stationary to
+        // round-off
+        const bool is_last = gain <= distance_roundoff(s) * square_distance(s);
         if (size <= 4 * DBL_EPSILON || (is_last ? !(size < before) : !take_step(s, gain)))
             break;
         if (is_last) {
@@ -296,12 +301,12 @@ static double find_positions(struct ct_assembler *s)
 static double find_velocities(struct ct_assembler *s)
 {
     double *u = s->y + s->m->nq, before = INFINITY;
-    for (bool is_met = false; !is_met;) { // linear: until steps are round-off
+    for (bool is_met = false; !is_met;) { // linear: iterate until steps are round-off
         velocity_rows(s);
         nearest_step(s);
         const double size = ct_vector_max_norm(s->b, s->m->nu);
         is_met = !(size < before);
-        if (is_met) { // the damping leaves out a little of what must be met
+        if (is_met) { // correct the error that the damping leaves
             velocity_rows(s);
             closing_step(s, ct_assembly_least_damping);
         }
@@ -315,7 +320,8 @@ static double find_velocities(struct ct_assembler *s)
 
 // ---- the stage ----------------------------------------------------------------------------------
 
-// Rows whose constant comes from the start (gears, rods of the initial length) hold at any place.
+// Rows whose constant is taken from the initial state (gears, rods of the initial length) hold
+// at any position.
 static void find_fixed_rows(struct ct_assembler *s, struct ct_arena *a)
 {
     struct ct_exs *x = s->e->x;
@@ -332,16 +338,16 @@ static void find_fixed_rows(struct ct_assembler *s, struct ct_arena *a)
     }
 }
 
-// Deterministic numbers in [-1, 1): same model, same start.
-static double chance(uint64_t *state)
+// Pseudo-random numbers in [-1, 1) from a fixed seed: the same model gives the same result.
+static double random_number(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
 
-// A small motion into s->b, larger from try to try: of joints, then of bodies, so that their
-// numbers do not depend on how many freedoms beams keep, which stay as they start.
-static void draw_motion(struct ct_assembler *s, int try)
+// s->b = random increments that grow with the try. Joints come first, then bodies. Elastic
+// coordinates stay, so that the numbers do not depend on how many there are.
+static void random_step(struct ct_assembler *s, int try)
 {
     uint64_t state = (uint64_t)try;
     const struct ct_u *u = s->e->u;
@@ -349,10 +355,10 @@ static void draw_motion(struct ct_assembler *s, int try)
     for (int of_bodies = 0; of_bodies < 2; of_bodies++)
         for (size_t k = 0; k < s->m->nu; k++)
             if (!u[k].beam && (u[k].joint < 0) == of_bodies)
-                s->b[k] = 0.15 * try * chance(&state);
+                s->b[k] = 0.15 * try * random_number(&state);
 }
 
-// From the targets, from the second try on moved a little, then more.
+// Set s->y to the targets; from the second try on, moved by a random step that grows.
 static void start_near_targets(struct ct_assembler *s, int try)
 {
     double *memory = s->m->input + s->m->at_memory;
@@ -364,7 +370,7 @@ static void start_near_targets(struct ct_assembler *s, int try)
     }
     ct_initial_state_of_beams(s->e, s->value, s->y, NULL);
     ct_evaluator_normalise(s->m, s->y);
-    draw_motion(s, try);
+    random_step(s, try);
     ct_evaluator_retract(s->m, s->y, s->b);
     const struct ct_topology *t = s->e->build->topology;
     for (size_t i = 0; i < s->e->nmemory; i++) {
@@ -380,8 +386,9 @@ static void start_near_targets(struct ct_assembler *s, int try)
     ct_evaluator_measure_rows(s->m);
 }
 
-// The joint of the first row that holds half a turn away from where it should; -1 if none does.
-static int half_turned_joint(struct ct_assembler *s)
+// The first joint that closes with its axes antiparallel instead of parallel; -1 if there is
+// none.
+static int antiparallel_joint(struct ct_assembler *s)
 {
     struct ct_evaluator *m = s->m;
     ct_evaluator_set(m, 0, s->y);
@@ -392,7 +399,7 @@ static int half_turned_joint(struct ct_assembler *s)
     return -1;
 }
 
-static bool report_half_turn(struct ct_assembler *s, int joint)
+static bool report_antiparallel(struct ct_assembler *s, int joint)
 {
     const struct ct_instance *self = &s->e->build->model->joint[joint];
     return ct_error(
@@ -404,41 +411,41 @@ static bool report_half_turn(struct ct_assembler *s, int joint)
 
 // ---- the nearest position -----------------------------------------------------------------------
 
-static bool is_open_coordinate(const struct ct_assembler *s, size_t i)
+static bool is_without_guess(const struct ct_assembler *s, size_t i)
 {
     const struct ct_target *t = &s->q[i];
     return t->wanted && !t->is_given && !t->is_guessed && s->e->coordinate[i].u >= 0
         && s->e->build->topology->edge[s->e->coordinate[i].edge].kind == CT_EDGE_JOINT;
 }
 
-// A small motion into s->b from the targets to a position to look from: what has no guess goes
-// anywhere within half a turn or the natural length, guesses at most `reach` [rad and natural
-// lengths], what is given stays.
-static void draw_search(struct ct_assembler *s, int search, double reach)
+// s->b = random increments from the targets to a starting point of the search. Coordinates
+// without a guess move within half a turn or the natural length, guesses by at most `reach`
+// [rad or natural lengths]. Demanded coordinates stay.
+static void random_start(struct ct_assembler *s, int search, double reach)
 {
     uint64_t state = (uint64_t)search;
     memset(s->b, 0, s->m->nu * sizeof *s->b);
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
         const struct ct_coordinate *c = &s->e->coordinate[i];
         const struct ct_target *t = &s->q[i];
-        if (is_open_coordinate(s, i)) {
+        if (is_without_guess(s, i)) {
             const double unit = ct_assembly_open_weight / t->weight;
             const bool is_rotation = t->in_quaternion || ct_assembler_is_turn(s, i);
-            s->b[c->u] = unit * (is_rotation ? pi : 1) * chance(&state);
+            s->b[c->u] = unit * (is_rotation ? pi : 1) * random_number(&state);
         } else if (t->is_guessed && c->u >= 0) {
-            s->b[c->u] = reach / t->weight * chance(&state);
+            s->b[c->u] = reach / t->weight * random_number(&state);
         }
     }
 }
 
-// May there be a position so much nearer that it is worth a search? `nearest` is a square.
+// Can a nearer position matter? A coordinate without a guess is always searched for.
 static bool may_be_nearer(const struct ct_assembler *s, double nearest)
 {
-    // Definition: docs/format.md; of 1800 random loops those with a nearer position were 0.5 away
-    // or more.
+    // Definition: docs/format.md. In 1800 random loops every nearer position that existed was
+    // nearer by 0.5 or more.
     const double near = 0.1;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
-        if (is_open_coordinate(s, i))
+        if (is_without_guess(s, i))
             return nearest > ct_rank_tolerance * ct_rank_tolerance;
     return nearest > near * near;
 }
@@ -447,33 +454,33 @@ static bool is_closed(struct ct_assembler *s, double residual)
 {
     if (s->filter->is_on)
         residual = fmax(residual, ct_loop_filter_missed(s, false));
-    return residual < ct_rank_tolerance && half_turned_joint(s) < 0
+    return residual < ct_rank_tolerance && antiparallel_joint(s) < 0
         && (!s->filter->is_on || ct_loop_filter_holds(s));
 }
 
-// s->y is a closed position, the nearest to the guesses so far. Replace it by a nearer one if
-// searches from other starts find one; of equally near ones the first stays.
+// s->y is a closed position. Replace it by a nearer one if the search finds one; of equally
+// near positions the first is kept.
 static void search_nearer(struct ct_assembler *s)
 {
-    double nearest = distance(s);
+    double nearest = square_distance(s);
     save(s, &s->best, false);
     for (int search = 0; search < MOST_STARTS && may_be_nearer(s, nearest); search++) {
         start_near_targets(s, 0);
-        if (search > 0) { // every second one leaves the guesses where they are
-            draw_search(s, search, search % 2 ? 0 : sqrt(nearest));
+        if (search > 0) { // every second one leaves guesses unchanged
+            random_start(s, search, search % 2 ? 0 : sqrt(nearest));
             ct_evaluator_retract(s->m, s->y, s->b);
         }
         if (!is_closed(s, find_positions(s))
-            || !(sqrt(distance(s)) < sqrt(nearest) - ct_rank_tolerance))
+            || !(sqrt(square_distance(s)) < sqrt(nearest) - ct_rank_tolerance))
             continue;
-        nearest = distance(s);
+        nearest = square_distance(s);
         save(s, &s->best, false);
     }
     save(s, &s->best, true);
     position_rows(s);
 }
 
-// The same with the data taken to their tolerance, where that is what they mean.
+// The same with rows filtered to the tolerance of the data, if that applies.
 static bool try_inexact(struct ct_assembler *s, int try, double *residual)
 {
     s->filter->is_on = true;
@@ -490,7 +497,8 @@ static bool try_exact(struct ct_assembler *s, int try, double *residual)
     return is_closed(s, *residual);
 }
 
-// Tries from positions further and further away, until one closes; then the nearest.
+// Close the loops from starting points at growing distance until one succeeds; then search for
+// a nearer position.
 static bool try_positions(struct ct_assembler *s, double *residual)
 {
     for (int try = 0; try < MOST_STARTS; try++) {
@@ -505,9 +513,9 @@ static bool try_positions(struct ct_assembler *s, double *residual)
     return false;
 }
 
-// Find positions, or speeds, with what is given as the only guesses; true if the rest is met. What
-// given values then miss is what contradicts: a compromise that leaves loops open as well misses
-// them by less.
+// Find positions, or speeds, with demanded values as the only guesses; true if the constraints
+// are met. The errors of demanded values then show what contradicts. A least-squares compromise
+// of both would show smaller errors.
 static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
 {
     const size_t n = s->e->ncoordinate;
@@ -525,7 +533,7 @@ static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
     return is_met;
 }
 
-// The first try's failure is the one to report.
+// On failure, errors are reported for the first starting point.
 static bool assemble_positions(struct ct_assembler *s, double *residual, bool *is_open)
 {
     if (try_positions(s, residual))
@@ -536,7 +544,7 @@ static bool assemble_positions(struct ct_assembler *s, double *residual, bool *i
         return true;
     *residual = find_positions(s);
     if (*residual < ct_rank_tolerance)
-        return report_half_turn(s, half_turned_joint(s));
+        return report_antiparallel(s, antiparallel_joint(s));
     const bool closes = is_met_with_guesses(s, false);
     if (!closes) {
         start_near_targets(s, 0);
@@ -545,7 +553,7 @@ static bool assemble_positions(struct ct_assembler *s, double *residual, bool *i
     return ct_assembler_report_positions(s, closes);
 }
 
-// From speeds that cannot be met.
+// Report speeds that cannot be met.
 static bool report_speeds(struct ct_assembler *s)
 {
     if (!is_met_with_guesses(s, true))
@@ -555,7 +563,7 @@ static bool report_speeds(struct ct_assembler *s)
     return ct_assembler_report_speeds(s);
 }
 
-// Without rows, and with all that is given or wanted among the unknowns, the targets are the start.
+// Without constraints, and with all targets among the unknowns, the targets are the solution.
 static bool is_direct(const struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
@@ -575,7 +583,8 @@ static void take_targets(struct ct_assembler *s)
     ct_initial_state_of_beams(s->e, s->value, NULL, s->y + s->m->nq);
 }
 
-// first (nrow + 1, out), column (n, out) of entries that are listed row by row.
+// Compressed rows of entries that are listed row by row: first (nrow + 1, out), column (n,
+// out).
 static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_t n,
                          size_t nrow, size_t **first, int **column)
 {
@@ -589,8 +598,8 @@ static void list_entries(struct ct_arena *a, const struct ct_entry *entry, size_
         (*first)[i + 1] += (*first)[i];
 }
 
-// Coefficients of the measured speeds, which are linear in u. Only here: those of n bodies in a
-// chain are n^2.
+// Coefficients of the measured speeds, which are linear in u. They are not part of the
+// equations, as a chain of n bodies has n^2 of them.
 static void derive_speeds(struct ct_arena *a, struct ct_assembler *s)
 {
     const struct ct_equations *e = s->e;
@@ -654,8 +663,7 @@ static struct ct_assembler assembly_create(struct ct_ctx *ctx, struct ct_arena *
     return s;
 }
 
-// Angles may have come to their places by the long way: they start within half a turn of what is
-// asked.
+// Iterations may have added whole turns: bring angles within half a turn of their targets.
 static void drop_whole_turns(const struct ct_assembler *s, double *q)
 {
     for (size_t i = 0; i < s->e->ncoordinate; i++) {
@@ -665,7 +673,7 @@ static void drop_whole_turns(const struct ct_assembler *s, double *q)
     }
 }
 
-// From start values of the model to those of all coordinates.
+// From targets to values and speeds of all coordinates.
 static bool find_start(struct ct_assembler *s, struct ct_initial_state *out)
 {
     struct ct_evaluator *m = s->m;
@@ -739,13 +747,13 @@ bool ct_assembly_find(struct ct_assembly *s, struct ct_initial_state *out)
 }
 
 static bool assemble(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
-                     const struct ct_equations *e, bool may_gape, struct ct_initial_state *out)
+                     const struct ct_equations *e, bool may_stay_open,
+                     struct ct_initial_state *out)
 {
     *out = (struct ct_initial_state){0};
-    struct ct_arena *own
-        = ct_arena_create_under(a); // what is made here is needed for the start alone
+    struct ct_arena *own = ct_arena_create_under(a); // freed after the assembly
     struct ct_assembly *s = ct_assembly_create(ctx, own, model, e);
-    s->s.may_stay_open = may_gape;
+    s->s.may_stay_open = may_stay_open;
     s->q = CT_NEWN(a, double, e->ncoordinate + 1);
     s->u = CT_NEWN(a, double, e->ncoordinate + 1);
     s->is_given = CT_NEWN(a, bool, e->ncoordinate + 1);

@@ -8,14 +8,14 @@
 
 #include "solve/evaluator/evaluator.h"
 
-/// What the model asks of a coordinate's value or speed.
+/// Demand on, or guess of, the value or the speed of a coordinate.
 struct ct_target {
     bool is_given;   // a demand: must be met
     bool is_guessed; // a guess
-    bool wanted;  // counts in the distance: guesses, and with little weight values without one
-    double value; // demanded or guessed, else 0
-    // weight of a deviation [1/rad or 1/m]: for a guess 1 rad or one natural length counts 1
-    double weight;
+    // counts in the distance to be minimised: guesses, and with a small weight coordinates without
+    bool wanted;
+    double value;  // demanded or guessed, else 0
+    double weight; // of a deviation [1/rad or 1/m]: 1 per rad or natural length for a guess
     bool in_quaternion;
 };
 
@@ -23,33 +23,35 @@ struct ct_target {
 /// (eqs->coordinate).
 struct ct_initial_state {
     double *q, *u;
-    const bool *is_given; // (n) the value is demanded, not guessed or open
-    const struct ct_target *q_target, *u_target; // (n) what was asked of q and u
+    const bool *is_given;                        // (n) the value is demanded
+    const struct ct_target *q_target, *u_target; // (n) demands and guesses
     double length;                               // natural length of the mechanism [m]
-    const struct ct_equations *e;                // of the assembly
+    const struct ct_equations *e;                // the assembly's
     size_t n;
     double residual;      // largest |phi|
     bool is_inexact;      // loops close only to the tolerance of the data, by least squares
-    size_t freedoms;      // then: degrees of freedom of the loops, without those of beams
-    bool is_open;         // loops do not close: values are as wanted
+    size_t freedoms;      // degrees of freedom, without those of beams, if is_inexact
+    bool is_open;         // loops do not close: q and u are the targets
     double *elastic;      // elastic coordinates of all beams, beam by beam; NULL: undeformed
-    double *elastic_rate; // their rates; NULL: as `initial` of the beams says
+    double *elastic_rate; // their rates; NULL: those of the beams' `initial`
     size_t nelastic;
 };
 
-/// Find the start at t = 0. e: equations made with measure_all for trees through joints.
-/// Errors: CT_E_ASSEMBLY when the loops do not close, CT_E_START when given values contradict.
+/// Find the initial conditions at t = 0. e: equations made with measure_all for trees through
+/// joints.
+/// Errors: CT_E_ASSEMBLY when the loops do not close, CT_E_START when demanded values
+/// contradict.
 bool ct_assembly_solve(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                        const struct ct_equations *e, struct ct_initial_state *out);
 
-/// The same, but loops need not close. Then the start is open, and at rest but for given speeds;
-/// beams are bent later to close them.
+/// The same, but loops need not close. If they do not, the state is open and all speeds are
+/// zero but demanded ones; the initial equilibrium of beams closes the loops.
 bool ct_assembly_solve_open(struct ct_ctx *ctx, struct ct_arena *a,
                             const struct ct_model *model, const struct ct_equations *e,
                             struct ct_initial_state *out);
 
-/// The same in two parts, for one start after another while the values of the model's parameters
-/// change. The arrays of `out` are the assembly's and good until the next start.
+/// The same in two parts, for repeated assembly with other values of the model's parameters.
+/// `out` points to arrays of the assembly, valid until the next call.
 struct ct_assembly;
 struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
                                        const struct ct_model *model,
@@ -57,37 +59,38 @@ struct ct_assembly *ct_assembly_create(struct ct_ctx *ctx, struct ct_arena *a,
 bool ct_assembly_find(struct ct_assembly *s, struct ct_initial_state *out);
 
 /// Elastic coordinates q and speeds u (NULL: not wanted) of the beams whose `initial` gives a
-/// shape, with the values of the model's parameters.
+/// shape, for the present values of the model's parameters.
 void ct_initial_state_of_beams(const struct ct_equations *e, const double *value, double *q,
                                double *u);
 
-/// Does the start have the demanded values and speeds? Initial equilibrium of beams may have moved
-/// joints.
+/// Do the initial conditions have the demanded values and speeds? The initial equilibrium of
+/// beams may have moved joints.
 /// Errors: CT_E_START.
 bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *start);
 
-/// Has the start's state (nq + nu) of equations of motion e changed by more than a demand may?
+/// Has the initial state (nq + nu) of equations of motion e changed by more than the tolerance
+/// of demanded values?
 bool ct_start_has_moved(const struct ct_equations *e, const struct ct_initial_state *start,
                         const double *before, const double *after);
-/// Does the state `after` keep what is demanded? before (nq + nu): the start in the state of
-/// equations of motion e; after: the same on their constraints. Speeds count where with_speeds.
-/// Costs nothing where the two are the same but for round-off. Errors: CT_E_START.
+/// Does the state `after` keep the demanded values? before (nq + nu): initial state for the
+/// equations of motion e; after: the same projected onto their constraints. Speeds count where
+/// with_speeds. Returns at once where both are equal to round-off. Errors: CT_E_START.
 bool ct_start_is_kept(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_model *model,
                       const struct ct_equations *e, const struct ct_initial_state *start,
                       const double *before, const double *after, bool with_speeds);
 
-/// Is coordinate i of the start a length? Else it is an angle or part of an orientation.
+/// Is coordinate i a length? Otherwise it is an angle or part of a quaternion.
 bool ct_start_is_length(const struct ct_initial_state *start, size_t i);
-/// A value as messages show it: round-off is 0.
+/// A value as shown in messages: round-off is shown as 0.
 double ct_start_shown(double value);
 
-/// Put a start into the state y (q, u, work) of an evaluator; memories of angles start at the
-/// values.
+/// Set the state y (q, u, work) of an evaluator and its memory of angles from the initial
+/// conditions.
 void ct_initial_state_apply(const struct ct_initial_state *s, struct ct_evaluator *m,
                             double *y);
 
-/// After the mechanism did not assemble: a note that names the one joint whose axis keeps it from
-/// moving in a plane, if there is one.  (misaligned_joint.c)
+/// After an assembly that failed: a note that names the joint whose axis is not normal to the
+/// plane in which all other joints move, if there is exactly one.  (misaligned_joint.c)
 void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a,
                               const struct ct_model *model);
 

@@ -1,17 +1,17 @@
-// Assembly with constraints that are redundant except for the last digits of the data; see
+// Assembly with constraints that are redundant within the tolerance of the data; see
 // assembly_internal.h.
 //
-// Example: a door on two coaxial hinges whose positions are given to some digits. Rows that should
-// be redundant leave singular values of the tolerance delta of the data, and gaps of that size. To
-// close the gaps exactly the door would have to turn by gap/delta, which may be anything. So the
-// component of these rows that is independent of the others is left out. With Q an orthonormal
-// basis of the columns of
+// Example: a door on two coaxial hinges whose positions have few digits. Rows that should be
+// redundant have singular values of the size delta of the data errors, and residuals of that
+// size. To close the loops exactly the door would have to turn by residual/delta, which is
+// arbitrary. So the component of these rows that is independent of the others is left out. Let
+// Q be an orthonormal basis of the columns of A, without those whose remainder in pivoted
+// Gram-Schmidt orthogonalisation is below the tolerance of the data:
 //
 //     A = [ N^-1 J S ]  loops, by natural sizes (6.5a)       A' = Q Q' A,   r' = Q Q' r
-//         [ w G S    ]  given values, w large: they are kept
+//         [ w G S    ]  demanded values, w large: they are kept
 //
-// without the columns that have less than the tolerance left, Newton's iteration on A', r' ends
-// where the sum of squares of the gaps is least.
+// Newton's iteration on A', r' ends where the sum of squares of the residuals is least.
 #include "solve/initial/assembly_internal.h"
 
 #include "numeric/dense.h"
@@ -19,9 +19,9 @@
 #include <math.h>
 #include <string.h>
 
-// Weight of given values against rows of loops that do not close exactly.
-// Derived: given values give way by the inverse square, 1e-6, of the gaps, which are 3e-5 at most:
-// 3e-11, less than what counts as met.
+// Weight of demanded values against rows of loops that do not close exactly.
+// Derived: demanded values are missed by the inverse square, 1e-6, of the residuals, which are
+// 3e-5 at most: 3e-11, within the tolerance of the assembly.
 static const double given_weight = 1e3;
 
 struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct_assembler *s)
@@ -42,7 +42,7 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
 
 // ---- the projection -----------------------------------------------------------------------------
 
-// v (n) -= its part in the first `rank` columns of Q, twice against round-off.
+// v (n) -= its projection on the first `rank` columns of Q, twice against round-off.
 static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
 {
     for (int again = 0; again < 2; again++)
@@ -50,8 +50,8 @@ static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
             ct_vector_add(v, -ct_vector_dot(Q + n * k, v, n), Q + n * k, n);
 }
 
-// Q (n x nu, out): basis of the columns of B (n x nu, destroyed) of which more than the tolerance
-// is left, the largest first. Returns their number.
+// Q (n x nu, out) = orthonormal basis of the columns of B (n x nu, destroyed) by Gram-Schmidt
+// with pivoting; columns with a remainder below the tolerance are left out. Returns the rank.
 static size_t find_basis(double *Q, double *B, size_t n, size_t nu)
 {
     size_t rank = 0;
@@ -80,7 +80,7 @@ static void project(double *x, double *image, const double *Q, size_t rank, size
     memcpy(x, image, n * sizeof *x);
 }
 
-// f->size: of the rows of s->A up to s->nhard.
+// f->size = natural sizes of the first nhard rows.
 static void find_sizes(const struct ct_assembler *s, const bool *is_loop)
 {
     const double *size = s->m->row_size;
@@ -92,7 +92,7 @@ static void find_sizes(const struct ct_assembler *s, const bool *is_loop)
         s->filter->size[n] = 1 / given_weight;
 }
 
-// Room for n entries, when rows are filtered first: most models' never are.
+// Allocate n entries when rows are first filtered: few models need it.
 static void reserve(struct ct_loop_filter *f, size_t n)
 {
     if (f->Q)
@@ -148,8 +148,8 @@ static int loop_rank(struct ct_assembler *s, double tolerance)
     return ct_evaluator_order_rows(s->m, s->m->J, tolerance, f->row, f->A, f->tau, f->work);
 }
 
-// The largest gap at s->y, against the sizes of rows.
-static double largest_gap(struct ct_assembler *s)
+// Largest residual of the loops at s->y, relative to the natural sizes of the rows.
+static double largest_residual(struct ct_assembler *s)
 {
     double open = 0;
     evaluate(s);
@@ -159,15 +159,16 @@ static double largest_gap(struct ct_assembler *s)
     return open;
 }
 
-// Gaps and singular values below this have no effect.
+// Residuals and singular values below this have no effect.
 // Derived: with the damping d = 1e-8 a singular value s counts by s^2/(s^2 + d^2) = 1e-6.
-static const double unmoved = 1e-11;
+static const double negligible = 1e-11;
 
 bool ct_loop_filter_is_due(struct ct_assembler *s)
 {
     if (!s->m->nrow || !s->m->nu)
         return false;
-    return largest_gap(s) > unmoved || loop_rank(s, unmoved) > loop_rank(s, ct_data_tolerance);
+    return largest_residual(s) > negligible
+        || loop_rank(s, negligible) > loop_rank(s, ct_data_tolerance);
 }
 
 // The loops alone, filtered, into s->A (nrow x nu) and s->r.
@@ -186,9 +187,9 @@ static void loop_rows(struct ct_assembler *s)
     ct_loop_filter_apply(s, NULL);
 }
 
-// s->b (nu) = the shortest vector with A b = -r: filtered rows have no singular values but
-// round-off and those above the tolerance of the data.
-static void shortest_step(struct ct_assembler *s)
+// s->b (nu) = minimum-norm solution of A b = -r. Filtered rows have no singular values between
+// round-off and the tolerance of the data.
+static void minimum_norm_step(struct ct_assembler *s)
 {
     for (size_t i = 0; i < s->nhard; i++)
         s->b[i] = -s->r[i];
@@ -197,30 +198,31 @@ static void shortest_step(struct ct_assembler *s)
     ct_damped_solve(s->closing, s->b, s->b);
 }
 
-// Move s->y by `way` [m or rad] along an arbitrary motion that the loops allow, and close the loops
-// again. False if that fails.
-static bool move(struct ct_assembler *s, double way)
+// Move s->y by `distance` [m or rad] in an arbitrary direction of the tangent space of the loops,
+// and close the loops again. False if that fails.
+static bool move_along_tangent(struct ct_assembler *s, double distance)
 {
     enum { MOST = 20 }; // Limit: of iterations; the data then count as not closing
-    // Derived: four digits below the tolerance of the data.
+    // Derived: 1e-4 of the tolerance of the data.
     const double closed = 1e-9;
     const size_t nu = s->m->nu;
     double *d = s->step;
     loop_rows(s);
     for (size_t k = 0; k < nu; k++)
-        d[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4; // in no simple relation
+        // golden-ratio sequence: an arbitrary direction
+        d[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4;
     ct_sparse_rows_times(s->r, &s->A, s->nhard, d);
-    shortest_step(s);
+    minimum_norm_step(s);
     ct_vector_add(s->b, 1, d, nu);
     const double size = ct_vector_largest(s->b, nu);
     for (size_t k = 0; k < nu && size > 0; k++)
-        s->b[k] *= way / size;
+        s->b[k] *= distance / size;
     for (int i = 0; i < MOST; i++) {
         ct_evaluator_retract(s->m, s->y, s->b);
         loop_rows(s);
-        shortest_step(s);
+        minimum_norm_step(s);
         const double step = ct_vector_largest(s->b, nu);
-        if (!(step < way))
+        if (!(step < distance))
             return false;
         if (step < closed)
             return true;
@@ -228,18 +230,18 @@ static bool move(struct ct_assembler *s, double way)
     return false;
 }
 
-// Beside a singular configuration rows depend on each other there alone: is the rank, to the
-// tolerance of the data, no more elsewhere?
-static bool is_rank_everywhere(struct ct_assembler *s)
+// At a singular configuration rows are dependent at that configuration alone. Does the rank, to
+// the tolerance of the data, not rise at other configurations?
+static bool is_rank_constant(struct ct_assembler *s)
 {
-    const double ways[] = {0.1, 0.3};
+    const double distances[] = {0.1, 0.3};
     const size_t ny = s->m->nq + s->m->nu;
     evaluate(s);
     const int here = loop_rank(s, ct_data_tolerance);
     bool is_same = true;
     memcpy(s->filter->kept_y, s->y, ny * sizeof *s->y);
-    for (size_t i = 0; i < COUNT(ways) && is_same && here < (int)s->m->nu; i++) {
-        const bool is_moved = move(s, ways[i]);
+    for (size_t i = 0; i < COUNT(distances) && is_same && here < (int)s->m->nu; i++) {
+        const bool is_moved = move_along_tangent(s, distances[i]);
         evaluate(s);
         is_same = is_moved && loop_rank(s, ct_data_tolerance) <= here;
         memcpy(s->y, s->filter->kept_y, ny * sizeof *s->y);
@@ -260,29 +262,31 @@ double ct_loop_filter_missed(const struct ct_assembler *s, bool of_speeds)
     return most;
 }
 
-// Is there no motion that makes the remaining gaps smaller? Near a singular configuration the
-// iteration may have ended before, at given values.
-static bool is_least(struct ct_assembler *s, double gap)
+// Are the residuals a minimum? Near a singular configuration the iteration may have stopped
+// earlier, at demanded values.
+static bool is_least(struct ct_assembler *s, double residual)
 {
-    // Part of the gap along the loops' basis, which is not that with given values: what is left out
-    // of a basis, up to the tolerance, over the columns kept turns it.
-    // Derived: columns kept are of size 1 to the tolerance, this is the middle of both.
-    const double turned = sqrt(ct_data_tolerance);
+    // Fraction of the residual that may lie in the range of the loops' filtered rows. Their
+    // basis differs from that with demanded values by an angle: the part left out, up to the
+    // tolerance, over the norm of the columns kept.
+    // Derived: columns kept have norms between the tolerance and 1; the geometric mean.
+    const double basis_angle = sqrt(ct_data_tolerance);
     loop_rows(s);
     double left = 0;
     for (size_t i = 0; i < s->m->nrow; i++)
         if (s->fixed_row[i])
             left = fmax(left, fabs(s->r[i]) / s->m->row_size[i]);
-    return left <= fmax(unmoved, turned * gap);
+    return left <= fmax(negligible, basis_angle * residual);
 }
 
 bool ct_loop_filter_holds(struct ct_assembler *s)
 {
-    // A gap that is only round-off: the data close exactly. Derived: 45 units of round-off.
+    // A residual that is only round-off: the data close exactly. Derived: 45 units of
+    // round-off.
     const double closed = 1e-14;
-    const double gap = largest_gap(s);
-    return gap > closed && gap <= ct_data_tolerance && is_least(s, gap)
-        && is_rank_everywhere(s);
+    const double residual = largest_residual(s);
+    return residual > closed && residual <= ct_data_tolerance && is_least(s, residual)
+        && is_rank_constant(s);
 }
 
 size_t ct_loop_filter_freedoms(struct ct_assembler *s)
@@ -307,8 +311,8 @@ void ct_loop_filter_warn(struct ct_assembler *s)
         s->ctx,
         row->joint < 0 ? (struct ct_mark){.file = model->file} : model->joint[row->joint].mark,
         0,
-        "joints repeat each other to the digits of their places only: the loops are closed "
-        "in the least-squares sense, '%s' stays open by %.2g%s; what constraints say "
-        "beyond the others is left out",
+        "joints are redundant only within the digits of their positions: the loops are closed "
+        "in the least-squares sense, and '%s' stays open by %.2g%s; the component of the "
+        "constraints that is independent of the others is left out",
         row->name, fabs(m->phi[worst]), row->is_length ? " m" : "");
 }

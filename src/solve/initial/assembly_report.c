@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-// By how much the start misses what `initial` gives a coordinate; 0 where it gives nothing.
-static double missed(const struct ct_assembler *s, size_t i, bool is_speed)
+// Error of a demanded value or speed; 0 where none is demanded.
+static double demand_error(const struct ct_assembler *s, size_t i, bool is_speed)
 {
     double r = 0;
     if (is_speed && s->u[i].is_given)
@@ -22,35 +22,37 @@ static struct ct_mark initial_mark(const struct ct_assembler *s, size_t i, bool 
     return is_turn ? turns->mark : ct_initial_value(e, is_speed)->mark;
 }
 
-// The given value that is missed most, with the others that are missed as notes; true if none is.
-static bool report_missed(struct ct_assembler *s, bool is_speed)
+// Report the demanded value with the largest error, and the others as notes; true if there is
+// none.
+static bool report_demand_errors(struct ct_assembler *s, bool is_speed)
 {
     enum { MOST_NOTES = 4 }; // Limit: of notes; the last one counts the others
     size_t worst = 0, nmissed = 0;
-    // of equal ones the first: round-off does not count
+    // of equal errors the first; differences by round-off do not count
     for (size_t i = 1; i < s->e->ncoordinate; i++)
-        if (missed(s, i, is_speed) > (1 + ct_rank_tolerance) * missed(s, worst, is_speed))
+        if (demand_error(s, i, is_speed)
+            > (1 + ct_rank_tolerance) * demand_error(s, worst, is_speed))
             worst = i;
-    const double most = s->e->ncoordinate ? missed(s, worst, is_speed) : 0;
+    const double most = s->e->ncoordinate ? demand_error(s, worst, is_speed) : 0;
     if (!(most > ct_rank_tolerance))
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g "
+             "initial %s contradict each other: %s'%s' of joint '%s' is demand_error by %.3g "
              "(demanded %.6g, found %.6g); mark what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
              s->e->build->topology->edge[c[worst].edge].self->name, most,
              is_speed ? s->u[worst].value : s->q[worst].value,
              ct_start_shown(s->m->result.out[2 * worst + is_speed]));
     for (size_t i = 0; i < s->e->ncoordinate; i++)
-        nmissed += i != worst && missed(s, i, is_speed) > ct_rank_tolerance;
+        nmissed += i != worst && demand_error(s, i, is_speed) > ct_rank_tolerance;
     for (size_t i = 0, n = 0; i < s->e->ncoordinate && n < MOST_NOTES; i++) {
-        if (i == worst || !(missed(s, i, is_speed) > ct_rank_tolerance))
+        if (i == worst || !(demand_error(s, i, is_speed) > ct_rank_tolerance))
             continue;
         const bool is_last = ++n == MOST_NOTES && nmissed > MOST_NOTES;
         ct_note(s->ctx, initial_mark(s, i, is_speed), "and %s'%s' of joint '%s', by %.3g%s",
                 is_speed ? "the rate of " : "", c[i].name,
-                s->e->build->topology->edge[c[i].edge].self->name, missed(s, i, is_speed),
+                s->e->build->topology->edge[c[i].edge].self->name, demand_error(s, i, is_speed),
                 is_last
                     ? ct_arena_printf(s->e->build->arena, "; %zu more", nmissed - MOST_NOTES)
                     : "");
@@ -58,7 +60,7 @@ static bool report_missed(struct ct_assembler *s, bool is_speed)
     return false;
 }
 
-// The row of the constraints that `residual` misses most, of those that count.
+// The constraint row with the largest residual among those that count.
 static size_t worst_row(const struct ct_assembler *s, const double *residual,
                         const bool *counts)
 {
@@ -81,7 +83,7 @@ static struct ct_mark row_mark(const struct ct_assembler *s, size_t row)
 
 bool ct_assembler_report_positions(struct ct_assembler *s, bool closes)
 {
-    if (closes && !report_missed(s, false))
+    if (closes && !report_demand_errors(s, false))
         return false;
     bool any_given = false;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
@@ -102,13 +104,13 @@ bool ct_assembler_report_positions(struct ct_assembler *s, bool closes)
 
 bool ct_assembler_report_speeds(struct ct_assembler *s)
 {
-    if (!report_missed(s, true))
+    if (!report_demand_errors(s, true))
         return false;
     const size_t row = worst_row(s, s->m->v, NULL);
     const int joint = s->e->row[row].joint;
     return ct_error(
         s->ctx, row_mark(s, row), CT_E_START,
-        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is missed "
+        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is demand_error "
         "by %.3g; check the rates of the motions",
         s->e->row[row].name, joint < 0 ? "" : " of joint '",
         joint < 0 ? "" : s->e->build->model->joint[joint].name, joint < 0 ? "" : "'",

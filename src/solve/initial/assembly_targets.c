@@ -8,8 +8,9 @@ const struct ct_value *ct_initial_value(const struct ct_edge_info *e, bool is_sp
     return is_speed ? &e->self->initial.u : &e->self->initial.q;
 }
 
-// Quaternion of successive turns given beside q.
-static void initial_turns(const struct ct_model *model, const struct ct_value *v, double p[4])
+// Quaternion p of the successive rotations of `rotate`.
+static void rotation_quaternion(const struct ct_model *model, const struct ct_value *v,
+                                double p[4])
 {
     p[0] = 1;
     p[1] = p[2] = p[3] = 0;
@@ -25,12 +26,12 @@ static void initial_turns(const struct ct_model *model, const struct ct_value *v
     }
 }
 
-bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int place,
+bool ct_initial_number(const struct ct_model *model, const struct ct_value *v, int index,
                        double *out)
 {
-    if (!v->given || (size_t)place >= v->n || (v->hole && v->hole[place]))
+    if (!v->given || (size_t)index >= v->n || (v->hole && v->hole[index]))
         return false;
-    *out = ct_model_number(model, v->e[place]);
+    *out = ct_model_number(model, v->e[index]);
     return true;
 }
 
@@ -44,12 +45,13 @@ static double square_distance(const double a[3], const double b[3])
     return square;
 }
 
-// The largest distance between two points of one body, the ground included, at which joints act; 1
-// m if there is none. It does not change when the mechanism is moved or turned.
+// Natural length: the largest distance between two points of one body, the ground included, at
+// which joints act; 1 m if there is none. It is invariant under rigid motion of the whole
+// mechanism.
 static double natural_length(const struct ct_assembler *s, const struct ct_model *model)
 {
     double largest = 0;
-    // frames of a body, chained; numbers plus one
+    // linked list of the frames of each body; frame index plus one, 0 ends it
     size_t *last = CT_NEWN(s->ctx->scratch, size_t, model->nbody + 1),
            *before = CT_NEWN(s->ctx->scratch, size_t, s->nframe + 1);
     for (size_t i = 0; i < s->nframe; i++) {
@@ -89,7 +91,7 @@ bool ct_assembler_is_turn(const struct ct_assembler *s, size_t i)
         && e->trial->measure[c->index].kind == CT_MEASURE_ANGLE;
 }
 
-// Not of a quaternion.
+// For coordinates that are not part of a quaternion.
 static bool is_length(const struct ct_equations *eqs, size_t i)
 {
     const struct ct_coordinate *c = &eqs->coordinate[i];
@@ -125,7 +127,7 @@ static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model
     bool given = ct_initial_number(model, &initial->q, c->index, &q->value);
     if (q->in_quaternion && initial->rotate.given) {
         double p[4];
-        initial_turns(model, &initial->rotate, p);
+        rotation_quaternion(model, &initial->rotate, p);
         q->value = p[c->index - k];
         given = true;
     }
@@ -137,11 +139,11 @@ static void joint_target(struct ct_assembler *s, size_t i, const struct ct_model
     u->is_given = given && !initial->guess;
     u->is_guessed = given && initial->guess;
     if (c->is_driven
-        || (!c->in_translation && !c->in_rotation)) // the motion holds the value; no freedom
+        || (!c->in_translation && !c->in_rotation)) // driven, or no degree of freedom
         *q = *u = (struct ct_target){.in_quaternion = q->in_quaternion};
 }
 
-// A body that hangs on no joint starts with its frame at the origin: its centre of mass at com.
+// A body without joints starts with its frame at the origin, its centre of mass at com.
 static void body_target(struct ct_assembler *s, size_t i, const struct ct_model *model)
 {
     const struct ct_coordinate *c = &s->e->coordinate[i];
@@ -165,7 +167,7 @@ static void body_target(struct ct_assembler *s, size_t i, const struct ct_model 
                                                    : (ct_ex){(uint32_t)(j == c->index)});
 }
 
-// Quaternions need not be given with length one.
+// Given quaternions need not have unit norm.
 static void normalise_target(struct ct_target *q)
 {
     double norm = 0;

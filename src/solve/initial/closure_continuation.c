@@ -33,7 +33,7 @@ void ct_closure_continuation_set(struct ct_static_residual *s, double part)
         const double sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]),
                      half = part * atan2(sine, q[0]), size = sine > 0 ? sin(half) / sine : 0;
         const double p[4] = {cos(half), size * q[1], size * q[2], size * q[3]};
-        for (int k = 0; k < 3; k++) { // 2 (p v + v v' - ...): columns of the rotation
+        for (int k = 0; k < 3; k++) { // column k of the rotation matrix of p
             const int l = (k + 1) % 3, n = (k + 2) % 3;
             double *R = memory + g->first;
             R[4 * k] = 2 * (p[0] * p[0] + p[1 + k] * p[1 + k]) - 1;
@@ -57,17 +57,18 @@ double ct_closure_continuation_remaining(struct ct_static_residual *s, size_t *r
     return worst;
 }
 
-// Where s->y is, of n places and m rows that count.
-struct local {
-    size_t nB;         // m, but for rows that are nearly dependent
-    double *B;         // nB vectors: the rows, orthonormal
-    double *J;         // m x n: the rows
-    double *force;     // (n)
-    size_t ntangent;   // directions along the rows
-    double *k, *shape; // their stiffness, ascending, and they (n x ntangent)
+// Tangent stiffness at s->y: n unknown coordinates, m independent rows.
+struct tangent_stiffness {
+    size_t nB;             // m without nearly dependent rows
+    double *B;             // (n x nB) orthonormal basis of the rows
+    double *J;             // (m x n) the rows
+    double *force;         // (n) Q + J' lam
+    size_t ntangent;       // dimension of the tangent space
+    double *value, *shape; // eigenvalues, ascending, and eigenvectors (n x ntangent) of Z' K Z
 };
 
-static void row_directions(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
+static void orthonormal_rows(struct ct_static_residual *s, struct ct_arena *a,
+                             struct tangent_stiffness *l)
 {
     const size_t n = s->n, m = s->nlam;
     struct ct_basis basis = {n, 0, CT_NEWN(a, double, n *n + 1)};
@@ -82,9 +83,9 @@ static void row_directions(struct ct_static_residual *s, struct ct_arena *a, str
     l->nB = basis.count;
 }
 
-// Multipliers that leave the least force: J' lam = -Q.
+// Multipliers by least squares: |Q + J' lam| is least.
 static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
-                             const struct local *l)
+                             const struct tangent_stiffness *l)
 {
     const size_t n = s->n, m = s->nlam;
     double *A = CT_NEWN(a, double, m *n + 1), *b = CT_NEWN(a, double, n + m + 1);
@@ -103,19 +104,20 @@ static void find_multipliers(struct ct_static_residual *s, struct ct_arena *a,
         s->lam[s->row[i]] = b[i];
 }
 
-// Forces, and eigenvalues and directions of the stiffness Z' K Z along the rows. False if they are
-// not found.
-static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct local *l)
+// Forces, and eigenvalues and eigenvectors of the stiffness Z' K Z in the tangent space. False
+// if the eigenvalue iteration fails.
+static bool find_tangent_stiffness(struct ct_static_residual *s, struct ct_arena *a,
+                                   struct tangent_stiffness *l)
 {
     const size_t n = s->n;
     ct_static_residual_choose_rows(s, a);
-    row_directions(s, a, l);
+    orthonormal_rows(s, a, l);
     find_multipliers(s, a, l);
     ct_static_residual_evaluate(s);
     ct_static_residual_fill(s);
     l->force = CT_NEWN(a, double, n + 1);
     memcpy(l->force, s->values.out, n * sizeof *l->force);
-    // Z: the basis goes on with what unit vectors have beyond the rows
+    // Z completes the basis of the rows to one of all unknowns
     struct ct_basis basis = {n, l->nB, l->B};
     double *v = CT_NEWN(a, double, n + 1);
     for (size_t k = 0; k < n; k++) {
@@ -135,9 +137,9 @@ static bool look_around(struct ct_static_residual *s, struct ct_arena *a, struct
             K[i + n * k] = -0.5 * (s->A[i + size * k] + s->A[k + size * i]);
     ct_matrix_multiply(KZ, K, Z, (int)n, (int)n, (int)nt);
     ct_matrix_multiply_transposed(direction, Z, KZ, (int)nt, (int)n, (int)nt);
-    l->k = CT_NEWN(a, double, nt + 1);
+    l->value = CT_NEWN(a, double, nt + 1);
     l->shape = CT_NEWN(a, double, n *n + 1);
-    if (!ct_symmetric_eigen(l->k, direction, (int)nt, (int)nt,
+    if (!ct_symmetric_eigen(l->value, direction, (int)nt, (int)nt,
                             CT_NEWN(a, double, ct_symmetric_eigenvalues_work((int)nt))))
         return false;
     ct_matrix_multiply(l->shape, Z, direction, (int)n, (int)nt, (int)nt);
@@ -152,8 +154,8 @@ static void step_by(struct ct_static_residual *s, const double *d, double part)
     ct_evaluator_retract(s->m, s->y, s->step);
 }
 
-// No entry is more than 1 m or rad, beyond which derivatives of rotations say nothing.
-static void limit(double *d, size_t n)
+// Scale d so that no entry exceeds 1 m or rad, where linearised rotations become invalid.
+static void limit_step(double *d, size_t n)
 {
     double size = 0;
     for (size_t k = 0; k < n; k++)
@@ -165,13 +167,13 @@ static void limit(double *d, size_t n)
 // Close the independent rows by minimum-norm steps.
 static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
 {
-    enum { MOST_CLOSINGS = 20 }; // Limit: of iterations; an open row is found by is_good
+    enum { MOST_CLOSINGS = 20 }; // Limit: of iterations; is_stable_equilibrium finds open rows
     const size_t n = s->n;
     for (int i = 0; i < MOST_CLOSINGS; i++) {
-        struct local l = {0};
+        struct tangent_stiffness l = {0};
         size_t row = 0;
         ct_static_residual_choose_rows(s, a);
-        row_directions(s, a, &l);
+        orthonormal_rows(s, a, &l);
         if (ct_closure_continuation_remaining(s, &row) < ct_rank_tolerance || !s->nlam)
             return;
         const size_t m = s->nlam;
@@ -181,7 +183,7 @@ static void close_rows(struct ct_static_residual *s, struct ct_arena *a)
         for (size_t r = 0; r < m; r++)
             b[r] = -s->values.out[n + (size_t)s->row[r]];
         ct_lstsq(b, l.J, (int)m, (int)n, (int)m, ct_rank_tolerance, iwork, work);
-        limit(b, n);
+        limit_step(b, n);
         step_by(s, b, 1);
     }
 }
@@ -202,10 +204,12 @@ static void keep(struct ct_static_residual *s, struct saved_state *k, bool back)
     memcpy(back ? s->lam : k->lam, back ? k->lam : s->lam, s->e->nrow * sizeof *s->lam);
 }
 
-// One step down the potential energy along the rows (9.2): Newton's step in directions with
-// positive stiffness, and with the stiffness's absolute value in others, away from a saddle. It is
-// halved while the forces at its end push back with more than half. Returns its size.
-static double descend(struct ct_static_residual *s, struct ct_arena *a, const struct local *l)
+// One minimisation step of the potential energy in the tangent space (9.2): Newton's step in
+// eigenvectors of positive stiffness; in others the absolute value of the stiffness is used,
+// which leads away from a saddle. The step is halved while the energy's slope at its end is
+// positive and more than half of that at its beginning. Returns its size.
+static double descend(struct ct_static_residual *s, struct ct_arena *a,
+                      const struct tangent_stiffness *l)
 {
     const size_t n = s->n;
     struct saved_state from = saved_state(s, a);
@@ -216,21 +220,21 @@ static double descend(struct ct_static_residual *s, struct ct_arena *a, const st
             along += l->shape[k + n * i] * l->force[k];
         for (size_t k = 0; k < n; k++)
             d[k] += l->shape[k + n * i] * along
-                  / fmax(fabs(l->k[i]), DBL_EPSILON * s->stiffness);
+                  / fmax(fabs(l->value[i]), DBL_EPSILON * s->stiffness);
     }
-    limit(d, n);
+    limit_step(d, n);
     for (size_t k = 0; k < n; k++) {
         push += d[k] * l->force[k];
         size = fmax(size, fabs(d[k]));
     }
     keep(s, &from, false);
     for (; part > DBL_EPSILON; part /= 2) {
-        struct local end = {0};
+        struct tangent_stiffness end = {0};
         keep(s, &from, true);
         step_by(s, d, part);
         close_rows(s, a);
         ct_static_residual_choose_rows(s, a);
-        row_directions(s, a, &end);
+        orthonormal_rows(s, a, &end);
         find_multipliers(s, a, &end);
         ct_static_residual_evaluate(s);
         double back = 0;
@@ -242,35 +246,36 @@ static double descend(struct ct_static_residual *s, struct ct_arena *a, const st
     return size * part;
 }
 
-// Are all rows closed, and is the equilibrium stable?
-static bool is_good(struct ct_static_residual *s, struct ct_arena *a)
+// Are all rows closed and the equilibrium stable?
+static bool is_stable_equilibrium(struct ct_static_residual *s, struct ct_arena *a)
 {
-    struct local l = {0};
+    struct tangent_stiffness l = {0};
     size_t row = 0;
     if (ct_closure_continuation_remaining(s, &row) > ct_rank_tolerance
-        || !look_around(s, a, &l))
+        || !find_tangent_stiffness(s, a, &l))
         return false;
-    return l.ntangent == 0 || l.k[0] > -ct_rank_tolerance * s->stiffness;
+    return l.ntangent == 0 || l.value[0] > -ct_rank_tolerance * s->stiffness;
 }
 
 // Newton's method from s->y.
 static bool find_equilibrium_here(struct ct_static_residual *s, struct ct_arena *a)
 {
     ct_static_residual_choose_rows(s, a);
-    return ct_static_residual_iterate(s, a) && is_good(s, a);
+    return ct_static_residual_iterate(s, a) && is_stable_equilibrium(s, a);
 }
 
-// Go down the potential energy from s->y, after a push of 1 m or rad that leaves a symmetric
-// configuration; try Newton's method after each step that needed no limit.
-static bool relax(struct ct_static_residual *s, struct ct_arena *a)
+// Minimise the potential energy from s->y. The first step, of 1 m or rad in the softest
+// eigenvector, leaves a symmetric configuration. Newton's method is tried after each step that
+// was not limited.
+static bool minimise_energy(struct ct_static_residual *s, struct ct_arena *a)
 {
     enum { MOST = 500 }; // Limit: of steps; Newton's method fails then, with a message
     double size = INFINITY;
     struct saved_state at = saved_state(s, a);
     for (int i = 0; i < MOST && size > sqrt(DBL_EPSILON); i++) {
         struct ct_arena *own = ct_arena_create_under(a);
-        struct local l = {0};
-        if (!look_around(s, own, &l) || !l.ntangent) {
+        struct tangent_stiffness l = {0};
+        if (!find_tangent_stiffness(s, own, &l) || !l.ntangent) {
             ct_arena_destroy(own);
             return false;
         }
@@ -295,8 +300,8 @@ static bool relax(struct ct_static_residual *s, struct ct_arena *a)
 
 bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a)
 {
-    // The smallest part of the gap that is closed at once; then the energy is followed instead.
-    // Chosen: small steps of continuation against the slower descent.
+    // Smallest fraction of the offsets that one step removes; below it the energy is minimised.
+    // Chosen: small steps of continuation against the slower minimisation.
     const double least = 1.0 / 16;
     struct saved_state at = saved_state(s, a);
     double open = 1, step = 1;
@@ -309,7 +314,7 @@ bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *
         if (!ok)
             keep(s, &at, true);
         if (!ok && step <= least)
-            ok = relax(s, own);
+            ok = minimise_energy(s, own);
         ct_arena_destroy(own);
         if (!ok && step <= least)
             return false;

@@ -26,9 +26,9 @@ bool *ct_initial_equilibrium_fixed_joints(struct ct_arena *a, const struct ct_mo
     return first;
 }
 
-// ---- what moves ----------------------------------------
+// ---- held coordinates ----------------------------------
 
-// Is the joint coordinate that moves at speed k given?
+// Is the value of the coordinate with speed k demanded?
 static bool is_given(const struct ct_equations *e, const struct ct_initial_state *start,
                      size_t k)
 {
@@ -38,16 +38,18 @@ static bool is_given(const struct ct_equations *e, const struct ct_initial_state
     return false;
 }
 
-// Speeds of joints and bodies that stay: those given, then others, as far as the loops leave them
-// free; beams that keep their shape stay, too. still (nu, out); the start is in the evaluator.
-static void find_still(struct ct_evaluator *m, struct ct_arena *a,
-                       const struct ct_initial_state *start, const bool *settles, bool *still)
+// Held coordinates, by speed: as many of joints and bodies as the loops leave independent,
+// demanded ones first, and beams that are not to be in equilibrium. held (nu, out). The
+// evaluator has the initial state.
+static void find_held(struct ct_evaluator *m, struct ct_arena *a,
+                      const struct ct_initial_state *start, const bool *in_equilibrium,
+                      bool *held)
 {
     const struct ct_equations *e = m->e;
     size_t n = 0;
     int *rigid = CT_NEWN(a, int, e->nu + 1);
     for (size_t k = 0; k < e->nu; k++) {
-        still[k] = e->u[k].beam && !settles[k];
+        held[k] = e->u[k].beam && !in_equilibrium[k];
         if (!e->u[k].beam)
             rigid[n++] = (int)k;
     }
@@ -64,16 +66,15 @@ static void find_still(struct ct_evaluator *m, struct ct_arena *a,
             if (is_given(e, start, (size_t)rigid[k]) == given) {
                 memset(v, 0, n * sizeof *v);
                 v[k] = 1;
-                still[rigid[k]] = ct_basis_extend(&s, v);
+                held[rigid[k]] = ct_basis_extend(&s, v);
             }
 }
 
 // ---- the start ----------------------------------------
 
-// Change the speeds in y of joints and bodies outside `still` so that the loops stay closed, as
-// little as possible; beams do not deform. False if that does not satisfy all loops.
-static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *still,
-                        double *y)
+// Change the speeds in y of joints and bodies that are not held so that v = 0, by the minimum
+// norm; beams do not deform. False if that does not satisfy all rows.
+static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *held, double *y)
 {
     const size_t nrow = m->nrow, nu = m->nu;
     double *A = CT_NEWN(a, double, nrow *nu + 1), *b = CT_NEWN(a, double, nrow + nu + 1);
@@ -84,7 +85,7 @@ static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *
     ct_evaluator_constraint(m);
     const double asked = ct_vector_largest(m->v, nrow);
     for (size_t k = 0; k < nu; k++) {
-        if (still[k] || m->e->u[k].beam)
+        if (held[k] || m->e->u[k].beam)
             continue;
         memcpy(A + nrow * (size_t)n, m->J + nrow * k, nrow * sizeof *A);
         free[n++] = (int)k;
@@ -100,30 +101,30 @@ static bool move_joints(struct ct_arena *a, struct ct_evaluator *m, const bool *
     return ct_vector_largest(m->v, nrow) <= ct_rank_tolerance * asked;
 }
 
-// The same if beams must deform: all speeds follow the motion of the equilibrium s.
+// The same where beams must deform: all speeds are rates of the equilibrium s.
 static bool move_all(struct ct_arena *a, struct ct_static_residual *s, struct ct_evaluator *m,
-                     const bool *still, double *y)
+                     const bool *held, double *y)
 {
     double *u = y + m->nq;
     for (size_t k = 0; k < m->nu; k++)
-        u[k] = still[k] ? u[k] : 0;
+        u[k] = held[k] ? u[k] : 0;
     ct_evaluator_set(m, 0, y);
     ct_evaluator_constraint(m);
     return ct_static_residual_rates(s, a, m->v, u);
 }
 
-// Speeds at the place found.
+// Speeds of all coordinates at the equilibrium.
 static void find_speeds(struct ct_arena *a, const struct ct_model *model,
                         struct ct_static_residual *s, const struct ct_equations *e,
-                        const bool *still, struct ct_initial_state *start)
+                        const bool *held, struct ct_initial_state *start)
 {
     struct ct_evaluator *m = ct_evaluator_create(a, model, e);
     const size_t ny = m->nq + m->nu + 1;
     double *y = CT_NEWN(a, double, ny), *first = CT_NEWN(a, double, ny);
     ct_initial_state_apply(start, m, y);
     memcpy(first, y, ny * sizeof *y);
-    if (!move_joints(a, m, still, y) && e->nrow == s->e->nrow && e->nu == s->e->nu
-        && move_all(a, s, m, still, first)) {
+    if (!move_joints(a, m, held, y) && e->nrow == s->e->nrow && e->nu == s->e->nu
+        && move_all(a, s, m, held, first)) {
         memcpy(y, first, ny * sizeof *y);
         start->elastic_rate = CT_NEWN(a, double, start->nelastic + 1);
         size_t n = 0;
@@ -138,8 +139,8 @@ static void find_speeds(struct ct_arena *a, const struct ct_model *model,
         start->u[i] = m->result.out[2 * i + 1];
 }
 
-static void take(const struct ct_static_residual *s, struct ct_arena *a,
-                 struct ct_initial_state *start)
+static void copy_result(const struct ct_static_residual *s, struct ct_arena *a,
+                        struct ct_initial_state *start)
 {
     const struct ct_build *b = s->e->build;
     size_t n = 0;
@@ -155,10 +156,12 @@ static void take(const struct ct_static_residual *s, struct ct_arena *a,
         start->q[i] = s->m->result.out[2 * i];
 }
 
-// Which elastic coordinates settle, by speed; the first beam of them, NULL: none.
-static const struct ct_body *find_settling(const struct ct_model *model,
-                                           const struct ct_equations *e, bool *settles,
-                                           struct ct_initial_state *start)
+// Elastic coordinates to be in equilibrium, by speed. Returns the first beam with such, or
+// NULL.
+static const struct ct_body *find_equilibrium_beams(const struct ct_model *model,
+                                                    const struct ct_equations *e,
+                                                    bool *in_equilibrium,
+                                                    struct ct_initial_state *start)
 {
     const struct ct_build *b = e->build;
     const struct ct_body *first = NULL;
@@ -167,7 +170,7 @@ static const struct ct_body *find_settling(const struct ct_model *model,
         start->nelastic += (size_t)f->nelastic;
         for (int j = 0; j < f->nelastic && f->beam->starts_in_equilibrium; j++) {
             first = first ? first : &model->body[f->body];
-            settles[f->elastic[j].u] = true;
+            in_equilibrium[f->elastic[j].u] = true;
         }
     }
     return first;
@@ -195,8 +198,8 @@ bool ct_initial_equilibrium_solve(struct ct_ctx *ctx, struct ct_arena *a,
                                   const struct ct_equations *moving,
                                   struct ct_initial_state *start)
 {
-    bool *settles = CT_NEWN(a, bool, e->nu + 1), *still = CT_NEWN(a, bool, e->nu + 1);
-    const struct ct_body *first = find_settling(model, e, settles, start);
+    bool *in_equilibrium = CT_NEWN(a, bool, e->nu + 1), *held = CT_NEWN(a, bool, e->nu + 1);
+    const struct ct_body *first = find_equilibrium_beams(model, e, in_equilibrium, start);
     if (!first)
         return true;
     struct ct_static_residual s
@@ -204,10 +207,10 @@ bool ct_initial_equilibrium_solve(struct ct_ctx *ctx, struct ct_arena *a,
     ct_initial_state_apply(start, s.m, s.y);
     memset(s.y + s.m->nq, 0, e->nmotion * sizeof *s.y);
     ct_evaluator_set(s.m, 0, s.y);
-    find_still(s.m, a, start, settles, still);
+    find_held(s.m, a, start, in_equilibrium, held);
     for (size_t k = 0; k < e->nu; k++) {
-        s.index[k] = still[k] ? -1 : (int)s.n;
-        if (!still[k])
+        s.index[k] = held[k] ? -1 : (int)s.n;
+        if (!held[k])
             s.u[s.n++] = (int)k;
     }
     ct_static_residual_derive(&s, a);
@@ -218,12 +221,12 @@ bool ct_initial_equilibrium_solve(struct ct_ctx *ctx, struct ct_arena *a,
     ct_static_residual_choose_rows(&s, a);
     if (!ct_static_residual_iterate(&s, a))
         return ct_error(
-            ctx, first->instance.mark, CT_E_SETTLE,
+            ctx, first->instance.mark, CT_E_INITIAL_EQUILIBRIUM,
             "no equilibrium was found near the undeformed shape of beam '%s'; the loads "
             "at t = 0 may be too large for it",
             first->instance.name);
-    take(&s, a, start);
+    copy_result(&s, a, start);
     if (e->nrow)
-        find_speeds(a, model, &s, moving, still, start);
+        find_speeds(a, model, &s, moving, held, start);
     return true;
 }

@@ -1,4 +1,4 @@
-// Copy a start into the state of an evaluator; see assembly.h.
+// Copy initial conditions into the state of an evaluator; see assembly.h.
 #include "solve/initial/assembly.h"
 #include "formulate/beam/flexible_body.h"
 #include "solve/evaluator/switch_state.h"
@@ -19,7 +19,7 @@ void ct_initial_state_of_beams(const struct ct_equations *e, const double *value
     }
 }
 
-// States of the model, which nothing constrains.
+// States of the model's differential equations, which are not constrained.
 static void start_states(const struct ct_model *model, const struct ct_equations *e, double *u)
 {
     for (size_t i = 0; i < e->nstate; i++)

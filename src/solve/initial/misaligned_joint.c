@@ -1,8 +1,9 @@
-// Diagnosis of a planar mechanism that does not close since one joint's `axis` is missing or wrong.
+// Diagnosis of a planar mechanism that does not close because the `axis` of one joint is
+// missing or wrong.
 //
-// The normal of the plane is passed from body to body: hinges about it, guides across it and welds
-// keep it. If all joints but one keep it, that one is most likely wrong. Only hinges, guides and
-// welds are considered: with other joints the mechanism is meant to be spatial.
+// The normal of the plane is propagated from body to body: revolute joints about it, prismatic
+// joints at right angles to it, and welds keep it. If all joints but one keep it, that one is
+// most likely wrong. A mechanism with other joints is taken to be spatial.
 #include "solve/initial/assembly.h"
 
 #include <math.h>
@@ -15,8 +16,8 @@ struct plane {
     bool *known;                       // (nbody)
 };
 
-// v = R v, or R' v, with the rotation by `angle` about the unit vector u.
-static void turn(const double u[3], double angle, double v[3])
+// v = R v with the rotation by `angle` about the unit vector u.
+static void rotate(const double u[3], double angle, double v[3])
 {
     const double c = cos(angle), s = sin(angle),
                  along = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
@@ -32,7 +33,7 @@ static void numbers(const struct ct_model *m, ct_ex3 e, double v[3])
         v[i] = ct_model_number(m, e.e[i]);
 }
 
-// Components in axes of a frame become those in axes of its body, or the other way round.
+// Transform components in a frame's axes into those in its body's axes; `back`: the reverse.
 static void to_body(const struct ct_model *m, int frame, bool back, double v[3])
 {
     const struct ct_frame *f = &m->frame[frame];
@@ -40,13 +41,13 @@ static void to_body(const struct ct_model *m, int frame, bool back, double v[3])
         double u[3];
         const struct ct_turn *t = &f->turn[back ? k : f->nturn - 1 - k];
         numbers(m, t->axis, u);
-        turn(u, (back ? -1 : 1) * ct_model_number(m, t->angle), v);
+        rotate(u, (back ? -1 : 1) * ct_model_number(m, t->angle), v);
     }
 }
 
-// Does the joint keep motion in the plane whose normal is n, in axes of its frames, to the digits
-// of typed data?
-static bool keeps(const struct plane *p, size_t joint, const double n[3])
+// Does the joint keep motion in the plane with normal n, in axes of its frames, within the
+// tolerance of the data?
+static bool keeps_plane(const struct plane *p, size_t joint, const double n[3])
 {
     const struct ct_measure *q = p->measure[joint];
     double a[3], along = 0;
@@ -59,8 +60,9 @@ static bool keeps(const struct plane *p, size_t joint, const double n[3])
                                        : fabs(along) < ct_data_tolerance;
 }
 
-// The joint `from` hands the normal on to one of its bodies from the other, if it keeps it.
-static bool hand_on(struct plane *p, size_t joint)
+// If the normal is known on one body of the joint, propagate it to the other, if the joint
+// keeps it.
+static bool propagate_normal(struct plane *p, size_t joint)
 {
     const struct ct_instance *j = &p->m->joint[joint];
     const int frame[2] = {j->from, j->to};
@@ -71,7 +73,7 @@ static bool hand_on(struct plane *p, size_t joint)
             continue;
         memcpy(n, p->normal[here], sizeof n);
         to_body(p->m, frame[end], true, n);
-        if (!keeps(p, joint, n))
+        if (!keeps_plane(p, joint, n))
             return false;
         to_body(p->m, frame[1 - end], false, n);
         memcpy(p->normal[there], n, sizeof n);
@@ -81,21 +83,21 @@ static bool hand_on(struct plane *p, size_t joint)
     return false;
 }
 
-static bool is_odd(const struct plane *p, size_t joint)
+static bool is_misaligned(const struct plane *p, size_t joint)
 {
     const struct ct_instance *j = &p->m->joint[joint];
     double n[3];
     memcpy(n, p->normal[p->m->frame[j->from].body], sizeof n);
     to_body(p->m, j->from, true, n);
-    return !keeps(p, joint, n);
+    return !keeps_plane(p, joint, n);
 }
 
-// The only joint that does not keep the plane of motion of the hinge `joint`. -1: there is none,
-// there are several, or no other hinge shares that plane.
-static int find_odd(struct plane *p, size_t joint)
+// The only joint that does not keep the plane normal to the revolute joint `joint`. -1: there
+// is none, there are several, or no other revolute joint shares that plane.
+static int find_misaligned(struct plane *p, size_t joint)
 {
     const struct ct_model *m = p->m;
-    int odd = -1, nodd = 0, nhinge = 0;
+    int misaligned = -1, nmisaligned = 0, naligned = 0;
     memset(p->known, 0, m->nbody * sizeof *p->known);
     const int body = m->frame[m->joint[joint].from].body;
     numbers(m, p->measure[joint]->about, p->normal[body]);
@@ -104,23 +106,23 @@ static int find_odd(struct plane *p, size_t joint)
     for (bool more = true; more;) {
         more = false;
         for (size_t i = 0; i < m->njoint; i++)
-            more |= hand_on(p, i);
+            more |= propagate_normal(p, i);
     }
     for (size_t i = 0; i < m->njoint; i++) {
         const struct ct_instance *j = &m->joint[i];
         if (!p->known[m->frame[j->from].body] || !p->known[m->frame[j->to].body])
             return -1;
-        if (is_odd(p, i)) {
-            odd = (int)i;
-            nodd++;
+        if (is_misaligned(p, i)) {
+            misaligned = (int)i;
+            nmisaligned++;
         } else {
-            nhinge += p->measure[i] && p->measure[i]->kind == CT_MEASURE_ANGLE;
+            naligned += p->measure[i] && p->measure[i]->kind == CT_MEASURE_ANGLE;
         }
     }
-    return nodd == 1 && nhinge > 1 ? odd : -1;
+    return nmisaligned == 1 && naligned > 1 ? misaligned : -1;
 }
 
-// How each joint moves; false if one does otherwise than hinges, guides and welds.
+// The measure of each joint; false if one is not revolute, prismatic or weld.
 static bool find_measures(struct ct_arena *a, struct plane *p)
 {
     const struct ct_model *m = p->m;
@@ -154,12 +156,12 @@ void ct_note_misaligned_joint(struct ct_ctx *ctx, struct ct_arena *a, const stru
     for (size_t i = 0; i < m->njoint; i++) {
         if (!p.measure[i] || p.measure[i]->kind != CT_MEASURE_ANGLE)
             continue;
-        const int odd = find_odd(&p, i);
-        if (odd < 0)
+        const int misaligned = find_misaligned(&p, i);
+        if (misaligned < 0)
             continue;
-        const bool is_hinge = p.measure[odd]->kind == CT_MEASURE_ANGLE;
-        ct_note(ctx, m->joint[odd].mark, "joint '%s' %s: is its 'axis' right?",
-                m->joint[odd].name,
+        const bool is_hinge = p.measure[misaligned]->kind == CT_MEASURE_ANGLE;
+        ct_note(ctx, m->joint[misaligned].mark, "joint '%s' %s: is its 'axis' right?",
+                m->joint[misaligned].name,
                 is_hinge ? "turns about another axis than all other hinges"
                          : "slides out of the plane in which all other joints move");
         return;

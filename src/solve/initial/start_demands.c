@@ -1,17 +1,17 @@
-// Test whether the start still has the values demanded by `initial`. See assembly.h.
+// Do the initial conditions still have the values demanded by `initial`? See assembly.h.
 //
-// The assembly meets demands or fails. Later the initial equilibrium of beams may move joints. The
-// equations of motion, with other trees, may also find another rank of the constraints; a degree of
-// freedom that is lost then loses its demanded speed.
+// The assembly meets demands or fails. Later the initial equilibrium of beams may move joints.
+// The equations of motion, on other trees, may also find another rank of the constraints. A
+// degree of freedom removed by that loses its demanded speed.
 #include "solve/initial/assembly_internal.h"
 
 #include <math.h>
 
-// Error of a demanded value that is accepted, relative to the value, or to 1 rad or the natural
-// length if that is more. A value whose degree of freedom is lost is missed by all of itself.
-// Derived: thirty times 3e-6, which round-off of constraints does to speeds 1e-5 rad from a
+// Tolerance of a demanded value, relative to the larger of the value and 1 rad or the natural
+// length. Where its degree of freedom is removed, the error is the whole value.
+// Derived: thirty times 3e-6, the effect of round-off in constraints on speeds 1e-5 rad from a
 // singular configuration.
-static const double kept = 1e-4;
+static const double demand_tolerance = 1e-4;
 
 double ct_start_shown(double value)
 {
@@ -24,14 +24,14 @@ static double unit_of(const struct ct_initial_state *s, const struct ct_target *
     return fmax(scale, fabs(value));
 }
 
-// Is what coordinate i has, of values or speeds, what is demanded?
+// Does coordinate i, or its speed, have its demanded value?
 static bool is_met(const struct ct_initial_state *s, size_t i, bool is_speed, double found)
 {
     const struct ct_target *t = is_speed ? &s->u_target[i] : &s->q_target[i];
     double away = fabs(found - t->value);
     if (!is_speed && t->in_quaternion) // p and -p are one orientation
         away = fmin(away, fabs(found + t->value));
-    return !t->is_given || away <= kept * unit_of(s, t, t->value);
+    return !t->is_given || away <= demand_tolerance * unit_of(s, t, t->value);
 }
 
 static bool report(struct ct_ctx *ctx, const struct ct_initial_state *s, size_t i,
@@ -50,7 +50,7 @@ static bool report(struct ct_ctx *ctx, const struct ct_initial_state *s, size_t 
                     ct_start_shown(found));
 }
 
-// The first of each joint that is not kept is reported.
+// Report the first demand of each joint that is not met.
 static bool compare(struct ct_ctx *ctx, const struct ct_initial_state *s, const double *q,
                     const double *u)
 {
@@ -73,12 +73,12 @@ bool ct_start_meets_demands(struct ct_ctx *ctx, const struct ct_initial_state *s
     return compare(ctx, start, start->q, start->u);
 }
 
-// Have unknowns changed by more than a demand may? Each against itself and 1, as its unit is not
-// known here.
+// Do unknowns differ by more than the tolerance of demands? Each is compared with the larger of
+// itself and 1, as its unit is not known here.
 static bool differs(const double *x, const double *y, size_t n, double scale)
 {
     for (size_t i = 0; i < n; i++)
-        if (!(fabs(x[i] - y[i]) <= kept * scale * fmax(1, fabs(x[i]))))
+        if (!(fabs(x[i] - y[i]) <= demand_tolerance * scale * fmax(1, fabs(x[i]))))
             return true;
     return false;
 }
@@ -86,7 +86,7 @@ static bool differs(const double *x, const double *y, size_t n, double scale)
 bool ct_start_has_moved(const struct ct_equations *e, const struct ct_initial_state *start,
                         const double *before, const double *after)
 {
-    if (!start->e) // a state that was not assembled: nothing is demanded
+    if (!start->e) // not from an assembly: nothing is demanded
         return false;
     const double scale = fmin(1, start->length);
     return differs(before, after, e->nq, scale)
@@ -101,8 +101,8 @@ bool ct_start_is_kept(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_mo
         return true;
     struct ct_arena *own = ct_arena_create_under(a);
     double *q = CT_NEWN(own, double, start->n + 1), *u = CT_NEWN(own, double, start->n + 1);
-    // with beams that have settled the equations for assembling know nothing of their shape:
-    // unknowns alone tell
+    // the assembly's equations do not have the shape of beams in equilibrium: compare unknowns
+    // alone
     if (!start->elastic)
         ct_start_read_back(ctx, own, model, e, start, after, q, u);
     for (size_t i = 0; i < start->n && start->elastic; i++) {

@@ -8,10 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-// Newton's method ends at a correction of this part of the largest coordinate.
+// Newton's method ends at a correction of this fraction of the largest coordinate.
 // Derived: 450 units of round-off.
-static const double met = 1e-13;
-// Limit: of the iteration and of a step in it; without convergence there is an error.
+static const double newton_tolerance = 1e-13;
+// Limit: of the iteration and of one step; without convergence there is an error
 enum { MOST_STEPS = 50, MOST_HALVINGS = 30 };
 
 // ---- rows ---------------------------------------------------------------------------------------
@@ -40,7 +40,7 @@ bool ct_basis_extend(struct ct_basis *s, double *v)
     return true;
 }
 
-// Independent rows in the directions that move.
+// Rows that are independent in the unknowns, by QR with column pivoting of the transpose.
 static void choose_rows(struct ct_static_residual *s, struct ct_arena *a)
 {
     const size_t m = s->e->nrow, n = s->n;
@@ -108,7 +108,7 @@ void ct_static_residual_evaluate(struct ct_static_residual *s)
     ct_program_run(&s->values, s->m->input);
 }
 
-// The direction of slopes by time: after places, speeds, accelerations and multipliers.
+// Index of the derivative by time: after coordinates, speeds, accelerations and multipliers.
 static size_t time_of(const struct ct_static_residual *s)
 {
     return 3 * s->e->nu + s->e->nrow;
@@ -127,7 +127,7 @@ void ct_static_residual_fill(struct ct_static_residual *s)
         }
     s->stiffness = s->stiffness > 0 ? s->stiffness : 1;
     for (size_t i = 0; i < s->nslope; i++) {
-        const size_t first = 3 * nu; // after places, speeds, accelerations
+        const size_t first = 3 * nu; // after coordinates, speeds, accelerations
         if (s->slope[i].direction < first || s->slope[i].direction == time_of(s))
             continue;
         const int lam = s->lam_index[s->slope[i].direction - first];
@@ -146,8 +146,8 @@ static bool factor(struct ct_static_residual *s)
     return ct_lu(s->A, s->pivot, size, size);
 }
 
-// Newton correction of positions and multipliers now, with the factors of an earlier derivative;
-// the size of the places'.
+// Newton correction d of coordinates and multipliers, with the factors of an earlier
+// derivative. Returns the largest correction of a coordinate.
 static double correction(struct ct_static_residual *s, double *d)
 {
     const size_t all = s->n + s->nlam;
@@ -171,8 +171,8 @@ static void move(struct ct_static_residual *s, const double *d, double factor)
         s->lam[s->row[i]] -= factor * s->stiffness * d[s->n + i];
 }
 
-// The largest coordinate; of the root of eps at least, so that corrections of eps m or rad are
-// none.
+// The largest coordinate, at least the root of eps, so that corrections of eps m or rad count
+// as zero.
 static double largest(const struct ct_static_residual *s)
 {
     double size = sqrt(DBL_EPSILON);
@@ -182,45 +182,46 @@ static double largest(const struct ct_static_residual *s)
     return size;
 }
 
-// kept (nq + nrow, out): the state.
-static void keep(const struct ct_static_residual *s, double *kept)
+// Save coordinates and multipliers in kept (nq + nrow, out).
+static void save_state(const struct ct_static_residual *s, double *kept)
 {
     memcpy(kept, s->y, s->m->nq * sizeof *kept);
     memcpy(kept + s->m->nq, s->lam, s->e->nrow * sizeof *kept);
 }
 
-static void take_back(struct ct_static_residual *s, const double *kept)
+static void restore_state(struct ct_static_residual *s, const double *kept)
 {
     memcpy(s->y, kept, s->m->nq * sizeof *kept);
     memcpy(s->lam, kept + s->m->nq, s->e->nrow * sizeof *kept);
 }
 
-// Is a correction that is followed by no smaller one round-off? Convergence is quadratic: from the
-// root of eps on a correction is followed by one of round-off.
+// Is a correction that is not followed by a smaller one round-off? Convergence is quadratic: a
+// correction of the root of eps is followed by one of round-off.
 static bool is_roundoff(const struct ct_static_residual *s, double size)
 {
     return size <= sqrt(DBL_EPSILON) * largest(s);
 }
 
-// Newton steps, halved until the next correction with the same derivative is smaller: that test
-// does not care how rows are scaled. Source: Deuflhard (2011), key deuflhard2011.
+// Newton steps, halved until the next correction with the same derivative is smaller. This
+// natural monotonicity test does not depend on the scaling of rows. Source: Deuflhard (2011),
+// key deuflhard2011.
 static bool iterate_damped(struct ct_static_residual *s, double *kept, double *d, double *next)
 {
     for (int step = 0; step < MOST_STEPS; step++) {
         if (!factor(s))
             return false;
         const double size = correction(s, d);
-        if (size <= met * largest(s))
+        if (size <= newton_tolerance * largest(s))
             return true;
-        keep(s, kept);
+        save_state(s, kept);
         double part = 1, left = INFINITY;
         for (int half = 0; half < MOST_HALVINGS && !(left < size); half++, part /= 2) {
-            take_back(s, kept);
+            restore_state(s, kept);
             move(s, d, part);
             ct_static_residual_evaluate(s);
             left = correction(s, next);
         }
-        if (!(left < size)) // only round-off is left, or there is nothing to find
+        if (!(left < size)) // converged to round-off, or failed
             return is_roundoff(s, size);
     }
     return false;
@@ -234,7 +235,7 @@ static bool iterate_full(struct ct_static_residual *s, double *d)
         if (!factor(s))
             return false;
         const double size = correction(s, d);
-        if (size <= met * largest(s))
+        if (size <= newton_tolerance * largest(s))
             return true;
         if (!(size < before))
             return is_roundoff(s, before);
@@ -245,19 +246,19 @@ static bool iterate_full(struct ct_static_residual *s, double *d)
     return false;
 }
 
-// A slender beam that bends is stretched so hard by it that the old derivative finds each step too
-// far, whereas the new one draws its axis in with the next step: full steps are tried where damped
-// ones find nothing.
+// Damped steps can fail for a slender beam: a bending step stretches its axis strongly, so the
+// correction with the old derivative is larger, while the new derivative removes the stretch in
+// the next step. Full steps are tried then.
 bool ct_static_residual_iterate(struct ct_static_residual *s, struct ct_arena *a)
 {
     const size_t all = s->n + s->nlam, state = s->m->nq + s->e->nrow;
     double *d = CT_NEWN(a, double, all + 1), *next = CT_NEWN(a, double, all + 1),
            *kept = CT_NEWN(a, double, state + 1), *start = CT_NEWN(a, double, state + 1);
-    keep(s, start);
+    save_state(s, start);
     ct_static_residual_evaluate(s);
     if (iterate_damped(s, kept, d, next))
         return true;
-    take_back(s, start);
+    restore_state(s, start);
     ct_static_residual_evaluate(s);
     return iterate_full(s, d);
 }
