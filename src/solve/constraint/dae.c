@@ -28,8 +28,8 @@ static void chart_rate(void *user, const double *d, const double *w, double *rat
     ct_evaluator_chart_rate(s->m, d, w, rate);
 }
 
-// Steps end at events. Up to that very instant the values before the event count: a piecewise
-// constant table jumps there, and the slope of a piecewise linear one does.
+// Steps end at events. A step that ends at an event uses values before it, since a piecewise
+// constant table is discontinuous there, and so is the slope of a piecewise linear one.
 static double time_before_event(const struct ct_partition *s, double t)
 {
     return s->pending ? ct_time_just_before(t, *s->pending) : t;
@@ -50,8 +50,8 @@ static enum ct_eval start(void *user, double t, const double *y, double *a, doub
     return CT_EVAL_OK;
 }
 
-// Copy n values, with code of its own for three, the number of a planar loop: a copy of general
-// length takes longer than the copying itself.
+// Copy n values. Three, the number for a planar loop, are copied by separate code: a call for
+// general length takes longer than the copy.
 static inline void copy_few(double *out, const volatile double *v, size_t n)
 {
     if (n != 3) {
@@ -98,8 +98,8 @@ static enum ct_eval residual(void *user, double t, const double *q, const double
     return CT_EVAL_OK;
 }
 
-// A (n x nu, out) from its entries; place[row] is the index of the row in A, or -1 if it is not in
-// it. Returns the end of the values.
+// A (n x nu, out) from its entries; place[row] is the row's index in A, or -1. Returns the end
+// of the values.
 static const double *scatter(double *A, int n, size_t nu, const struct ct_slope *s, size_t ns,
                              const double *value, const int *place)
 {

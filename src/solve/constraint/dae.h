@@ -9,8 +9,8 @@
 #include "integrate/problem.h"
 #include "solve/constraint/partition.h"
 
-/// Only the rows that the partitioning keeps are constraints; redundant rows have no multiplier.
-/// The equations must have a residual. Everything lives in a.
+/// The constraints are the rows retained by the partitioning; redundant rows have no multiplier.
+/// The equations must have a residual. Owned by a.
 struct ct_dae *ct_dae_create(struct ct_arena *a, struct ct_partition *s);
 
 #endif

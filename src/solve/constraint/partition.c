@@ -18,7 +18,7 @@ struct ct_partition *ct_partition_create(struct ct_arena *arena, struct ct_ctx *
                                          struct ct_evaluator *m)
 {
     const size_t n = m->nu, r = m->nrow, k = larger(n, r) + 1;
-    const size_t kk = m->e->has_dynamics || r ? k : 1; // else there is nothing to solve
+    const size_t kk = m->e->has_dynamics || r ? k : 1; // otherwise nothing is solved
     struct ct_partition *s = CT_NEW(arena, struct ct_partition);
     s->arena = arena;
     s->m = m;
@@ -52,7 +52,8 @@ struct ct_partition *ct_partition_create(struct ct_arena *arena, struct ct_ctx *
     return s;
 }
 
-// The largest entry of redundant rows in dependent columns: such a row could replace a kept one.
+// The largest entry of redundant rows in dependent columns: such a row could replace a retained
+// one.
 static double largest_redundant(const struct ct_partition *s)
 {
     double most = 0;
@@ -245,7 +246,7 @@ struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partiti
             }
         ct_sparse_rows_add(&v->A, column, value, n, 1);
     }
-    // directions with singular values below the rank tolerance have no part in solutions
+    // directions with singular values below the rank tolerance are excluded from solutions
     const double least = s->m->is_inexact ? ct_data_tolerance : ct_rank_tolerance;
     const double size = ct_sparse_rows_largest_column(&v->A, nu, nrow, value);
     ct_damped_factor(v->factors, &v->A, nu, nu, nrow, least * (size > 0 ? size : 1));
@@ -254,8 +255,8 @@ struct ct_null_space *ct_null_space_create(struct ct_arena *a, struct ct_partiti
 
 void ct_null_space_vector(struct ct_null_space *v, int row, double *z)
 {
-    // z less the least-squares solution x of J' x = J' z; the second pass removes the error of the
-    // damping
+    // z minus the least-squares solution x of J' x = J' z; the second pass removes the error of
+    // the damping
     struct ct_partition *s = v->s;
     const size_t nu = s->m->nu, nrow = s->m->nrow;
     memset(z, 0, nrow * sizeof *z);
@@ -269,8 +270,8 @@ void ct_null_space_vector(struct ct_null_space *v, int row, double *z)
 
 void ct_partition_uniqueness(struct ct_partition *s, struct ct_null_space *v)
 {
-    // The entry is the squared length of the unit vector's part in null(J'): 0 to round-off where
-    // the multiplier is unique, else usually of order one.
+    // The entry is the squared length of the unit vector's projection on null(J'): 0 to
+    // round-off where the multiplier is unique, else usually of order one.
     for (int k = 0; k < (int)s->m->nrow; k++) {
         ct_null_space_vector(v, k, s->r);
         s->is_unique[k] = fabs(s->r[k]) < CT_HALF_DIGITS;

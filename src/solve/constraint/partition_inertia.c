@@ -1,36 +1,37 @@
-// Inertia that is left to some speeds while others are free to follow; see partition_internal.h.
+// Inertia of some speeds while others are free: pivots of B' M B after elimination of the
+// others. See partition.h.
 #include "solve/constraint/partition_internal.h"
 
 #include <math.h>
 
-// Order of elimination (f, out) of the independent speeds: those that follow come first.
-static void order(const struct ct_partition *s, const bool *follows, int f, int *place)
+// Order of elimination (f, out) of the independent speeds: free ones first.
+static void find_order(const struct ct_partition *s, const bool *follows, int f, int *order)
 {
     int n = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < f; i++)
             if (follows[s->independent[i]] == !pass)
-                place[n++] = i;
+                order[n++] = i;
 }
 
-bool ct_partition_inertias(struct ct_partition *s, const bool *follows, double *left)
+bool ct_partition_inertias(struct ct_partition *s, const bool *follows, double *inertia)
 {
     const int f = (int)s->m->nu - s->rank;
     double *const S = s->S;
     for (size_t k = 0; k < s->m->nu; k++)
-        left[k] = NAN;
+        inertia[k] = NAN;
     if (s->rank && !ct_partition_factor(s))
         return false;
     ct_partition_reduce_mass(s, s->m->M);
     for (int j = 0; j < f; j++)
         for (int i = 0; i < j; i++)
             S[i + f * j] = S[j + f * i];
-    order(s, follows, f, s->iwork);
+    find_order(s, follows, f, s->iwork);
     for (int k = 0; k < f; k++) {
         const int p = s->iwork[k];
         const double pivot = S[p + f * p];
         if (!follows[s->independent[p]])
-            left[s->independent[p]] = pivot;
+            inertia[s->independent[p]] = pivot;
         if (!(pivot > 0))
             return true;
         for (int j = k + 1; j < f; j++) {

@@ -1,4 +1,4 @@
-// How near J is to losing rank; see partition_internal.h.
+// Distance of J from loss of rank; see partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/dense.h"
@@ -21,7 +21,8 @@ static bool find_strength(struct ct_partition *s)
     return ct_partition_is_sound(s);
 }
 
-// The largest lever [m] of a row of lengths, its coefficient of a rotation; 0: it has none.
+// The largest lever arm [m] of a row of lengths: its largest coefficient of a rotation; 0:
+// none.
 static double lever_of(const struct ct_partition *s, size_t row)
 {
     double lever = 0;
@@ -31,8 +32,8 @@ static double lever_of(const struct ct_partition *s, size_t row)
     return lever;
 }
 
-// Levers of all rows (nrow, out); all rows of a joint get the largest of them. A row may have no
-// lever in a configuration where points lie in line. Returns the largest of all.
+// Lever arms of all rows (nrow, out); all rows of a joint get the largest of them, as a row may
+// have none where points are collinear. Returns the largest of all.
 static double find_levers(const struct ct_partition *s, double *lever)
 {
     const struct ct_row *row = s->m->e->row;
@@ -51,11 +52,12 @@ static double find_levers(const struct ct_partition *s, double *lever)
 
 void ct_partition_find_units(struct ct_partition *s)
 {
-    // One unit serves all rows while their levers differ by less than this factor.
+    // All rows have one unit while their lever arms differ by less than this factor.
     // Chosen: rows of one size against small and large loops in one mechanism.
     const double one_unit_ratio = 4;
-    // Part of the largest lever below which a row has none, as its points coincide at the start.
-    // Chosen: coincidence to the digits of data against short links.
+    // Fraction of the largest lever arm below which a row has none, as its points coincide
+    // initially.
+    // Chosen: coincidence to the precision of the data against short links.
     const double zero_lever = 1e-4;
     const double most = find_levers(s, s->unit);
     double largest = 0, least = INFINITY;
@@ -69,7 +71,7 @@ void ct_partition_find_units(struct ct_partition *s)
 }
 
 // A (nrow x nrow, out) = the lower triangle of J J', with rows of J divided by their units.
-static void square(const struct ct_partition *s, double *A)
+static void find_JJt(const struct ct_partition *s, double *A)
 {
     const size_t n = s->m->nu, m = s->m->nrow;
     const double *J = s->m->J;
@@ -83,13 +85,13 @@ static void square(const struct ct_partition *s, double *A)
             A[i + m * j] /= s->unit[i] * s->unit[j];
 }
 
-// The squares of the largest `rank` singular values of J, ascending; NULL if the iteration fails.
-// They are eigenvalues of J J', which cost a third of a singular value decomposition. They have
-// half the digits, which is enough.
+// Squares of the largest `rank` singular values of J, ascending; NULL if the iteration fails.
+// They are eigenvalues of J J', at a third of the cost of a singular value decomposition. Half
+// the significant digits remain, which is enough.
 static const double *squared_singular_values(struct ct_partition *s)
 {
     const int m = (int)s->m->nrow;
-    square(s, s->A);
+    find_JJt(s, s->A);
     return ct_symmetric_eigenvalues(s->b, s->A, m, m, s->work) ? s->b + m - s->rank : NULL;
 }
 
@@ -110,7 +112,7 @@ bool ct_partition_pivot_is_between(struct ct_partition *s, double low, double hi
     const int m = (int)s->m->nrow, nzero = m - s->rank;
     if (!ct_partition_has_redundant_rows(s))
         return false;
-    square(s, s->A);
+    find_JJt(s, s->A);
     memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
     return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
         && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
@@ -135,7 +137,7 @@ double ct_partition_pivot(struct ct_partition *s)
 {
     if (ct_partition_has_redundant_rows(s))
         return smallest_singular_value(s);
-    // the configuration need not be on the motion: sigma, kappa and strength of the motion are kept
+    // at a trial configuration: sigma, kappa and strength of the motion are kept
     const double sigma = s->sigma, kappa = s->kappa, strength = s->strength.now;
     const bool is_strength = find_strength(s), is_known = is_strength || ct_partition_factor(s);
     const double least
@@ -157,8 +159,8 @@ double ct_partition_retained_pivot(struct ct_partition *s)
     return least;
 }
 
-// Logarithm of the product of the largest `rank` singular values of J. It is used with redundant
-// rows, of which the kept ones may lose more rank than all rows together.
+// Logarithm of the product of the largest `rank` singular values of J. With redundant rows the
+// retained ones may lose more rank than J.
 static double log_volume(struct ct_partition *s)
 {
     const double *square = squared_singular_values(s);
@@ -174,7 +176,7 @@ bool ct_partition_dependence(struct ct_partition *s, double *x, double *log_det)
     const bool is_found = !ct_partition_is_large(s) && ct_partition_factor_only(s);
     *log_det = 0;
     for (int i = 0; i < r && is_found; i++) {
-        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // arbitrary, in no simple ratios
+        x[i] = 1 + fmod(i * 0.6180339887498949, 1); // golden-ratio sequence: arbitrary values
         *log_det += log(fabs(s->Jd[i + r * i]));
     }
     if (is_found) {

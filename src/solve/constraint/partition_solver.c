@@ -1,16 +1,16 @@
-// Solvers with a fixed order of pivots (solver.h) for a coordinate partitioning: which one is used,
-// and whether its order of pivots is still good. See partition_internal.h.
+// Selection of a solver with a fixed order of pivots (solver.h) for a coordinate partitioning,
+// and checks that its order of pivots is still good. See partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-// After so many failed checks in a row a new order of pivots is sought.
+// After this number of consecutive failed checks a new order of pivots is found.
 // Chosen: single failures against evaluations by dense matrices meanwhile.
 enum { MOST_FAILED_CHECKS = 3 };
-// If the residual was at most this part of what is allowed, the next UNCHECKED_PROJECTIONS are not
-// checked as long as the strength of the pivots stays the same.
-// Chosen: the time of checks against pivots that become bad.
+// If the residual was at most this fraction of the limit, the next UNCHECKED_PROJECTIONS are
+// not checked while the strength of the pivots is unchanged.
+// Chosen: the time of checks against pivots that become small.
 static const double small_residual_ratio = 0.1;
 enum { UNCHECKED_PROJECTIONS = 7 };
 
@@ -20,8 +20,8 @@ static struct ct_partition_sets partition(const struct ct_partition *s)
                                       s->m->nu - (size_t)s->rank};
 }
 
-// Operations of (6.2) by dense matrices, for n speeds, r kept rows and f = n - r freedoms: LU of
-// J_d, its solutions, the products M B and B' M B, Cholesky of the reduced mass matrix.
+// Operations of (6.2) by dense matrices, for n speeds, r retained rows and f = n - r freedoms:
+// LU of J_d, its solutions, the products M B and B' M B, Cholesky of the reduced mass matrix.
 double ct_partition_operations(const struct ct_partition *s)
 {
     const double n = (double)s->m->nu, r = s->rank, f = n - r;
@@ -39,8 +39,8 @@ static void put_first(struct ct_partition *s, size_t i)
     s->solver[0] = f;
 }
 
-// Make a solver for the present rows and columns, in place of solver[0] if that is for the same
-// ones, else of the last one if the list is full. Its order of pivots is sought at the evaluator's
+// Make a solver for the present rows and columns. It replaces solver[0] if that is for the same
+// ones, or the last one if the list is full. Its order of pivots is found at the evaluator's
 // input.
 static void make_solver(struct ct_partition *s)
 {
@@ -67,9 +67,9 @@ static void make_solver(struct ct_partition *s)
     }
 }
 
-// Projections to wait for with weak pivots, or without a solver, until one is made. The number
-// doubles with every CT_MOST_SOLVERS solvers: a motion that often changes its rows and columns
-// would otherwise spend its time on making solvers.
+// Number of projections with failed checks, or without a solver, after which a solver is made.
+// It doubles with every CT_MOST_SOLVERS solvers: a motion that often changes its rows and
+// columns would otherwise spend its time making solvers.
 static long checks_before_retry(const struct ct_partition *s)
 {
     const long doublings = s->nmade / CT_MOST_SOLVERS;
@@ -134,8 +134,8 @@ void ct_partition_update_sigma(struct ct_partition *s)
         s->sigma = ct_strength_sigma(&s->strength);
 }
 
-// A solver compares each inertia with the largest that it has had, and does not know which terms
-// have cancelled in it. Dense matrices do, and take over this factor before the limit is reached.
+// A solver compares each inertia with its largest value so far; it does not know the terms that
+// cancel in it. Dense matrices do; they are used from this factor above the limit.
 // Chosen: the time of dense matrices against cancellation that is missed.
 static const double cancellation_margin = 10;
 
@@ -144,7 +144,7 @@ static bool has_one_freedom(const struct ct_partition *s)
     return s->least_cancellation > 0 && (size_t)s->rank + 1 == s->m->nu;
 }
 
-// u' by the present solver; false if its pivots are not sound here.
+// u' by the present solver; false if its pivots are too small here.
 static bool use_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];
@@ -174,7 +174,7 @@ enum ct_eval ct_partition_solve(struct ct_partition *s)
     s->solves.pivoted++;
     const enum ct_eval e = ct_partition_accelerate(s);
     if (e == CT_EVAL_OK && has_one_freedom(s))
-        s->left = fmin(s->left, ct_partition_cancellation(s));
+        s->smallest_cancellation = fmin(s->smallest_cancellation, ct_partition_cancellation(s));
     if (s->has_solver && !is_tried)
         s->strength.now = ct_solver_close(s->solver[0], m);
     if (s->has_solver)
@@ -182,8 +182,8 @@ enum ct_eval ct_partition_solve(struct ct_partition *s)
     return e;
 }
 
-// After a projection, at the evaluator's input: is the order of pivots still good? Near a singular
-// configuration corrections grow with any choice, so their growth asks for no check there.
+// Is the order of pivots still good? Near a singular configuration corrections grow with any
+// choice, so their growth does not trigger a check there.
 static void check_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];

@@ -1,6 +1,6 @@
-// Constraint projection: Newton's method moves coordinates and speeds onto the constraints Phi = 0
-// and v = 0. It changes dependent coordinates only, or takes the minimum-norm step where J_d is
-// nearly singular. See partition_internal.h.
+// Constraint projection by Newton's method: q and u become solutions of Phi = 0 and v = 0. Only
+// dependent coordinates change, or all by the minimum-norm step where J_d is nearly singular.
+// See partition_internal.h.
 #include "solve/constraint/partition_internal.h"
 
 #include "integrate/stepper.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 
 // d (nu) = -J^+ r: the minimum-norm step for all rows.
-static void least_norm_step(struct ct_partition *s, const double *r, double *d)
+static void minimum_norm_step(struct ct_partition *s, const double *r, double *d)
 {
     const int n = (int)s->m->nu, m = (int)s->m->nrow, ld = n > m ? n : m;
     memcpy(s->A, s->m->J, (size_t)(n * m) * sizeof *s->A);
@@ -21,7 +21,7 @@ static void least_norm_step(struct ct_partition *s, const double *r, double *d)
     memcpy(d, s->d, (size_t)n * sizeof *d);
 }
 
-// d (nu) = the correction of dependent coordinates alone, J_d as factored last.
+// d (nu) = correction of the dependent coordinates, with J_d as factored last.
 static void partitioned_step(struct ct_partition *s, const double *r, double *d)
 {
     const int k = s->rank;
@@ -47,7 +47,7 @@ static void add_change(const struct ct_partition *s, double *r, const double *d)
             r[i] += s->m->J[i + s->m->nrow * j] * d[j];
 }
 
-// Should rows and columns be chosen anew?
+// Is a new choice of rows and columns needed?
 static bool is_degraded(const struct ct_partition *s)
 {
     if (!s->rank)
@@ -56,9 +56,10 @@ static bool is_degraded(const struct ct_partition *s)
                                     s->sigma_best, s->rank < (int)s->m->nrow);
 }
 
-// The sigma that the tolerance of a projection is scaled by. sigma is 1 everywhere with a single
-// row; the rank monitor's nearness is not. While a singular configuration is crossed the residual
-// is divided twice by a pivot that is still falling: 0, so that the iteration goes on to round-off.
+// The factor sigma of the tolerance of a projection. The rank monitor's nearness is included,
+// as sigma is 1 everywhere with a single row. While a singular configuration is crossed the
+// residual is divided twice by a decreasing pivot: 0, so that the iteration continues to
+// round-off.
 static double nearness(const struct ct_partition *s)
 {
     return s->is_crossing ? 0 : ct_smaller(s->sigma, s->nearness);
@@ -77,12 +78,12 @@ static enum ct_eval project_by_matrices(struct ct_partition *s, double t, double
         if (ct_is_diverging(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
-        (is_partitioned(s) ? partitioned_step : least_norm_step)(s, m->phi, s->r);
+        (is_partitioned(s) ? partitioned_step : minimum_norm_step)(s, m->phi, s->r);
         ct_evaluator_retract(m, y, s->r);
     }
     const bool is_regular = is_partitioned(s);
     for (int i = 0; i < 2; i++) { // v is linear in u; the second step removes round-off
-        (is_regular ? partitioned_step : least_norm_step)(s, m->v, s->r);
+        (is_regular ? partitioned_step : minimum_norm_step)(s, m->v, s->r);
         for (size_t k = 0; k < m->nu; k++)
             y[m->nq + k] += s->r[k];
         add_change(s, m->v, s->r);
@@ -97,7 +98,7 @@ bool ct_partition_close_loops(struct ct_partition *s, double t, double *y)
     if (ct_partition_is_large(s))
         return false;
     ct_evaluator_normalise(s->m, y);
-    s->nearness = 1; // the monitor's value is that of the last step, not of this state
+    s->nearness = 1; // the monitored value belongs to the last step, not to this state
     const bool is_closed = project_by_matrices(s, t, y) == CT_EVAL_OK;
     s->nearness = near;
     s->kappa = kappa;
@@ -124,9 +125,9 @@ static double sum_of_sizes(const double *d, size_t n)
     return sum;
 }
 
-// Is one evaluation enough, with corrections of coordinates and speeds made together? Not with
-// redundant rows, whose residual must be evaluated, nor near a singular configuration, where speeds
-// depend strongly on the round-off of coordinates.
+// Is one evaluation enough, with simultaneous corrections of coordinates and speeds? Not with
+// redundant rows, whose residual must be evaluated, nor near a singular configuration, where
+// the round-off of coordinates is amplified in the speeds.
 static bool is_one_enough(const struct ct_partition *s, const double *y)
 {
     const struct ct_evaluator *m = s->m;
@@ -134,8 +135,8 @@ static bool is_one_enough(const struct ct_partition *s, const double *y)
     if (!f->shift || s->nearness < ct_small_pivot)
         return false;
     const double near = nearness(s), dq = sum_of_sizes(f->dq, m->nu);
-    return ct_is_remainder_below_roundoff(near, dq, 0,
-                                          0) // the cheap test first: coordinates alone
+    // cheap test of the coordinates first
+    return ct_is_remainder_below_roundoff(near, dq, 0, 0)
         && ct_is_remainder_below_roundoff(
                near, dq, sum_of_sizes(f->du, m->nu) + sum_of_sizes(f->shift, m->nu),
                ct_vector_max_norm(y + m->nq, m->nu));
@@ -157,8 +158,8 @@ static void correct_both(const struct ct_partition *s, double *y)
     add_speeds(s, y, f->shift);
 }
 
-// Correct speeds, with coordinates already on the constraints; twice if the round-off of the first
-// correction matters. False if pivots are not sound.
+// Correct speeds after the coordinates; twice if the round-off of the first correction matters.
+// False if pivots are too small.
 static bool correct_speeds(struct ct_partition *s, double t, double *y)
 {
     const double *du = s->solver[0]->du;
@@ -170,7 +171,7 @@ static bool correct_speeds(struct ct_partition *s, double t, double *y)
     return is_sound;
 }
 
-// Projection by the present solver; *is_done is false if its pivots are not sound.
+// Projection by the present solver; *is_done is false if its pivots are too small.
 static enum ct_eval project_by_solver(struct ct_partition *s, double t, double *y,
                                       bool *is_done)
 {
@@ -229,8 +230,8 @@ enum ct_eval ct_partition_project(struct ct_partition *s, double t, double *y)
     s->is_renewed = true;
     if (!is_degraded(s))
         return CT_EVAL_OK;
-    // With a degraded choice the correction was larger than the residual by kappa or more: choose
-    // anew, and project again from the state before.
+    // With a degraded choice the correction was kappa times the residual or more: make a new
+    // choice and project again from the state before.
     ct_evaluator_constraint(s->m); // solvers do not update J
     ct_partition_choose(s);
     ct_evaluator_copy(y, s->before, ny);

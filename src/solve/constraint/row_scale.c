@@ -1,14 +1,14 @@
-// Natural sizes of constraint rows, by which rank is judged: the size of the terms that the
-// coefficients are sums of.  (6.5a)
+// Natural sizes of constraint rows for the rank test: the size of the terms of which the
+// coefficients are sums.  (6.5a)
 //
-// A coefficient of a row of lengths is  p . (axis x sum d),  with the sum over the vectors d along
-// the path between two frames. A coefficient of a row of angles is a product of unit vectors. If a
-// constraint is redundant, terms cancel down to round-off or to the accuracy of the given data. The
-// remainder is compared with
+// A coefficient of a row of lengths is  p . (axis x sum d),  with the sum over the vectors d
+// along the path between two frames. A coefficient of a row of angles is a product of unit
+// vectors. In a redundant constraint these terms cancel down to round-off or to the accuracy of
+// the data. The remainder is compared with
 //
-//     L_i = sum |d|   for rows of lengths [m],   1 for rows of angles and rows without levers
-//     S_k = max L_i   over the rows of lengths of a translation k [m],   1 for rotations
-//     N_i = max(L_i, S_k)
+//   L_i = sum |d|   for rows of lengths [m],   1 for rows of angles and rows without lever arms
+//   S_k = max L_i   over the rows of lengths of a translation k [m],   1 for rotations
+//   N_i = max(L_i, S_k)
 //
 // Entries J_ik S_k / N_i are at most of order 1 and have no unit.
 #include "solve/evaluator/evaluator.h"
@@ -19,7 +19,7 @@
 #include <math.h>
 #include <string.h>
 
-// Sum of the lengths of the row's levers; 1 where there are none.
+// Sum of the row's lever arms |d|; 1 where there are none.
 static double lever_sum(const struct ct_evaluator *m, const struct ct_row *row,
                         const double *value)
 {
@@ -57,8 +57,8 @@ void ct_evaluator_measure_rows(struct ct_evaluator *m)
     }
 }
 
-// The same for a large system by sparse elimination. -1 if a remaining row is too near `least` for
-// this method to decide its rank.
+// The same for a large system by sparse elimination. -1 if a remaining row is too close to the
+// tolerance `least` to decide its rank.
 static int order_sparse(const struct ct_evaluator *m, const double *J, double least, int most,
                         int *row)
 {
@@ -115,7 +115,7 @@ struct ct_sparse_entries ct_evaluator_sparse_J(const struct ct_evaluator *m,
 void ct_evaluator_set_inexact(struct ct_evaluator *m, size_t freedoms)
 {
     m->is_inexact = true;
-    if (m->e->build->nflexible) // which may follow loops that are stiff without them
+    if (m->e->build->nflexible) // beams may deform where the rigid loops cannot move
         m->rank_tolerance = ct_data_tolerance;
     else
         m->most_rank = m->nu - freedoms;

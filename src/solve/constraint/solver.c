@@ -7,20 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Limit: nodes of the expressions of a symbolic solver; with more another solver is used. A node
-// takes about a microsecond and half a kilobyte: two seconds and a gigabyte.
+// Limit: nodes of the expressions of a symbolic solver; with more another solver is used. A
+// node takes about a microsecond and half a kilobyte: two seconds and a gigabyte in all.
 static const double most_nodes = 2e6;
-// Limit: the same where the caller wants a symbolic solver whatever it costs.
+// Limit: the same where the caller requests a symbolic solver.
 static const double most_requested_nodes = 8e6;
-// Nodes of all programs, those of checks and projections included, over those of the solution.
-// Default: about the largest ratio; a symbolic solver with more nodes is not made. Test: solvers
+// Ratio of the nodes of all programs, checks and projections included, to those of the
+// solution.
+// Default: about the largest ratio; a symbolic solver with more nodes is not made. Test:
+// solvers
 static const double all_programs_ratio = 4;
-// The symbolic solver of [M J'; J 0] is made if its predicted cost is below this part of the
-// others'.
+// The symbolic solver of [M J'; J 0] is made if its predicted cost is below this fraction of
+// the others'.
 // Default: the time to make it against the time that it saves. Test: solvers
 static const double kkt_cost_ratio = 0.9;
 
-// See solver.h. Default: three digits that are lost against the time of dense matrices.
+// See solver.h. Default: a loss of three digits against the time of dense matrices.
 // Test: partition_conditioning
 const double ct_solver_least_strength = 1e-3;
 
@@ -37,7 +39,7 @@ static int *sorted(struct ct_arena *a, const int *v, size_t n)
     return copy;
 }
 
-// The cheaper one of two solvers; the other one is destroyed. Either may be NULL.
+// The cheaper of two solvers; the other is destroyed. Either may be NULL.
 static struct ct_solver *cheaper(struct ct_evaluator *m, struct ct_solver *a,
                                  struct ct_solver *b)
 {
@@ -55,9 +57,9 @@ double ct_solver_code_size(double operations)
     return bytes * operations;
 }
 
-// Straight-line code is read once in each evaluation. The second-level cache, which code and data
-// share, holds programs up to `near` bytes fully and programs beyond `far` bytes hardly at all. A
-// byte that is not in it takes as long as `per_byte` operations.
+// Straight-line code is read once per evaluation. The second-level cache, which code and data
+// share, holds programs up to `near` bytes completely and almost nothing of programs beyond
+// `far` bytes. A byte outside it takes the time of `per_byte` operations.
 double ct_solver_straight_cost(double operations, double bytes)
 {
     // Derived: measured on lattices and nets of 110 to 2000 unknowns, on processors with 2 MiB of
@@ -84,8 +86,8 @@ static double cost_of(const struct ct_solver *f)
     return f ? f->cost : INFINITY;
 }
 
-// The number of nodes that a symbolic solver may have to be cheaper than one of this cost.
-static double allowed(double cost)
+// The largest number of nodes with which a symbolic solver is cheaper than one of this cost.
+static double most_nodes_of(double cost)
 {
     return fmin(all_programs_ratio * longest(fmin(cost, most_nodes)), most_nodes);
 }
@@ -121,11 +123,12 @@ static struct ct_solver *compare(struct ct_arena *a, struct ct_evaluator *m,
         c->sparse = cost_of(f);
     }
     const double others = fmin(c->dense, fmin(c->sparse, c->symbolic_kkt));
-    struct ct_solver *unrolled = ct_solver_symbolic.create(a, m, &p, allowed(others));
-    c->symbolic = cost_of(unrolled);
-    f = cheaper(m, f, unrolled);
+    struct ct_solver *symbolic = ct_solver_symbolic.create(a, m, &p, most_nodes_of(others));
+    c->symbolic = cost_of(symbolic);
+    f = cheaper(m, f, symbolic);
     if (c->symbolic_kkt < kkt_cost_ratio * (f ? f->cost : c->dense))
-        f = cheaper(m, f, ct_solver_symbolic_kkt.create(a, m, &p, allowed(c->symbolic_kkt)));
+        f = cheaper(m, f,
+                    ct_solver_symbolic_kkt.create(a, m, &p, most_nodes_of(c->symbolic_kkt)));
     ct_arena_destroy(own);
     return f;
 }
@@ -151,7 +154,7 @@ struct ct_solver *ct_solver_create_within(struct ct_arena *a, struct ct_evaluato
                                           const struct ct_partition_sets *p,
                                           const struct ct_solver_kind *kind, double cost)
 {
-    return kind->create(a, m, p, allowed(cost));
+    return kind->create(a, m, p, most_nodes_of(cost));
 }
 
 struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_evaluator *m,

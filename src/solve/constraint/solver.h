@@ -5,9 +5,9 @@
 //     symbolic KKT   the same of the matrix [M J'; J 0]     (formulate/closed_form/kkt.h)
 //     sparse         [M J'; J 0] and J_d as sparse matrices, factored in the order found at first
 //
-// A fixed order of pivots can become bad as the mechanism moves. Two measures show it: the
-// strength, which is the smallest pivot relative to the entries of its row or to its size when the
-// order was chosen, and the residual of the equations.
+// A fixed order of pivots can become inaccurate as the mechanism moves. Two measures show it:
+// the strength, which is the smallest pivot relative to the entries of its row or to its size
+// when the order was chosen, and the residual of the equations.
 #ifndef CT_SOLVE_CONSTRAINT_SOLVER_H
 #define CT_SOLVE_CONSTRAINT_SOLVER_H
 
@@ -17,23 +17,23 @@
 struct ct_solver {
     const struct ct_solver_kind *kind;
     struct ct_arena *arena; // its own
-    int *row, *dependent;   // (rank) the kept rows and dependent columns it is for, ascending
+    int *row, *dependent;   // the retained rows and dependent columns, ascending
     size_t rank;
     double operations; // of one solution, evaluation of M, Q, J and gam included
-    double cost;       // its time, in operations of straight-line code in the nearest cache
+    double cost;       // its time, in operations of straight-line code in the cache
     double weakest; // smallest relative pivot at the last solve or close; strength is at most 1
-    double least_part; // an inertia of B' M B below this part of its largest so far has fallen
-    bool has_fallen;   // some inertia had at the last solve
-    double
-        volume; // product of the pivots: det J_d but for a constant factor; NAN: not computed
+    double least_part; // limit of an inertia of B' M B relative to its largest value so far
+    bool has_fallen;   // some inertia was below it at the last solve
+    double volume;     // product of the pivots, proportional to det J_d; NAN: not computed
     // results of check
-    const double *a, *lam; // u' (nu), multipliers of the kept rows (rank)
+    const double *a, *lam; // u' (nu), multipliers of the retained rows (rank)
     // residual relative to the terms of the equations, before and after refinement
     double remainder, refined_remainder;
     double kappa; // largest entry of B; NAN: not computed
     // results of close: residuals (nrow each), corrections (nu each; 0 for independent ones)
     const double *phi, *v, *dq, *du;
-    // added to du for the change of J along dq, (6.3b); NULL: not known, as with redundant rows
+    // correction of du for the change of J along dq, (6.3b); NULL: unknown, as with redundant
+    // rows
     const double *shift;
 };
 
@@ -48,7 +48,7 @@ struct ct_solver_kind {
     void (*destroy)(struct ct_solver *f, struct ct_evaluator *m); // may be NULL
 };
 
-/// Unknowns of [M J'; J 0] from which sparse matrices are tried.
+/// Smallest number of unknowns of [M J'; J 0] for sparse matrices.
 /// Chosen: the time of the analysis; smaller systems are not cheaper as sparse matrices.
 enum { CT_FEWEST_SPARSE_UNKNOWNS = 100 };
 extern const struct ct_solver_kind ct_solver_symbolic, ct_solver_symbolic_kkt, ct_solver_sparse;
@@ -60,20 +60,20 @@ struct ct_solver_costs {
     double symbolic, symbolic_kkt, sparse, dense;
 };
 
-/// The solver of a partition with the lowest predicted cost. Its order of pivots is sought at the
-/// evaluator's input, after ct_evaluator_dynamics. NULL if dense matrices, which take `operations`
-/// multiplications and additions, are cheaper. kind: make this one, whatever it costs; NULL: the
-/// cheapest. costs (out) may be NULL. Owned by a until destroyed.
+/// The solver of a partitioning with the lowest predicted cost. Its order of pivots is found at
+/// the evaluator's input, after ct_evaluator_dynamics. NULL if dense matrices, which take
+/// `operations` multiplications and additions, are cheaper. kind: use this kind, whatever its
+/// cost; NULL: the cheapest. costs (out) may be NULL. Owned by a until destroyed.
 struct ct_solver *ct_solver_create(struct ct_arena *a, struct ct_evaluator *m,
                                    const struct ct_partition_sets *p, double operations,
                                    const struct ct_solver_kind *kind,
                                    struct ct_solver_costs *costs);
-/// One of this kind if it costs no more than about `cost`; NULL if making it shows that it costs
-/// more.
+/// A solver of this kind that costs about `cost` at most; NULL if its creation shows that it
+/// costs more.
 struct ct_solver *ct_solver_create_within(struct ct_arena *a, struct ct_evaluator *m,
                                           const struct ct_partition_sets *p,
                                           const struct ct_solver_kind *kind, double cost);
-/// One of this kind whatever it costs, up to some millions of nodes.
+/// A solver of this kind whatever its cost, up to some millions of nodes.
 struct ct_solver *ct_solver_create_any_length(struct ct_arena *a, struct ct_evaluator *m,
                                               const struct ct_partition_sets *p,
                                               const struct ct_solver_kind *kind);
@@ -88,15 +88,17 @@ void ct_solver_check(struct ct_solver *f, struct ct_evaluator *m);
 /// Fill the results of close at the evaluator's input. Returns the strength.
 double ct_solver_close(struct ct_solver *f, struct ct_evaluator *m);
 
-/// Below this strength a solver is not used: that many digits of the result may be lost.
+/// Below this strength a solver is not used: its result may lose as many digits as the
+/// reciprocal has.
 extern const double ct_solver_least_strength;
 
 /// The programs of a symbolic solver.
 ///
-///     solved    u', q', pivots of B' M B (nfree, positive), of J_d (npivot), whose sizes times scale are strengths; the
-///               power if it depends on neither u' nor multipliers
-///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam (rank), B (nB)
-///     closing   Phi, v (nrow each), corrections dq, du (nu each), shift (nshift), pivots of J_d
+///   solved    u' (nu), q' (nq), pivots of B' M B (nfree, positive) and of J_d (npivot); sizes of
+///             the latter times `scale` are strengths; the power, if has_power
+///   checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q, gam
+///             (rank), B (nB)
+///   closing   Phi, v (nrow each), corrections dq, du (nu each), shift (nshift), pivots of J_d
 struct ct_solver_code {
     const struct ct_listing *listing; // NULL: the solver is not symbolic
     size_t nfree, npivot;

@@ -9,13 +9,13 @@
 #include <string.h>
 
 struct sparse_solver {
-    struct ct_solver form;
+    struct ct_solver base;
     struct ct_sparse *whole, *Jd;
     double *value, *Jd_value; // in the order of the patterns
     size_t *Jd_from, nJd;     // which entries of J
-    int *row_of;              // by row: its place among the kept ones, -1
+    int *row_of;              // (nrow) index among the retained rows, or -1
     double *b, *x, *dq, *du;
-    double pivot; // smallest against largest of J_d where its pivots were chosen
+    double pivot; // smallest over largest pivot of J_d where the order was chosen
 };
 
 static struct sparse_solver *sparse_solver_of(struct ct_solver *f)
@@ -23,11 +23,11 @@ static struct sparse_solver *sparse_solver_of(struct ct_solver *f)
     return (struct sparse_solver *)f; // its first member
 }
 
-// Times of the sparse solver, in operations of straight-line code: of a multiplication or addition
-// in the factors, of an entry of the factors in factoring and solving, and of an entry of the
-// matrix in assembly and in the residual.
-// Derived: fitted to measured times of planar and spatial loops, one and many, in joint and in body
-// coordinates, with and without beams; all are met within a tenth.
+// Times of the sparse solver, in operations of straight-line code: of a multiplication or
+// addition in the factors, of an entry of the factors in factoring and solving, and of an entry
+// of the matrix in assembly and in the residual.
+// Derived: fitted to measured times of planar and spatial loops, one and many, in joint and in
+// body coordinates, with and without beams; all agree within a tenth.
 static const double per_operation = 0.7, per_factor = 18, per_value = 36;
 
 // ---- values -------------------------------------------------------------------------------------
@@ -71,25 +71,25 @@ static bool factor_Jd(struct sparse_solver *f, const double *J)
     return ct_sparse_factor(f->Jd, f->Jd_value);
 }
 
-// Relative to the smallest pivot when the order of pivots was chosen: entries of the rows have very
-// different sizes, so pivots are not compared with them.
+// Relative to the smallest pivot when the order of pivots was chosen: pivots are not compared
+// with the entries of their rows, as these differ widely in size.
 static double strength(struct sparse_solver *f)
 {
-    return f->form.weakest = ct_sparse_pivot(f->Jd) / f->pivot;
+    return f->base.weakest = ct_sparse_pivot(f->Jd) / f->pivot;
 }
 
 // ---- evaluation ---------------------------------------------------------------------------------
 
-// Solve with the old order of pivots; if the result is inaccurate, with a new one. Returns the
-// error.
+// Solve with the present order of pivots; if the result is inaccurate, with a new one. Returns
+// the backward error.
 static double solve_whole(struct sparse_solver *f, bool *is_refined)
 {
     for (int is_again = 0; is_again < 2; is_again++) {
         const bool ok = is_again ? ct_sparse_factor_repivot(f->whole, f->value)
                                  : ct_sparse_factor(f->whole, f->value);
         const double error = ok ? ct_sparse_solve(f->whole, f->x, f->b, is_refined) : INFINITY;
-        // Backward error from which pivots are sought anew.
-        // Chosen: digits against the time of a search.
+        // Backward error above which a new order of pivots is found.
+        // Chosen: accuracy against the time of a search.
         const double degraded_error = 1e-12;
         if (error < degraded_error || is_again)
             return error;
@@ -109,9 +109,9 @@ static double solve_into(struct sparse_solver *f, struct ct_evaluator *m, bool i
     return solve_whole(f, &is_refined);
 }
 
-static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
+static double solve(struct ct_solver *base, struct ct_evaluator *m, double *a)
 {
-    struct sparse_solver *f = sparse_solver_of(form);
+    struct sparse_solver *f = sparse_solver_of(base);
     if (!(solve_into(f, m, false) < ct_largest_residual) || !factor_Jd(f, m->Q + m->nu))
         return 0;
     for (size_t i = 0; i < m->nu; i++)
@@ -121,30 +121,30 @@ static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
     return strength(f);
 }
 
-static void check(struct ct_solver *form, struct ct_evaluator *m)
+static void check(struct ct_solver *base, struct ct_evaluator *m)
 {
-    struct sparse_solver *f = sparse_solver_of(form);
-    form->remainder = form->refined_remainder = solve_into(f, m, true);
-    form->kappa = NAN;
-    for (size_t i = 0; i < form->rank; i++)
+    struct sparse_solver *f = sparse_solver_of(base);
+    base->remainder = base->refined_remainder = solve_into(f, m, true);
+    base->kappa = NAN;
+    for (size_t i = 0; i < base->rank; i++)
         f->x[m->nu + i] = -f->x[m->nu + i];
 }
 
-static void correct(struct sparse_solver *f, const struct ct_evaluator *m, const double *left,
-                    double *d)
+static void correct(struct sparse_solver *f, const struct ct_evaluator *m,
+                    const double *residual, double *d)
 {
     bool is_refined = false;
     for (size_t i = 0; i < m->nrow; i++)
         if (f->row_of[i] >= 0)
-            f->b[f->row_of[i]] = -left[i];
+            f->b[f->row_of[i]] = -residual[i];
     ct_sparse_solve(f->Jd, f->x, f->b, &is_refined);
-    for (size_t i = 0; i < f->form.rank; i++)
-        d[f->form.dependent[i]] = f->x[i];
+    for (size_t i = 0; i < f->base.rank; i++)
+        d[f->base.dependent[i]] = f->x[i];
 }
 
-static double close(struct ct_solver *form, struct ct_evaluator *m)
+static double close(struct ct_solver *base, struct ct_evaluator *m)
 {
-    struct sparse_solver *f = sparse_solver_of(form);
+    struct sparse_solver *f = sparse_solver_of(base);
     ct_evaluator_constraint(m);
     if (!factor_Jd(f, m->v + m->nrow))
         return 0;
@@ -166,7 +166,7 @@ static struct ct_sparse *analyse_along(struct sparse_solver *f, struct ct_evalua
                                        const struct ct_partition_sets *p, const int *row,
                                        const int *column, size_t nentry)
 {
-    struct ct_arena *a = f->form.arena;
+    struct ct_arena *a = f->base.arena;
     const struct ct_pivot_order *found = p->pivots;
     if (!found && !p->has_no_pivots)
         found = ct_pivot_order_find(a, m->e, p, m->motion.out, m->Q + m->nu, INFINITY);
@@ -182,10 +182,10 @@ static struct ct_sparse *analyse_whole(struct sparse_solver *f, struct ct_evalua
 {
     const struct ct_equations *e = m->e;
     const size_t most = 2 * (e->nM + e->nJ) + 1;
-    int *row = CT_NEWN(f->form.arena, int, most), *column = CT_NEWN(f->form.arena, int, most);
-    f->value = CT_NEWN(f->form.arena, double, most);
+    int *row = CT_NEWN(f->base.arena, int, most), *column = CT_NEWN(f->base.arena, int, most);
+    f->value = CT_NEWN(f->base.arena, double, most);
     const size_t n = fill_whole(f, m, row, column, f->value);
-    struct ct_sparse *s = ct_sparse_create(f->form.arena, (int)(e->nu + f->form.rank), row,
+    struct ct_sparse *s = ct_sparse_create(f->base.arena, (int)(e->nu + f->base.rank), row,
                                            column, n, CT_SPARSE_DIAGONAL);
     struct ct_sparse *along = s ? analyse_along(f, m, p, row, column, n) : NULL;
     if (s && !ct_sparse_factor(s, f->value))
@@ -199,18 +199,18 @@ static struct ct_sparse *analyse_Jd(struct sparse_solver *f, const struct ct_eva
                                     const struct ct_partition_sets *p)
 {
     const struct ct_equations *e = m->e;
-    struct ct_arena *a = f->form.arena;
+    struct ct_arena *a = f->base.arena;
     int *row = CT_NEWN(a, int, e->nJ + 1), *column = CT_NEWN(a, int, e->nJ + 1);
-    int *place = CT_NEWN(a, int, e->nu + 1); // 1 + place of a dependent column
+    int *index = CT_NEWN(a, int, e->nu + 1); // 1 + index of a dependent column
     f->Jd_from = CT_NEWN(a, size_t, e->nJ + 1);
     f->Jd_value = CT_NEWN(a, double, e->nJ + 1);
     for (size_t i = 0; i < p->rank; i++)
-        place[f->form.dependent[i]] = (int)i + 1;
+        index[f->base.dependent[i]] = (int)i + 1;
     for (size_t i = 0; i < e->nJ; i++) {
-        if (f->row_of[e->J[i].row] < 0 || !place[e->J[i].column])
+        if (f->row_of[e->J[i].row] < 0 || !index[e->J[i].column])
             continue;
         row[f->nJd] = f->row_of[e->J[i].row];
-        column[f->nJd] = place[e->J[i].column] - 1;
+        column[f->nJd] = index[e->J[i].column] - 1;
         f->Jd_from[f->nJd++] = i;
     }
     return ct_sparse_create(a, (int)p->rank, row, column, f->nJd, CT_SPARSE_DIAGONAL);
@@ -223,13 +223,13 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     struct ct_arena *own = ct_arena_create_under(a);
     struct sparse_solver *f = CT_NEW(own, struct sparse_solver);
     const size_t n = m->nu + p->rank;
-    f->form = (struct ct_solver){.kind = &ct_solver_sparse, .arena = own};
-    ct_solver_set_partition(&f->form, p);
+    f->base = (struct ct_solver){.kind = &ct_solver_sparse, .arena = own};
+    ct_solver_set_partition(&f->base, p);
     f->row_of = CT_NEWN(own, int, m->nrow + 1);
     for (size_t i = 0; i < m->nrow; i++)
         f->row_of[i] = -1;
     for (size_t i = 0; i < p->rank; i++)
-        f->row_of[f->form.row[i]] = (int)i;
+        f->row_of[f->base.row[i]] = (int)i;
     f->b = CT_NEWN(own, double, n + 1);
     f->x = CT_NEWN(own, double, n + 1);
     f->dq = CT_NEWN(own, double, m->nu + 1);
@@ -242,20 +242,20 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     }
     f->pivot = ct_sparse_pivot(f->Jd);
     struct ct_sparse *const all[] = {f->whole, f->Jd};
-    f->form.operations = ct_solver_operations(&m->motion);
-    f->form.cost = f->form.operations + per_value * (double)(m->e->nM + 2 * m->e->nJ);
+    f->base.operations = ct_solver_operations(&m->motion);
+    f->base.cost = f->base.operations + per_value * (double)(m->e->nM + 2 * m->e->nJ);
     for (size_t i = 0; i < COUNT(all); i++) {
-        f->form.operations += ct_sparse_operations(all[i]) + 2 * ct_sparse_fill(all[i]);
-        f->form.cost += cost_of(all[i]);
+        f->base.operations += ct_sparse_operations(all[i]) + 2 * ct_sparse_fill(all[i]);
+        f->base.cost += cost_of(all[i]);
     }
-    f->form.a = f->x;
-    f->form.lam = f->x + m->nu;
-    f->form.phi = m->phi;
-    f->form.v = m->v;
-    f->form.volume = NAN;
-    f->form.dq = f->dq;
-    f->form.du = f->du;
-    return &f->form;
+    f->base.a = f->x;
+    f->base.lam = f->x + m->nu;
+    f->base.phi = m->phi;
+    f->base.v = m->v;
+    f->base.volume = NAN;
+    f->base.dq = f->dq;
+    f->base.du = f->du;
+    return &f->base;
 }
 
 const struct ct_solver_kind ct_solver_sparse

@@ -12,13 +12,13 @@
 #include <string.h>
 
 struct symbolic_solver {
-    struct ct_solver form;
+    struct ct_solver base;
     const struct ct_closed *c;
-    size_t nmotion; // speeds but for the model's states
+    size_t nmotion; // speeds without the model's states
     struct ct_program solved, checked, closing;
     double M_size, J_size; // largest entries where it was made
-    bool has_power;        // behind the pivots of solved
-    double *most;          // (nfree) of each inertia, the largest so far
+    bool has_power;        // is the last output of `solved`
+    double *most;          // (nfree) largest value of each inertia so far
 };
 
 static struct symbolic_solver *symbolic_solver_of(struct ct_solver *f)
@@ -40,7 +40,7 @@ static void push(struct list *l, const ct_ex *e, size_t n)
         CT_PUSH(l->a, l->e, l->n, l->cap, e[i]);
 }
 
-// Can the power be computed together with the accelerations, as it depends on neither u' nor lam?
+// Can the power be computed with the accelerations, as it depends on neither u' nor lam?
 static bool has_power(const struct ct_equations *e)
 {
     const unsigned later = 1u << CT_SYM_A | 1u << CT_SYM_LAM;
@@ -50,7 +50,7 @@ static bool has_power(const struct ct_equations *e)
 static void compile_solved(struct symbolic_solver *f, struct ct_evaluator *m,
                            const struct ct_exs *x)
 {
-    struct list l = {.a = f->form.arena};
+    struct list l = {.a = f->base.arena};
     push(&l, f->c->a, m->nu);
     for (size_t i = 0; i < m->nq; i++)
         push(&l, &m->e->q[i].rate, 1);
@@ -59,14 +59,14 @@ static void compile_solved(struct symbolic_solver *f, struct ct_evaluator *m,
     f->has_power = has_power(m->e);
     if (f->has_power)
         push(&l, &m->e->power, 1);
-    ct_evaluator_add_solution(f->form.arena, m, x, l.e, l.n, &f->solved);
+    ct_evaluator_add_solution(f->base.arena, m, x, l.e, l.n, &f->solved);
 }
 
 static void compile_checked(struct symbolic_solver *f, struct ct_evaluator *m,
                             const struct ct_exs *x)
 {
     const struct ct_closed *c = f->c;
-    struct list l = {.a = f->form.arena};
+    struct list l = {.a = f->base.arena};
     push(&l, c->better_a, m->nu);
     push(&l, c->better_lam, c->rank);
     push(&l, c->residual, m->nu + c->rank);
@@ -75,16 +75,16 @@ static void compile_checked(struct symbolic_solver *f, struct ct_evaluator *m,
     for (size_t i = 0; i < c->rank; i++)
         push(&l, &m->e->row[c->row[i]].gam, 1);
     push(&l, c->B, c->nB);
-    ct_evaluator_add_program(f->form.arena, m, x, l.e, l.n, &f->checked);
-    f->form.a = f->checked.out;
-    f->form.lam = f->form.a + m->nu;
+    ct_evaluator_add_program(f->base.arena, m, x, l.e, l.n, &f->checked);
+    f->base.a = f->checked.out;
+    f->base.lam = f->base.a + m->nu;
 }
 
 static void compile_closing(struct symbolic_solver *f, struct ct_evaluator *m,
                             const struct ct_exs *x)
 {
     const struct ct_closed *c = f->c;
-    struct list l = {.a = f->form.arena};
+    struct list l = {.a = f->base.arena};
     for (size_t i = 0; i < m->nrow; i++)
         push(&l, &m->e->row[i].phi, 1);
     for (size_t i = 0; i < m->nrow; i++)
@@ -93,12 +93,12 @@ static void compile_closing(struct symbolic_solver *f, struct ct_evaluator *m,
     push(&l, c->du, m->nu);
     push(&l, c->shift, c->nshift);
     push(&l, c->pivot, c->npivot);
-    ct_evaluator_add_program(f->form.arena, m, x, l.e, l.n, &f->closing);
-    f->form.phi = f->closing.out;
-    f->form.v = f->form.phi + m->nrow;
-    f->form.dq = f->form.v + m->nrow;
-    f->form.du = f->form.dq + m->nu;
-    f->form.shift = c->nshift ? f->form.du + m->nu : NULL;
+    ct_evaluator_add_program(f->base.arena, m, x, l.e, l.n, &f->closing);
+    f->base.phi = f->closing.out;
+    f->base.v = f->base.phi + m->nrow;
+    f->base.dq = f->base.v + m->nrow;
+    f->base.du = f->base.dq + m->nu;
+    f->base.shift = c->nshift ? f->base.du + m->nu : NULL;
 }
 
 // ---- evaluation ----------------------------------------
@@ -111,24 +111,24 @@ static double strength(struct symbolic_solver *f, const double *pivot)
         least = size < least ? size : least;
         volume *= pivot[i] * f->c->scale[i];
     }
-    f->form.weakest = least;
-    f->form.volume = volume;
+    f->base.weakest = least;
+    f->base.volume = volume;
     return least < 1 ? least : 1;
 }
 
-static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
+static double solve(struct ct_solver *base, struct ct_evaluator *m, double *a)
 {
-    struct symbolic_solver *f = symbolic_solver_of(form);
+    struct symbolic_solver *f = symbolic_solver_of(base);
     const double *out = f->solved.out, *inertia = out + m->nu + m->nq;
     m->evaluations++;
     ct_program_run(&f->solved, m->input);
-    form->has_fallen = false;
+    base->has_fallen = false;
     for (size_t i = 0; i < f->c->nfree; i++) {
         if (!(inertia[i] > 0))
             return 0;
         if (inertia[i] > f->most[i])
             f->most[i] = inertia[i];
-        form->has_fallen |= inertia[i] < form->least_part * f->most[i];
+        base->has_fallen |= inertia[i] < base->least_part * f->most[i];
     }
     for (size_t i = 0; i < m->nu; i++) {
         a[i] = out[i];
@@ -139,13 +139,13 @@ static double solve(struct ct_solver *form, struct ct_evaluator *m, double *a)
     return strength(f, inertia + f->c->nfree);
 }
 
-// The residual r (nu + rank) relative to the largest terms of the equations, without the equations
-// of the model's own states. NaN counts as infinite.
+// The residual r (nu + rank) relative to the largest terms of the equations. Equations of the
+// model's own states are excluded. NaN counts as infinite.
 static double relative(const struct symbolic_solver *f, const double *r, size_t nu,
                        const double *Q)
 {
     const size_t n = f->nmotion;
-    const double *gam = Q + nu, a = ct_vector_max_norm(f->form.a, n);
+    const double *gam = Q + nu, a = ct_vector_max_norm(f->base.a, n);
     const double forces = fmax(ct_vector_max_norm(Q, n), f->M_size * a);
     const double rates = fmax(ct_vector_max_norm(gam, f->c->rank), f->J_size * a);
     const double r0 = ct_vector_max_norm(r, n), r1 = ct_vector_max_norm(r + nu, f->c->rank);
@@ -153,38 +153,38 @@ static double relative(const struct symbolic_solver *f, const double *r, size_t 
     return isfinite(r0) && isfinite(r1) ? left : INFINITY;
 }
 
-static void check(struct ct_solver *form, struct ct_evaluator *m)
+static void check(struct ct_solver *base, struct ct_evaluator *m)
 {
-    struct symbolic_solver *f = symbolic_solver_of(form);
+    struct symbolic_solver *f = symbolic_solver_of(base);
     const size_t n = m->nu + f->c->rank;
-    const double *r = form->lam + f->c->rank, *better = r + n, *Q = better + n;
+    const double *r = base->lam + f->c->rank, *better = r + n, *Q = better + n;
     ct_program_run(&f->checked, m->input);
-    form->remainder = relative(f, r, m->nu, Q);
-    form->refined_remainder = relative(f, better, m->nu, Q);
-    form->kappa
-        = form->kind == &ct_solver_symbolic_kkt ? NAN : ct_vector_max_norm(Q + n, f->c->nB);
+    base->remainder = relative(f, r, m->nu, Q);
+    base->refined_remainder = relative(f, better, m->nu, Q);
+    base->kappa
+        = base->kind == &ct_solver_symbolic_kkt ? NAN : ct_vector_max_norm(Q + n, f->c->nB);
 }
 
-static double close(struct ct_solver *form, struct ct_evaluator *m)
+static double close(struct ct_solver *base, struct ct_evaluator *m)
 {
-    struct symbolic_solver *f = symbolic_solver_of(form);
+    struct symbolic_solver *f = symbolic_solver_of(base);
     ct_program_run(&f->closing, m->input);
-    return strength(f, form->du + m->nu + f->c->nshift);
+    return strength(f, base->du + m->nu + f->c->nshift);
 }
 
-static void destroy(struct ct_solver *form, struct ct_evaluator *m)
+static void destroy(struct ct_solver *base, struct ct_evaluator *m)
 {
-    struct symbolic_solver *f = symbolic_solver_of(form);
+    struct symbolic_solver *f = symbolic_solver_of(base);
     struct ct_program *const all[] = {&f->solved, &f->checked, &f->closing};
     for (size_t i = 0; i < COUNT(all); i++)
         ct_evaluator_remove_program(m, all[i]);
 }
 
-// Bytes of machine code; if none was made, those that code without loops would have.
+// Bytes of machine code; if there is none, the estimate for code without loops.
 static double code_size(const struct symbolic_solver *f)
 {
     return f->solved.native ? (double)ct_native_code_size(f->solved.native)
-                            : ct_solver_code_size(f->form.operations);
+                            : ct_solver_code_size(f->base.operations);
 }
 
 static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
@@ -198,8 +198,8 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     struct ct_partition_sets valued = *p;
     if (!valued.value)
         valued.value = ct_solver_values(own, m);
-    f->form = (struct ct_solver){.kind = kind, .arena = own};
-    ct_solver_set_partition(&f->form, p);
+    f->base = (struct ct_solver){.kind = kind, .arena = own};
+    ct_solver_set_partition(&f->base, p);
     f->M_size = ct_vector_max_norm(m->motion.out, m->e->nM);
     f->J_size = ct_vector_max_norm(J, m->e->nJ);
     f->nmotion = m->e->nmotion;
@@ -215,9 +215,9 @@ static struct ct_solver *create(struct ct_arena *a, struct ct_evaluator *m,
     compile_solved(f, m, x);
     compile_checked(f, m, x);
     compile_closing(f, m, x);
-    f->form.operations = ct_solver_operations(&f->solved);
-    f->form.cost = ct_solver_straight_cost(f->form.operations, code_size(f));
-    return &f->form;
+    f->base.operations = ct_solver_operations(&f->solved);
+    f->base.cost = ct_solver_straight_cost(f->base.operations, code_size(f));
+    return &f->base;
 }
 
 static struct ct_solver *create_partitioned(struct ct_arena *a, struct ct_evaluator *m,
@@ -230,7 +230,7 @@ static struct ct_solver *create_partitioned(struct ct_arena *a, struct ct_evalua
 static struct ct_solver *create_whole(struct ct_arena *a, struct ct_evaluator *m,
                                       const struct ct_partition_sets *p, double most_nodes)
 {
-    // where the rows determine all accelerations, they are found without M
+    // where the constraints determine all accelerations, M is not needed
     return p->nfree ? create(a, m, p, most_nodes, &ct_solver_symbolic_kkt) : NULL;
 }
 
@@ -248,11 +248,11 @@ const struct ct_solver_kind ct_solver_symbolic_kkt = {.name = "unrolled as one s
                                                       .close = close,
                                                       .destroy = destroy};
 
-struct ct_solver_code ct_solver_code(const struct ct_solver *form)
+struct ct_solver_code ct_solver_code(const struct ct_solver *base)
 {
-    if (form->kind != &ct_solver_symbolic && form->kind != &ct_solver_symbolic_kkt)
+    if (base->kind != &ct_solver_symbolic && base->kind != &ct_solver_symbolic_kkt)
         return (struct ct_solver_code){0};
-    const struct symbolic_solver *f = (const struct symbolic_solver *)form;
+    const struct symbolic_solver *f = (const struct symbolic_solver *)base;
     return (struct ct_solver_code){f->solved.listing, f->c->nfree, f->c->npivot, f->c->scale,
                                    &f->solved,        &f->checked, &f->closing,  f->c->nB,
                                    f->c->nshift,      f->M_size,   f->J_size,    f->has_power};

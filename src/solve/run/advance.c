@@ -94,7 +94,7 @@ bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_a
     r->singular->output_rtol = s->o.step == 0 ? s->o.output_rtol : 0;
     r->s->least_cancellation
         = s->o.step == 0 && s->o.output_rtol > 0 ? DBL_EPSILON / s->o.output_rtol : 0;
-    r->s->left = INFINITY;
+    r->s->smallest_cancellation = INFINITY;
     r->last_event = -INFINITY;
     r->has_jumped = false;
     r->t0 = t;

@@ -665,12 +665,12 @@ bool ct_run_start_steps(struct ct_run *r)
 // that it is the sum of, accelerations have a relative error of eps over that part.  (8.39)
 static void warn_of_cancellation(struct ct_run *r)
 {
-    if (r->s->left < r->s->least_cancellation)
+    if (r->s->smallest_cancellation < r->s->least_cancellation)
         ct_warning(r->ctx, (struct ct_mark){.file = r->model->file}, 0,
                    "the inertias of the mechanism cancel but for %.0e of them in some "
                    "position: round-off of "
                    "results may come to %.0e of them; '--tree absolute' has more digits there",
-                   r->s->left, DBL_EPSILON / r->s->left);
+                   r->s->smallest_cancellation, DBL_EPSILON / r->s->smallest_cancellation);
 }
 
 // The problem of the run, as r->o asks for it. watched: (ny), in the run's arena.
@@ -727,7 +727,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     r->singular->output_rtol = o->step == 0 ? o->output_rtol : 0;
     r->s->least_cancellation
         = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, tightest_tolerance) : 0;
-    r->s->left = INFINITY;
+    r->s->smallest_cancellation = INFINITY;
     if (r->output_error)
         ct_output_error_start(r->output_error, o->method);
     r->o = o;

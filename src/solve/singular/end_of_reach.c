@@ -1,9 +1,10 @@
-// End of reach: does a driven motion lead to where the constraints cannot be met any more?
+// Limit of reach: does a driven motion lead to a time from which on the constraints have no
+// solution?
 //
 // The motion either crosses a singular configuration ahead or ends in it. It ends if no
-// configuration behind it meets the constraints: the minimum of the sum of their squares is above 0
-// there and grows with time. The minimum is computed at two times by the Levenberg-Marquardt
-// method, starting from the configuration to which the present speeds lead. If the singular
+// configuration after it satisfies the constraints: then the minimum of the sum of their
+// squares is positive and grows with time. The minimum is computed at two times by the
+// Levenberg-Marquardt method, starting from the extrapolated configuration. If the singular
 // configuration can be crossed the minimum is 0.
 //
 // Source: Nocedal and Wright (2006), Numerical Optimization, 10.3, for the method.
@@ -26,7 +27,7 @@ struct search {
 };
 
 // Half the sum of squares of phi at y. J is evaluated there, too.
-static double find_misfit(const struct search *s, const double *y)
+static double half_sum_of_squares(const struct search *s, const double *y)
 {
     const struct ct_evaluator *m = s->w->m;
     double sum = 0;
@@ -38,7 +39,7 @@ static double find_misfit(const struct search *s, const double *y)
 }
 
 // H = J' J, g = J' phi; returns the norm of g relative to those of its factors.
-static double find_slope(const struct search *s)
+static double find_gradient(const struct search *s)
 {
     const struct ct_evaluator *m = s->w->m;
     const int nu = (int)m->nu, nrow = (int)m->nrow;
@@ -52,21 +53,21 @@ static double find_slope(const struct search *s)
     return trace * phi > 0 ? sqrt(ct_vector_dot(s->g, s->g, (size_t)nu) / (trace * phi)) : 0;
 }
 
-// Moves s->y to the nearest local minimum of the sum of squares. size (out): the root of the sum
-// there. False if none is found.
+// Move s->y to the nearest local minimum of the sum of squares. size (out): the root of that
+// sum. False if none is found.
 static bool find_least(struct search *s, double *size)
 {
     // Limit: iterations of the search; beyond them an end of the motion is not detected
     enum { MOST = 100 };
-    // the root of round-off: the accuracy of the place of a minimum
+    // the root of the unit round-off: relative accuracy of the position of a minimum
     const double flat = sqrt(DBL_EPSILON);
     const struct ct_evaluator *m = s->w->m;
     const size_t nu = m->nu;
-    // Limit: damping at first, which is adapted at each step
-    double mu = 1e-3, now = find_misfit(s, s->y);
+    // Limit: initial damping; it is adapted at each step
+    double mu = 1e-3, now = half_sum_of_squares(s, s->y);
     for (int i = 0; i < MOST && isfinite(now); i++) {
         *size = sqrt(2 * now);
-        if (*size <= DBL_EPSILON * s->w->s->scale || find_slope(s) <= flat)
+        if (*size <= DBL_EPSILON * s->w->s->scale || find_gradient(s) <= flat)
             return true;
         for (size_t k = 0; k < nu; k++)
             s->H[k + nu * k] += mu;
@@ -77,22 +78,23 @@ static bool find_least(struct search *s, double *size)
             s->g[k] = -s->g[k];
         memcpy(s->next, s->y, s->ny * sizeof *s->y);
         ct_evaluator_retract(s->w->m, s->next, s->g);
-        const double then = find_misfit(s, s->next);
+        const double then = half_sum_of_squares(s, s->next);
         if (then < now) {
             memcpy(s->y, s->next, s->ny * sizeof *s->y);
             now = then;
             mu /= 10;
         } else {
-            find_misfit(s, s->y);
+            half_sum_of_squares(s, s->y);
             mu *= 10;
         }
     }
     return false;
 }
 
-// The least residual of the constraints dt after t, near where the speeds of y at t lead. False
-// if it is not found.
-static bool find_open(struct search *s, double t, const double *y, double dt, double *size)
+// The least residual of the constraints at t + dt, near the configuration extrapolated from y
+// at t with its speeds. False if it is not found.
+static bool least_residual_after(struct search *s, double t, const double *y, double dt,
+                                 double *size)
 {
     const struct ct_evaluator *m = s->w->m;
     s->t = t + dt;
@@ -112,7 +114,7 @@ bool ct_singular_ends_motion(void *user, double t, const double *y, double in)
     const double closed = 1e-9; // residuals after steps are far below
     double once, twice;
     if (t + 3 * in >= *w->pending || ct_partition_is_large(w->s))
-        return false; // behind an event the motion may be another
+        return false; // an event may change the motion
     struct search s = {.w = w,
                        .ny = ny,
                        .y = CT_NEWN(a, double, ny),
@@ -120,8 +122,8 @@ bool ct_singular_ends_motion(void *user, double t, const double *y, double in)
                        .H = CT_NEWN(a, double, nu *nu + 1),
                        .g = CT_NEWN(a, double, nu + 1)};
     // the residual grows in proportion to the time after t + in
-    const bool is_found
-        = find_open(&s, t, y, 2 * in, &once) && find_open(&s, t, y, 3 * in, &twice);
+    const bool is_found = least_residual_after(&s, t, y, 2 * in, &once)
+                       && least_residual_after(&s, t, y, 3 * in, &twice);
     ct_evaluator_set(w->m, ct_rank_monitor_time(w, t), y);
     ct_evaluator_constraint(w->m);
     return is_found && once > closed * w->s->scale && twice > 1.5 * once;

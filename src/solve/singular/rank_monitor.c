@@ -1,8 +1,9 @@
 // Rank monitor: predicts the next singular configuration ahead of a motion. See singular.h.
 //
-// The smallest pivot of J, as rows and columns are chosen, vanishes at a singular configuration
-// about linearly in time. Its zero is extrapolated by secants along the motion. A change of sign of
-// the test function (singularity_test_function.c) tells that a step has passed over one.
+// For the chosen rows and columns, the smallest pivot of J vanishes at a singular
+// configuration, about linearly in time. Its zero is extrapolated by secants along the motion.
+// A change of sign of the test function (singularity_test_function.c) shows that a step has
+// passed a singular configuration.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -54,7 +55,7 @@ void ct_rank_monitor_start(struct ct_rank_monitor *w)
     w->rank = 0;
 }
 
-// ---- ahead --------------------------------------------------------------------------------------
+// ---- prediction ---------------------------------------------------------------------------------
 
 static void evaluate_constraints(struct ct_rank_monitor *w, double t, const double *y)
 {
@@ -79,20 +80,20 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
     return ct_rank_monitor_pivot(w, ct_time_just_before(a->t + s, a->pending), w->y);
 }
 
-// A singular configuration is predicted when the smallest pivot has fallen to the first part of its
-// largest value so far and goes on falling. Below the second part pivots are chosen at every
-// evaluation. Below CT_SINGULAR_PIVOT f is not computed if that can be avoided; methods that keep
-// their rows avoid it below the second part.
-// Default: shorter steps near small pivots against the accuracy of accelerations. Test:
-// singular_approach.
+// A singular configuration is predicted when the smallest pivot is below `predicted_pivot`
+// times its largest value so far and decreases. Below near_pivot new pivots are chosen at every
+// evaluation. Below CT_SINGULAR_PIVOT accelerations are not computed if that can be avoided;
+// methods that retain their rows avoid it below near_pivot.
+// Default: shorter steps near small pivots against the accuracy of accelerations.
+// Test: singular_approach.
 static const double predicted_pivot = 0.8, near_pivot = 0.5;
-// No step ends where the pivot is less than this part of its largest value. Derived: round-off
-// is divided by its square, and eps / 1e-14 leaves one digit to distinguish the motions through the
+// No step ends where the pivot is below this fraction of its largest value. Derived: round-off
+// is divided by its square; eps / 1e-14 leaves one digit to distinguish the motions through the
 // singular configuration.
 static const double smallest_pivot = 1e-7;
 
-// Round-off of accelerations is eps over the square of the pivot, against its largest. They have
-// too few digits if that is more than this part of the tolerance. Derived: two digits of it.
+// Round-off of accelerations is eps over the square of the relative pivot. Accelerations are
+// too inaccurate if that exceeds this fraction of the tolerance. Derived: a hundredth of it.
 static const double roundoff_part = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
@@ -112,9 +113,10 @@ bool ct_rank_monitor_is_roundoff_limited(struct ct_rank_monitor *w, double t, co
 static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_test *a,
                                double now, double dt)
 {
-    enum { SECANTS = 3 }; // Limit: evaluations of a prediction, which each rank test makes anew
-    // Derived: part of the last step, for a difference with ten digits; part of the predicted
-    // time, so that a secant does not pass the zero of a pivot that falls faster by a quarter
+    enum { SECANTS = 3 }; // Limit: evaluations of one prediction, repeated at each rank test
+    // Derived: fraction of the last step, for a difference quotient with ten digits; fraction
+    // of the predicted time, so that a secant does not pass the zero of a pivot that falls a
+    // quarter faster
     const double small_part = 1e-3, part = 0.8;
     const double far = CT_STEPS_NEAR_SINGULAR * dt;
     double s = small_part * dt, pivot = ct_rank_monitor_pivot_after(w, a, s),
@@ -124,7 +126,8 @@ static double time_to_singular(struct ct_rank_monitor *w, const struct ct_rank_t
     for (int i = 0; i < SECANTS && s - pivot / slope < far; i++) {
         const double next = s - part * pivot / slope;
         double there = ct_rank_monitor_pivot_after(w, a, next);
-        if (there > fabs(pivot)) // the pivot has changed its sign; only its size is computed
+        // the pivot has changed its sign; its absolute value is computed
+        if (there > fabs(pivot))
             there = -there;
         if (there == pivot)
             break;
@@ -146,12 +149,12 @@ double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const doubl
                  ahead = ct_rank_monitor_pivot_after(w, &a, s);
     const double way = ct_vector_max_norm(w->d, w->m->nu);
     if (behind > now
-        && behind > ahead) // the pivot rises again beyond the singular configuration
+        && behind > ahead) // the pivot rises again after the singular configuration
         return now * way / (behind - now);
     return ahead > now ? -now * way / (ahead - now) : now * way / (now - ahead);
 }
 
-// Predicts the singular configuration ahead of a state with a pivot that has begun to fall.
+// Predict the next singular configuration from a state with a decreasing pivot.
 static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *ahead,
                          double now)
 {
@@ -160,11 +163,12 @@ static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *a
     w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : CT_SINGULAR_PIVOT) / part;
 }
 
-// Where J loses rank its retained rows do, and a pivot of the solver vanishes. No rank test is
-// needed while the solver's pivots are those of the last test. Their product changes its sign at a
-// singular configuration, however far apart tests are. With step control the product itself must be
-// nearly unchanged, too, and no configuration may be predicted near by. Fixed steps cross nothing:
-// for them it only matters whether pivots are sought at every evaluation.
+// Is the last rank test still valid, as the solver's pivots have not changed? Where J loses
+// rank its retained rows do, and a pivot of the solver vanishes. The product of the pivots
+// changes its sign at a singular configuration, however far apart the tests are. With step
+// control the product itself must be nearly unchanged, and no configuration may be predicted
+// nearby. Fixed steps cross nothing: for them the test only decides whether new pivots are
+// found at every evaluation.
 static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, bool is_fixed)
 {
     // Default: rank tests against what changes on a step. Test: singular
@@ -185,13 +189,13 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
         && ct_is_within(f->volume / w->volume, unchanged_ratio);
 }
 
-// Have speeds changed by far more since the last rank test, dt before, than by accelerations
-// there or here? The motions that meet in a singular configuration have different speeds.
-static bool has_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
-                       const double *a)
+// Have speeds changed since the last rank test, dt before, by far more than accelerations
+// explain? The motions that meet at a singular configuration have different speeds.
+static bool have_speeds_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
+                               const double *a)
 {
-    // Of the largest speed so far. Chosen: far more than steps err by, and less than the speeds of
-    // two motions that meet differ by
+    // Fraction of the largest speed so far. Chosen: far more than the error of steps, less than
+    // the difference between speeds of two motions that meet
     const double part = 0.2;
     const size_t nu = w->m->nu;
     const double least = part * fmax(w->largest_speed, ct_vector_largest(u, nu));
@@ -217,8 +221,8 @@ static void store_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_
     store_speeds(w, at);
 }
 
-// The tangent basis at the last state, where the solver's pivots stood for the rank test: rank
-// may change on the step from there.
+// Find the tangent basis at the last state, where the solver's pivots replaced the rank test:
+// the rank may change on the step from there.
 static void test_last_state(struct ct_rank_monitor *w, double pending)
 {
     ct_rank_monitor_pivot(w, ct_time_just_before(w->t, pending), w->last);
@@ -228,7 +232,7 @@ static void test_last_state(struct ct_rank_monitor *w, double pending)
 // Result of the rank test at an accepted state.
 struct rank_test_result {
     double now,
-        part; // the pivot, and relative to the largest; where is_far, lower bounds
+        part; // the pivot, and the relative pivot; lower bounds where is_far
     bool is_far;
     bool
         // a singular configuration was crossed since the last test, or left on another motion
@@ -251,7 +255,7 @@ static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
     ct_tangent_basis_find(w->s, w->here);
     if (w->here->rank && w->there->rank)
         l.is_crossed = ct_singularity_test_sign_changed(w->s, w->there, w->here)
-                    || has_jumped(w, dt, u, a);
+                    || have_speeds_jumped(w, dt, u, a);
     return l;
 }
 
@@ -261,8 +265,8 @@ static void store_state(struct ct_rank_monitor *w, double t, const double *y)
     memcpy(w->last, y, (w->m->nq + w->m->nu) * sizeof *y);
 }
 
-// A step that ends in the singular configuration itself, at an event there, chooses fewer rows.
-// Restores the rows of the state before, for a shorter step. False if no row was lost.
+// A step that ends exactly at a singular configuration, at an event there, chooses fewer rows.
+// Restore the rows of the state before, for a shorter step. False if no row was lost.
 static bool restore_rows(struct ct_rank_monitor *w, double pending)
 {
     if (w->s->rank >= w->rank)
@@ -273,8 +277,8 @@ static bool restore_rows(struct ct_rank_monitor *w, double pending)
     return true;
 }
 
-// Must the step to this state be repeated with a shorter one? After another choice of rows and
-// columns the pivot cannot be compared with the last one.
+// Must the step to this state be repeated with a shorter one? Pivots of different choices of
+// rows and columns cannot be compared.
 static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_test_result *l)
 {
     const bool was_unpredicted = w->s->switches == w->switches && isinf(w->time_to_singular)
@@ -284,8 +288,8 @@ static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_
             && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
 }
 
-// Would the pivot have fallen to zero on this step, or nearly so, at its rate on the step
-// before? Where the rank falls by two the test function does not change its sign.
+// Would the pivot have reached zero, or nearly, at its rate on the step before? Where the rank
+// falls by two the test function does not change its sign.
 static bool falls_to_zero(const struct ct_rank_monitor *w, double dt)
 {
     return w->pivot > 0 && w->pivot < 2 * dt * w->pivot_rate;
@@ -313,7 +317,7 @@ static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
     w->reference_pivot = fmax(w->reference_pivot, fmax(w->largest_pivot, l->now));
 }
 
-// Records for the report how near a step that is no crossing has come to a singular
+// Record for the report how near a step that is not a crossing has come to a singular
 // configuration.
 static void record_closest(struct ct_rank_monitor *w, double t,
                            const struct rank_test_result *l)
@@ -392,7 +396,7 @@ void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const doubl
 
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)
 {
-    w->largest_pivot = ct_rank_monitor_pivot(w, t, y); // pivots farther off are not known
+    w->largest_pivot = ct_rank_monitor_pivot(w, t, y); // pivots farther away are unknown
     w->there->rank = 0;
     w->t = t;
     w->relative_pivot = w->s->nearness = 1;
@@ -402,8 +406,8 @@ void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double 
     w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
 }
 
-// The stages of a crossing keep away from the singular configuration and are projected onto the
-// constraints: the order of pivots at its beginning holds for all of them.
+// The stages of a crossing are at a distance from the singular configuration and are projected
+// onto the constraints: the order of pivots at its beginning is valid for all of them.
 void ct_rank_monitor_set_crossing(struct ct_rank_monitor *w, bool is_crossing)
 {
     w->s->is_crossing = is_crossing;

@@ -8,21 +8,20 @@
 #include <math.h>
 #include <string.h>
 
-// A search evaluates the pivot at PARTS points of the step; around the best of them the interval
-// is reduced NARROWED times to an eighth. Singular configurations are then known to `resolved` of
-// the step. Limit: of the time of a search. Derived: resolved to 1e-4 of the step, where rank is
-// measured
-enum { PARTS = 16, NARROWED = 3 };
+// A search evaluates the pivot at PARTS points of the step; the interval around the smallest is
+// reduced NREDUCTION times to an eighth. The result is accurate to `resolved` of the step.
+// Limit: of the time of a search. Derived: resolved to 1e-4 of the step, where rank is measured
+enum { PARTS = 16, NREDUCTION = 3 };
 static const double interval_reduction = 1.0 / 8, resolved = 1.0 / (PARTS * 8 * 8 * 8);
 
-// Part of the step, to either side of a singular configuration, at which the dependent rows are
-// found. Derived: a quarter of the spacing of points
+// Distance, as a fraction of the step, on either side of a singular configuration at which the
+// dependent rows are found. Derived: a quarter of the spacing of points
 static const double test_distance = 1.0 / (4 * PARTS);
 
-// Rows with part in x (rank), a vector of null(J') that has come out of ct_partition_dependence at
-// `test_distance` or nearer: entries of rows that take part are of order 1, those of others of
-// order test_distance^2 = 2e-4. Ten times as much leaves a row of a parallelogram out
-// (tests/cli/singular.sh).
+// row: is the row part of the dependence x (rank), a vector of null(J') from
+// ct_partition_dependence at `test_distance` or nearer? Entries of such rows are of order 1,
+// those of others of order test_distance^2 = 2e-4. With ten times the limit a row of a
+// parallelogram is omitted (tests/cli/singular.sh).
 static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 {
     // Derived: between test_distance^2 and 1.
@@ -37,9 +36,9 @@ static void mark_rows(const struct ct_rank_monitor *w, bool *row)
 
 struct passage {
     const struct ct_stepper_span *span;
-    double begin, pending; // `begin`: of the span, as part of the crossing
+    double begin, pending; // `begin`: of the span, as a fraction of the crossing
     const struct ct_rank_test
-        *to; // without a span: from the last state to this one, with a constant acceleration
+        *to; // without a span: from the last state to this one, with constant acceleration
 };
 
 static double time_on(const struct passage *p, double part)
@@ -68,12 +67,12 @@ static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, doubl
 
 typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
 
-// Refines theta, which is within d of the minimum of the pivot: it falls and rises about
-// linearly, so its values at both sides give the place of the zero.
+// Refine theta, which is within d of the minimum of the pivot. The pivot falls and rises about
+// linearly, so its values on both sides give the zero.
 static double narrow_interval_of(measure *pivot, struct ct_rank_monitor *w,
                                  const struct passage *p, double theta, double d)
 {
-    for (int i = 0; i < NARROWED; i++) {
+    for (int i = 0; i < NREDUCTION; i++) {
         const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
         d *= interval_reduction;
@@ -87,7 +86,7 @@ static double narrow_interval(struct ct_rank_monitor *w, const struct passage *p
     return narrow_interval_of(pivot_on, w, p, theta, d);
 }
 
-// The part of the step, near its middle, at which the pivot is below `zero`; NaN if it is not.
+// The fraction of the step, near its middle, at which the pivot is below `zero`; else NaN.
 static double find_zero_in_middle(struct ct_rank_monitor *w, const struct passage *p,
                                   double zero)
 {
@@ -95,7 +94,8 @@ static double find_zero_in_middle(struct ct_rank_monitor *w, const struct passag
     return pivot_on(w, p, theta) < zero ? theta : NAN;
 }
 
-// The part of the step at which the smallest pivot is least, if it is below `zero` there; else NaN.
+// The fraction of the step at which the smallest pivot is least, if it is below `zero` there;
+// else NaN.
 static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passage *p,
                                   double zero)
 {
@@ -111,8 +111,7 @@ static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passag
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// Where the test function changes its sign. theta (PARTS, out); returns the number of sign
-// changes.
+// Find sign changes of the test function: theta (PARTS, out). Returns their number.
 static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
                              double *theta)
 {
@@ -137,8 +136,8 @@ static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p,
     return n;
 }
 
-// The rows that are dependent there and the loss of rank: at a distance d from the singular
-// configuration det J_d ~ d^loss.
+// Find the dependent rows and the loss of rank: at a distance d from the singular configuration
+// det J_d ~ d^loss.
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
                             struct ct_singular_configuration *at)
 {
@@ -156,8 +155,8 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
     mark_rows(w, at->row);
 }
 
-// Does the sign of the test function at the end of the step, against its beginning (w->along),
-// agree with this loss of rank? True if the beginning is not known.
+// Does the sign of the test function at the end of the step, relative to its beginning
+// (w->along), agree with this loss of rank? True if the sign at the beginning is unknown.
 static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *p,
                                int rank_loss)
 {
@@ -171,11 +170,11 @@ static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *
 struct found_configurations {
     double theta[PARTS];
     int n;
-    bool has_dependence; // there is one, and its dependent rows are in the last of w->passed
+    bool has_dependence; // one is found, and its dependent rows are in the last of w->passed
 };
 
-// The usual case, one in the middle, where it was predicted. False if there may be others:
-// multipliers have a pole at each of two that are close together.
+// The usual case: one in the middle, where it was predicted. False if there may be others. Of
+// two that are close together, multipliers have a pole at each.
 static bool find_predicted(struct ct_rank_monitor *w, const struct passage *p, double zero,
                            struct found_configurations *f)
 {
@@ -223,18 +222,19 @@ static void record_configuration(struct ct_rank_monitor *w, const struct passage
         find_dependence(w, p, f->theta[i], last);
     memcpy(at->row, last->row, w->m->nrow * sizeof *at->row);
     at->rank_loss = last->rank_loss;
-    at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts in one begins before it
+    at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts at one begins before it
 }
 
-// The pivot of the retained rows, which are dependent where all are: singular values have only
-// half the digits.
+// The pivot of the retained rows, which are dependent where J loses rank: singular values have
+// only half the precision.
 static double retained_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
 {
     pivot_on(w, p, part);
     return ct_partition_retained_pivot(w->s);
 }
 
-// Refined to all digits of the step, since multipliers are divided by the time to the pole.
+// Times of the poles, refined to round-off of the step, since multipliers are divided by the
+// time to the pole.
 static void record_poles(struct ct_rank_monitor *w, const struct passage *p,
                          const struct found_configurations *f)
 {
@@ -260,9 +260,9 @@ bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_s
     return has_passed;
 }
 
-// Steps came across a position, or close by, where on their way the pivot falls below this part of
-// what it is at both ends.
-// Chosen: configurations that are passed near by against those that are crossed.
+// A step crosses a singular configuration, or passes near it, if the pivot falls below this
+// fraction of its values at both ends.
+// Chosen: configurations that are passed nearby against those that are crossed.
 static const double crossed_pivot_ratio = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
@@ -273,8 +273,8 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
     return part > 0 && part < 1;
 }
 
-// Does the motion with the speeds at y come to a singular configuration within s seconds? The
-// evaluator is left at a state near it.
+// Does the motion with the speeds at y reach a singular configuration within s seconds? The
+// evaluator has a state near it afterwards.
 static bool is_singular_within(struct ct_rank_monitor *w, double t, const double *y, double s)
 {
     const struct ct_rank_test to = {.t = t + s, .pending = INFINITY, .y = y};
@@ -286,7 +286,7 @@ static bool is_singular_within(struct ct_rank_monitor *w, double t, const double
 bool ct_rank_monitor_is_near_singular(struct ct_rank_monitor *w, double t, const double *y,
                                       double step, bool *row)
 {
-    // Derived: a hundredth, where round-off takes four digits
+    // Derived: a hundredth; round-off grows by 1e4 there
     const double near_singular_ratio = 1e-2; // of the largest pivot
     double log_det;
     memset(row, 0, w->m->nrow * sizeof *row);

@@ -1,4 +1,5 @@
-// What integrators ask of singular configurations, answered by the rank monitor. See singular.h.
+// Callbacks of the integrators for singular configurations, implemented by the rank monitor.
+// See singular.h.
 #include "numeric/dense.h"
 #include "solve/evaluator/switch_state.h"
 #include "solve/singular/rank_monitor_internal.h"
@@ -18,15 +19,13 @@ static bool is_near(void *user, double t, const double *y)
     return ct_rank_monitor_is_roundoff_limited(w, ct_rank_monitor_time(w, t), y);
 }
 
-// The stages of a crossing keep away from the singular configuration and are put onto the
-// constraints: the order of pivots at its beginning holds for all of them.
 static void set_crossing(void *user, bool is_crossing)
 {
     ct_rank_monitor_set_crossing(user, is_crossing);
 }
 
 // The residual x' Phi with x'J = 0 and max |x| = 1. With redundant rows the retained ones may
-// become dependent before all of them do: then no residual is measured.
+// become dependent before all rows do; then the residual is 0.
 static double dependent_residual(struct ct_rank_monitor *w)
 {
     const struct ct_evaluator *m = w->m;

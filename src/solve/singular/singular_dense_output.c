@@ -1,15 +1,17 @@
 // Dense output across a singular configuration: accelerations and multipliers in the gap of a
-// crossing, from what they are at its stages.
-// Accelerations are smooth across a singular configuration and are interpolated. Multipliers are
-// not: a load on the motion that is free only in that configuration is carried by rows that become
-// dependent, and their multipliers grow like 1/(t - t_k) towards a configuration at t_k. Without
-// that part they are smooth:
+// crossing, interpolated from its stages.
 //
-//     lam(t) = P(t) + sum_k R_k/(t - t_k),   R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)           (8.43)
+// Accelerations are smooth across a singular configuration. Multipliers are not: a load on the
+// motion that is free only in that configuration is carried by rows that become dependent. Their
+// multipliers grow like 1/(t - t_k) towards a configuration at t_k. The rest of them is smooth:
+//
+//     lam(t) = P(t) + sum_k R_k/(t - t_k),                                                (8.43)
+//     R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)
+//
 // with P and the product in brackets interpolated between stages. Only poles that improve the
-// interpolation of the stages are used. Results that are linear in multipliers are themselves
-// interpolated in this way: otherwise errors of y in the gap, times loads without bound, would
-// appear in results that do not depend on these loads.
+// interpolation of the stages are used. Results that are linear in multipliers are interpolated in
+// the same way. Computed from interpolated multipliers, they would contain errors of y in the gap
+// times unbounded loads, even where they do not depend on these loads.
 #include "solve/singular/singular.h"
 
 #include "integrate/crossing.h"
@@ -22,13 +24,13 @@
 // Definition: stages on both sides of the gap
 enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// An interpolant with poles or without: weights of the stages for t, and for the errors of its
-// prediction of the two stages next to the gap from the others.
-struct model {
+// An interpolant with or without poles: weights of the stages at t, and weights of the other
+// stages in the prediction of the two stages next to the gap, for the error.
+struct interpolant {
     double weight[N], check[CHECKED][N];
 };
 
-// Numbers at the stages, and at t.
+// Values at the stages and at t.
 struct numbers {
     size_t n;
     double *at, *value; // (n x N), (n)
@@ -39,7 +41,7 @@ struct ct_singular_dense_output {
     double *stage; // (ny)
     int n;         // poles
     double pole[CT_MOST_POLES];
-    struct model smooth, singular; // without poles, with all of them
+    struct interpolant smooth, singular; // without poles, with all of them
     struct numbers a, lam, result;
     bool *is_linear; // (nresult) in multipliers
     bool any_linear;
@@ -51,8 +53,8 @@ static struct numbers create_numbers(struct ct_arena *a, size_t n)
         .n = n, .at = CT_NEWN(a, double, n *N + 1), .value = CT_NEWN(a, double, n + 1)};
 }
 
-// Is g, which depends on multipliers, linear in them and otherwise smooth? ds (nrow): numbers in
-// no simple relation.
+// Is g, which depends on multipliers, linear in them and otherwise smooth? ds (nrow): arbitrary
+// numbers.
 static bool is_linear(const struct ct_equations *e, ct_ex g, const ct_ex *lam, const ct_ex *ds)
 {
     const unsigned has_lam = 1u << CT_SYM_LAM, kinds = ct_ex_kinds(e->x, g);
@@ -92,14 +94,15 @@ struct ct_singular_dense_output *ct_singular_dense_output_create(struct ct_arena
     return s;
 }
 
-// (t - t_k), but for t_k itself, where there is no value: as near as times differ.
+// t - t_k, at least the resolution of times.
 static double distance_to_pole(double t, double pole)
 {
     const double least = DBL_EPSILON * fmax(fabs(t), DBL_MIN / DBL_EPSILON);
     return fabs(t - pole) > least ? t - pole : least;
 }
 
-// The weight of stage j in the interpolation at t between the stages that `some` marks.
+// The weight of stage j in the Lagrange interpolation at t between the stages that `some`
+// marks.
 static double lagrange(const struct ct_gap_interpolation *b, const bool *some, int j, double t)
 {
     double weight = some[j];
@@ -133,7 +136,8 @@ static void find_weights(const struct ct_singular_dense_output *s,
 
 // m (out): the interpolant with the first n poles, for t.
 static void find_model(const struct ct_singular_dense_output *s,
-                       const struct ct_gap_interpolation *b, double t, int n, struct model *m)
+                       const struct ct_gap_interpolation *b, double t, int n,
+                       struct interpolant *m)
 {
     bool all[N], others[N];
     for (int j = 0; j < N; j++) {
@@ -148,11 +152,11 @@ static void find_model(const struct ct_singular_dense_output *s,
     }
 }
 
-// Singular configurations that are close to each other count as one.
+// Poles of the crossing; two that are very close count as one.
 static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
 {
     const struct ct_rank_monitor *w = s->w;
-    // Chosen: far below the distance of stages
+    // Chosen: far below the distance between stages
     const double pole_separation = 1e-7 * (b->t[N - 1] - b->t[0]);
     s->n = 0;
     for (int k = 0; k < w->npole; k++)
@@ -160,13 +164,13 @@ static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_i
             s->pole[s->n++] = w->pole[k];
 }
 
-static void note(struct numbers *x, const double *at, int j)
+static void store_value(struct numbers *x, const double *at, int j)
 {
     for (size_t i = 0; i < x->n; i++)
         x->at[i * N + (size_t)j] = at[i];
 }
 
-static double error_of(const struct model *m, const double *at)
+static double error_of(const struct interpolant *m, const double *at)
 {
     double error = 0;
     for (int c = 0; c < CHECKED; c++)
@@ -174,9 +178,10 @@ static double error_of(const struct model *m, const double *at)
     return error;
 }
 
-// A number has poles if they improve the interpolation: with poles the other stages predict the
-// two next to the gap ten times as well.
-static void take(const struct ct_singular_dense_output *s, struct numbers *x, bool has_poles)
+// A value has poles if they reduce the error of predicting the two stages next to the gap from
+// the others to `pole_gain`.
+static void interpolate(const struct ct_singular_dense_output *s, struct numbers *x,
+                        bool has_poles)
 {
     // Chosen: as above
     const double pole_gain = 0.1;
@@ -197,8 +202,8 @@ static const double *results(struct ct_evaluator *m, const double *a, const doub
     return m->result.out;
 }
 
-static bool note_stage(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b,
-                       int j)
+static bool store_stage(struct ct_singular_dense_output *s,
+                        const struct ct_gap_interpolation *b, int j)
 {
     struct ct_partition *p = s->w->s;
     const size_t ny = p->m->nq + p->m->nu + 1;
@@ -207,10 +212,10 @@ static bool note_stage(struct ct_singular_dense_output *s, const struct ct_gap_i
         || ct_partition_accelerate_at(p, b->t[j], s->stage) != CT_EVAL_OK)
         return false;
     ct_partition_multipliers(p);
-    note(&s->a, p->a, j);
-    note(&s->lam, p->lam, j);
+    store_value(&s->a, p->a, j);
+    store_value(&s->lam, p->lam, j);
     if (s->any_linear)
-        note(&s->result, results(p->m, p->a, p->lam), j);
+        store_value(&s->result, results(p->m, p->a, p->lam), j);
     return true;
 }
 
@@ -222,11 +227,11 @@ bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, cons
     find_model(s, b, t, 0, &s->smooth);
     find_model(s, b, t, s->n, &s->singular);
     for (int j = 0; j < N; j++)
-        if (!note_stage(s, b, j))
+        if (!store_stage(s, b, j))
             return false;
-    take(s, &s->a, false);
-    take(s, &s->lam, true);
-    take(s, &s->result, true);
+    interpolate(s, &s->a, false);
+    interpolate(s, &s->lam, true);
+    interpolate(s, &s->result, true);
     ct_evaluator_set(m, t, y);
     memcpy(value, results(m, s->a.value, s->lam.value), m->e->nresult * sizeof *value);
     for (size_t i = 0; i < m->e->nresult; i++)

@@ -1,15 +1,15 @@
 // First step of a run that starts in a singular configuration with speeds, or near one: backward
 // collocation.
 //
-// In a singular configuration rows of J are dependent and accelerations cannot be computed. Speeds
-// of one of the motions through it satisfy
+// At a singular configuration rows of J are dependent and accelerations cannot be computed.
+// Speeds of one of the motions through it satisfy
 //
-//     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                                              (8.23)
+//     J u = -Phi_t,   w' (J' u + ...) = 0  for w' J = 0                              (8.23)
 //
-// and select that motion. Near a singular configuration accelerations exist, but have too few
-// digits for steps. Collocation centred on the singular configuration finds the state half a step
-// before it. The run begins there and crosses the configuration as any other run does. Collocation:
-// crossing.h.
+// and select that motion. Near a singular configuration accelerations exist, but are too
+// inaccurate for steps. Collocation centred on the singular configuration finds the state half
+// a step before it. The run begins there and crosses the configuration like any other run.
+// Collocation: crossing.h.
 #include "solve/singular/rank_monitor_internal.h"
 
 #include "integrate/crossing.h"
@@ -20,32 +20,33 @@
 #include <math.h>
 #include <string.h>
 
-// Largest change of a coordinate from where the motion is slowest to either end of the step [rad,
-// m], at first; halved where the step errs.
-// Chosen: longer steps have more digits, and err more.
+// Largest change of a coordinate from the middle to either end of the step [rad, m], at first;
+// halved where the step is inaccurate.
+// Chosen: round-off of short steps against errors of long ones.
 static const double longest_displacement = 0.4;
-// Limit: halvings of the step; a motion that stays near for long leaves faster than its
-// accelerations at the start predict
+// Limit: halvings of the step; a motion that stays near the singular configuration for long
+// later leaves faster than its initial accelerations predict
 enum { MOST_HALVINGS = 12 };
 
-// Starts up to so far [rad, m] from a singular configuration begin by a step across it.
-// Default: starts that are refused for lack of digits against steps that err.
+// Initial states up to this distance [rad, m] from a singular configuration begin with a step
+// across it.
+// Default: refusal for lack of accuracy against errors of steps.
 // Test: near_singular_slow
 static const double crossing_distance = 0.2;
-// A start up to so far from it [rad, m] tells nothing of how the smallest pivot falls.
+// Within this distance [rad, m] an initial state does not show how the smallest pivot falls.
 // Default: as above. Test: singular
 static const double near_distance = 0.5;
 
-// The error of the step may be this part of the largest state, or the second part of the
-// tolerance if that is more. (8.35) Derived: 4500 units of round-off; a fiftieth of the tolerance
-// does not change the digits that are wanted.
+// Accepted error of the step, relative to the largest state: the first, or the second times the
+// tolerance if that is larger.  (8.35)
+// Derived: 4500 units of round-off; a fiftieth of the tolerance has no visible effect.
 static const double smallest_error = 1e-12, error_part = 0.02;
 
-// Start of a run: norms of speeds and accelerations, as far as they are known.
+// Start of a run: norms of speeds and accelerations, where known.
 struct initial_step {
     void *work;
     double u, a, ua;         // |u|, |u'|, u . u'
-    double time_to_singular; // time to the singular configuration, negative behind it
+    double time_to_singular; // time to the singular configuration, negative after it
     double largest_error;    // of the step, relative to the largest state
     double *before;          // (ny, out)
     double *end, *dend;      // (ny)
@@ -63,10 +64,10 @@ static double begin_of(const struct crossing_step *c)
     return c->middle - c->h / 2;
 }
 
-// Time to move by `way` from the speed u.
-static double time_for(const struct initial_step *l, double u, double way)
+// Time to move by `distance` from the speed u.
+static double time_for(const struct initial_step *l, double u, double distance)
 {
-    return 2 * way / (u + sqrt(u * u + 2 * l->a * way));
+    return 2 * distance / (u + sqrt(u * u + 2 * l->a * distance));
 }
 
 static double speed_at(const struct initial_step *l, double t)
@@ -83,8 +84,8 @@ static double constraint_residual(struct ct_singular_start *r, double t, const d
     return ct_vector_largest(r->m->phi, r->m->nrow);
 }
 
-// Chooses rows and columns of the coordinate partitioning at the state reached with the speeds
-// of y in the time h.
+// Choose rows and columns of the coordinate partitioning at the state extrapolated by the time
+// h with the speeds of y.
 static bool choose_partition(struct ct_singular_start *r, double h, const double *y)
 {
     const size_t n = r->ctx->ndiagnostic, nerror = r->ctx->nerror;
@@ -96,7 +97,7 @@ static bool choose_partition(struct ct_singular_start *r, double h, const double
     ct_evaluator_constraint(r->m);
     r->s->sigma_best = 0;
     r->s->prefers_independent
-        // dependent speeds are less accurate, the more so the nearer the singular configuration is
+        // dependent speeds lose accuracy towards the singular configuration
         = r->is_given;
     const bool is_chosen = ct_partition_choose(r->s);
     r->s->prefers_independent = NULL;
@@ -107,8 +108,9 @@ static bool choose_partition(struct ct_singular_start *r, double h, const double
     return false;
 }
 
-// How far y may be from the start to be on the motion that is meant, of the largest state: speeds
-// beside a position are known no better, other motions are as far as speeds are large.
+// Largest distance of y from the initial state, relative to the largest state, on the intended
+// motion: speeds near a singular configuration are not more accurate; other motions differ by
+// the speeds themselves.
 // Chosen: between both.
 static const double same_motion_tolerance = 1e-4;
 
@@ -126,8 +128,8 @@ bool ct_singular_meets_start(const double *assembled, const double *y, size_t ny
     return relative_distance(assembled, y, ny) <= same_motion_tolerance;
 }
 
-// Does the step from l->before succeed and pass through the start? r->stage (out): its state at
-// the start.
+// Does the step from l->before succeed and pass through the initial state? r->stage (out): its
+// state there.
 static bool leads_across(struct ct_singular_start *r, const struct initial_step *l,
                          const struct crossing_step *c)
 {
@@ -145,8 +147,9 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
     return ct_singular_meets_start(r->assembled, r->stage, (size_t)r->p->ny);
 }
 
-// Solves the collocation into l->before to the smallest error that round-off allows: the
-// tolerance is raised tenfold until the sweeps converge. Returns the error, or INFINITY.
+// Solve the collocation equations into l->before to the smallest error that round-off allows:
+// the tolerance is raised tenfold until the iteration converges. Returns the error, or
+// INFINITY.
 static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
                                   const struct crossing_step *c)
 {
@@ -164,7 +167,7 @@ static double collocate_backwards(struct ct_singular_start *r, const struct init
     return INFINITY;
 }
 
-// Projects the state at the beginning of the step as accurately as its stages.
+// Project the state at the beginning of the step as accurately as its stages.
 static bool project_state(struct ct_singular_start *r, const struct initial_step *l, double t)
 {
     r->p->singular->set_crossing(r->p->singular->user, true);
@@ -173,7 +176,7 @@ static bool project_state(struct ct_singular_start *r, const struct initial_step
     return e == CT_EVAL_OK;
 }
 
-// Finds the state at the beginning of a crossing step, l->before, and its error; INFINITY if the
+// Find the state at the beginning of a crossing step, l->before, and its error; INFINITY if the
 // step does not cross the singular configuration.
 static void find_state_before(struct ct_singular_start *r, const struct initial_step *l,
                               struct crossing_step *c)
@@ -193,8 +196,8 @@ static void find_state_before(struct ct_singular_start *r, const struct initial_
         c->error = error;
 }
 
-// Does J keep its rank on either side of the gap? With another singular configuration among the
-// stages samples would have large round-off.
+// Does J keep its rank on either side of the gap? A second singular configuration among the
+// stages would make samples inaccurate.
 static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
                        const struct crossing_step *c)
 {
@@ -215,7 +218,7 @@ static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l
     return true;
 }
 
-// Do root functions keep their signs? A switch on the way would change the motion.
+// Do root functions keep their signs? A switch within the step would change the motion.
 static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_step *l,
                              double t)
 {
@@ -229,9 +232,9 @@ static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_s
     return true;
 }
 
-// Finds the longest step centred at `middle` that is accurate enough and reaches the start, by
-// halving. It replaces best (in and out) if that is shorter, since its ends are farther from the
-// singular configuration.
+// Find the longest step centred at `middle` that is accurate enough and reaches the initial
+// state, by halving. It replaces best (in and out) if it is longer, since its ends are farther
+// from the singular configuration.
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct crossing_step *best)
 {
@@ -281,9 +284,9 @@ static void return_to_start(struct ct_singular_start *r)
     ct_partition_choose(r->s);
 }
 
-// Values that are not given follow from given ones by pivots as small as the distance to the
-// singular configuration.
-static void warn_of_rounding(struct ct_singular_start *r, double unknown)
+// Values that are not demanded follow from demanded ones by division by pivots as small as the
+// distance to the singular configuration.
+static void warn_of_roundoff(struct ct_singular_start *r, double unknown)
 {
     ct_warning(r->ctx, (struct ct_mark){.file = r->file}, 0,
                "the run starts so near to a singular configuration that, because of round-off, "
@@ -292,7 +295,7 @@ static void warn_of_rounding(struct ct_singular_start *r, double unknown)
                unknown);
 }
 
-// Begins half a step before the singular configuration, if there is a step that crosses it.
+// Begin half a step before the singular configuration, if a step crosses it.
 static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
@@ -303,7 +306,7 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
     }
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, (size_t)r->p->ny);
-    r->singular->time_to_singular = 0; // nearer than where crossings usually begin
+    r->singular->time_to_singular = 0; // closer than crossings usually begin
     r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, r->p);
     find_step(r, l, l->time_to_singular, &best);
@@ -315,7 +318,7 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
     }
     const double unknown = relative_distance(r->assembled, r->stage, (size_t)r->p->ny);
     if (unknown > r->output_rtol)
-        warn_of_rounding(r, unknown);
+        warn_of_roundoff(r, unknown);
     r->t0 = begin_of(&best);
     memcpy(r->y, l->before, (size_t)r->p->ny * sizeof *r->y);
     r->singular->retains_rows = r->is_implicit && (size_t)r->s->rank < r->m->nrow;
@@ -323,7 +326,7 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
     return true;
 }
 
-// Sets the error that the step may have for a tolerance `asked`; `effect`: its effect on the
+// Set the accepted error of the step for the tolerance `asked`; `effect`: its effect on the
 // motion.
 static void set_largest_error(struct initial_step *l, double asked, double effect)
 {
@@ -345,11 +348,12 @@ static bool begin_in_singular(struct ct_singular_start *r, struct initial_step *
         || refuse_speeds(r, misfit, freedoms);
 }
 
-// Distance to the singular configuration along the motion, negative if it is behind the start.
+// Distance to the singular configuration along the motion, negative if it is before the initial
+// state.
 static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
                                      const double *dy, struct initial_step *l)
 {
-    // Derived: a difference with ten digits
+    // Derived: a difference quotient with ten digits
     const double small_part = 1e-3; // of the time in which the motion covers crossing_distance
     const size_t nq = w->m->nq, nu = w->m->nu;
     const double *a = dy + nq, *u = y + nq;
@@ -362,20 +366,21 @@ static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
                                     small_part * time_for(l, l->u, crossing_distance));
 }
 
-// Start near a singular configuration: begins before it, or passes its predicted distance to the
-// rank monitor.
+// Initial state near a singular configuration: begin before it, or pass its predicted distance
+// to the rank monitor.
 static void begin_near_singular(struct ct_singular_start *r, struct initial_step *l)
 {
-    const double way = find_singular_distance(r->singular, r->y, r->dy, l), size = fabs(way);
+    const double distance = find_singular_distance(r->singular, r->y, r->dy, l),
+                 size = fabs(distance);
     if (!(size > 0 && size < near_distance))
         return;
     const double along = fmax(size, l->u * time_for(l, l->u, longest_displacement));
     set_largest_error(l, r->output_rtol, fmin(1, along));
-    l->time_to_singular = copysign(time_for(l, l->u, size), way);
+    l->time_to_singular = copysign(time_for(l, l->u, size), distance);
     ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near_distance / size);
     if (size > crossing_distance || !begin_before(r, l))
         ct_rank_monitor_start_near(r->singular, 0, r->y,
-                                   way > 0 ? l->time_to_singular : INFINITY,
+                                   distance > 0 ? l->time_to_singular : INFINITY,
                                    near_distance / size);
 }
 

@@ -1,8 +1,9 @@
-// Test whether a start is a singular configuration; see singular.h.
+// Is the initial state a singular configuration? See singular.h.
 //
-// J has the same rank at all configurations of a motion except singular ones, where it has less.
-// The rank at the start is compared with the rank at a configuration 0.1 rad or m away: a step in
-// the null space of J, projected onto the constraints by Gauss-Newton steps of least norm.
+// J has the same rank at all configurations of a motion except singular ones, where it is
+// lower. The rank at the initial state is compared with that at a configuration 0.1 rad or m
+// away: a step in the null space of J, projected onto the constraints by minimum-norm
+// Gauss-Newton steps.
 #include "solve/singular/singular.h"
 
 #include "solve/constraint/partition_internal.h"
@@ -13,14 +14,14 @@
 #include <math.h>
 #include <string.h>
 
-// Loops that close to 1e-13 meet a singular configuration to about the root of that: smaller
+// Loops closed to 1e-13 are at a singular configuration only to about the root of that: smaller
 // singular values of J count as zero.
 // Derived: three times that root.
 static const double rank_loss_tolerance = 1e-6;
 
-// Rows take part in what is lost where they have this part of the most that one has. Which of them
-// a choice of pivots leaves out is a matter of round-off where they are alike; what is always lost
-// turns by as much as the way there.
+// Rows are part of the dependence if their entry is at least this fraction of the largest. The
+// choice of pivots decides by round-off among similar rows which ones it leaves out; null
+// vectors of redundant rows turn by as much as the configuration.
 // Default: between both. Test: singular_start
 static const double involved_row_part = 0.3;
 
@@ -39,7 +40,7 @@ static double *workspace(struct ct_arena *a, int n, int m)
 }
 
 // p->d = -J+ r.
-static void least_step(struct probe *p, const double *r)
+static void minimum_norm_step(struct probe *p, const double *r)
 {
     const int n = (int)p->m->nu, m = (int)p->m->nrow;
     memcpy(p->A, p->m->J, (size_t)(n * m) * sizeof *p->A);
@@ -55,28 +56,28 @@ static void evaluate(struct probe *p)
     ct_evaluator_constraint(p->m);
 }
 
-// Move by `way` [rad or m] in an arbitrary direction in the null space of J.
-static void move(struct probe *p, struct ct_arena *scratch, double way)
+// Move by `distance` [rad or m] in an arbitrary direction in the null space of J.
+static void move(struct probe *p, struct ct_arena *scratch, double distance)
 {
     const size_t n = p->m->nu, m = p->m->nrow;
     double *r = CT_NEWN(scratch, double, m + 1);
     evaluate(p);
     for (size_t k = 0; k < n; k++) {
-        p->x[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4; // in no simple relation
+        p->x[k] = fmod(1 + (double)k * 0.6180339887498949, 1) - 0.4; // golden-ratio sequence
         for (size_t i = 0; i < m; i++)
             r[i] += p->m->J[i + m * k] * p->x[k];
     }
-    least_step(p, r);
+    minimum_norm_step(p, r);
     for (size_t k = 0; k < n; k++)
         p->x[k] += p->d[k];
     const double size = ct_vector_largest(p->x, n);
     for (size_t k = 0; k < n && size > 0; k++)
-        p->x[k] *= way / size;
+        p->x[k] *= distance / size;
     ct_evaluator_retract(p->m, p->y, p->x);
 }
 
-// Project onto the constraints; false if that fails or moves by more than `way`.
-static bool close(struct probe *p, double way)
+// Project onto the constraints; false if that fails or moves by more than `distance`.
+static bool close(struct probe *p, double distance)
 {
     // Limit: iterations; five are usual
     enum { MOST = 20 };
@@ -87,8 +88,8 @@ static bool close(struct probe *p, double way)
         evaluate(p);
         if (ct_vector_largest(p->m->phi, p->m->nrow) < closed)
             return true;
-        least_step(p, p->m->phi);
-        if (!(ct_vector_largest(p->d, p->m->nu) < way))
+        minimum_norm_step(p, p->m->phi);
+        if (!(ct_vector_largest(p->d, p->m->nu) < distance))
             return false;
         ct_evaluator_retract(p->m, p->y, p->d);
     }
@@ -104,7 +105,7 @@ static void take_rows(struct probe *p)
             p->A[j + n * i] = p->m->J[i + m * j];
 }
 
-// The rank of J: of the other rows less than `least` of their natural sizes is left.
+// The rank of J: the remainders of the other rows are below `least` of their natural sizes.
 static int find_rank(struct probe *p, double least)
 {
     return ct_evaluator_order_rows(p->m, p->m->J, least, p->iwork, p->A, p->x, p->work);
@@ -119,7 +120,7 @@ static bool find_combinations(struct probe *p, double *N)
     return ct_symmetric_eigen(p->x, N, m, m, p->eigen_work);
 }
 
-// size (nrow, out): of rows, as speeds, near a singular configuration: in it they may be zero.
+// size (nrow, out): natural sizes of rows near a singular configuration, where rows may vanish.
 static void size_rows(const struct probe *p, double *size)
 {
     const size_t m = p->m->nrow, n = p->m->nu;
@@ -131,8 +132,8 @@ static void size_rows(const struct probe *p, double *size)
     }
 }
 
-// size (nrow): multiplied by the part that each row has in the null space of J' `here` which is
-// not in that `there`. `here` is overwritten.
+// Multiply size (nrow) by the part of each row in the null space of J' `here` that is not in
+// that `there`. `here` is overwritten.
 static void weigh_rows(const struct probe *p, double *size, double *here, int nhere,
                        const double *there, int nthere)
 {
@@ -165,14 +166,14 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
     return p;
 }
 
-// Rank of J at y. Rows are measured by the largest one near y, since all may vanish at y, and
-// not below round-off. p->largest: that row, in its own unit.
+// Rank of J at y. Rows are relative to the largest one near y, since all may vanish at y, with
+// round-off as the lower limit. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
-    // Chosen: far enough for J to change, near enough to be alike
-    const double way = 0.1;
+    // Chosen: far enough for J to change, near enough to be similar
+    const double distance = 0.1;
     const size_t ny = p->m->nq + p->m->nu + 1;
-    move(p, scratch, way);
+    move(p, scratch, distance);
     evaluate(p);
     find_rank(p, 0);
     const double row_size = fabs(p->A[0]);
@@ -183,13 +184,13 @@ static int find_rank_here(struct probe *p, struct ct_arena *scratch, const doubl
     return find_rank(p, fmax(rank_loss_tolerance * row_size, p->m->rank_tolerance));
 }
 
-// Rank of J near y, at the largest distance at which it is above `here`; if there is none,
+// Rank of J near y, at the largest distance at which it exceeds `here`; if there is none,
 // `here` or less.
 static int find_rank_nearby(struct probe *p, struct ct_arena *scratch, const double *y,
                             int here)
 {
     const double ways[] = {0.1, 0.02};
-    // Derived: two digits above what is closed
+    // Derived: a hundred times the tolerance of closed loops
     const double part = 1e-3; // of the change of J, which is about as large as the distance
     const size_t ny = p->m->nq + p->m->nu + 1;
     int there = 0;

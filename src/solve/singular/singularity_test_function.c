@@ -32,25 +32,25 @@ void ct_tangent_basis_reserve(struct ct_partition *s, struct ct_tangent_basis *v
     reserve(s, &v->N, &v->room_N, m * (m - r));
 }
 
-// After a loss of rank the bases need more room than was reserved: there is nothing to compare
-// with.
+// After a loss of rank the bases need more memory than was reserved: there is nothing to
+// compare with.
 static bool has_room(const struct ct_partition *s, const struct ct_tangent_basis *v)
 {
     const size_t n = s->m->nu, m = s->m->nrow, r = (size_t)s->rank;
     return r && n * (n - r) <= v->room_T && m * (m - r) <= v->room_N;
 }
 
-// Sign of the permutation (a, b) of 0 ... na + nb - 1. place (na + nb): workspace
-static int parity_of(const int *a, int na, const int *b, int nb, int *place)
+// Sign of the permutation (a, b) of 0 ... na + nb - 1. index (na + nb): workspace
+static int parity_of(const int *a, int na, const int *b, int nb, int *index)
 {
     int parity = 1;
     for (int i = 0; i < na + nb; i++)
-        place[i] = i < na ? a[i] : b[i - na];
+        index[i] = i < na ? a[i] : b[i - na];
     for (int i = 0; i < na + nb; i++)
-        while (place[i] != i) {
-            const int k = place[i];
-            place[i] = place[k];
-            place[k] = k;
+        while (index[i] != i) {
+            const int k = index[i];
+            index[i] = index[k];
+            index[k] = k;
             parity = -parity;
         }
     return parity;
