@@ -1,6 +1,6 @@
 // See buckling.h.
 //
-// The method follows the path of equilibria as the load grows and watches the eigenvalues of
+// The method follows the path of equilibria as the load grows and monitors the eigenvalues of
 // the stiffness K. An equilibrium buckles where an eigenvalue of K changes its sign. For small
 // systems K is dense, in the independent coordinates of the equilibrium at load factor 0, and
 // all its eigenvalues are computed. For large systems K is sparse, and the eigenvalues w2 of K
@@ -36,9 +36,9 @@ static const double steepest = 1;
 static const double straight = 1e-8; // [rad] below it the axis is straight but for round-off
 // At a limit point the eigenvalue falls to zero with the square root of the remaining path. If
 // the eigenvalue at the end of the path is larger than this fraction of its value one step
-// before, Newton's method has left the path and the end is no limit point.
-// Derived: Newton's method converges to within sqrt(eps) of a limit point, where the eigenvalue has
-// fallen to eps^(1/4). The geometric mean of that and 1 is eps^(1/8).
+// before, Newton's method has left the path and the end is not a limit point.
+// Derived: Newton's method converges to within sqrt(eps) of a limit point, where the eigenvalue
+// has fallen to eps^(1/4). The geometric mean of that and 1 is eps^(1/8).
 static const double folded = 1.1e-2;
 // Derived: first_step, 1/16, beyond the estimate.
 static const double behind = 1 + 1. / 16; // of the last estimate: where the search may end

@@ -125,14 +125,14 @@ static int find_unbalanced(const struct search *s)
 {
     const struct ct_linear *l = s->l;
     for (int i = 0; i < l->nfree; i++) {
-        double meet = 0; // magnitude of the terms; multipliers and weights are part of l->scale
+        double magnitude = 0; // of the terms; multipliers and weights are part of l->scale
         for (int j = 0; j < l->nu; j++) {
             double row = l->scale[j];
             for (int k = 0; k < l->nu; k++)
                 row += fabs(l->K[j + l->nu * k]);
-            meet += fabs(l->Z[j + l->nu * i]) * row;
+            magnitude += fabs(l->Z[j + l->nu * i]) * row;
         }
-        if (fabs(l->force[i]) > ct_roundoff(l->nu) * meet)
+        if (fabs(l->force[i]) > ct_roundoff(l->nu) * magnitude)
             return l->independent[i];
     }
     return -1;

@@ -388,7 +388,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
                  double t, double h)
 {
     // Chosen: converged; far below the errors of interest.
-    const double settled = 1e-5;
+    const double converged = 1e-5;
     // Default: accepted without convergence; a tenth of their limit. Test: beam_error_coupled
     const double allowed = 1e-3;
     const struct ct_beam_error_coupled *p = r->p;
@@ -407,7 +407,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
         m.x[i][0] = x[i][0] + 0.5 * h * x[i][1];
         m.x[i][1] = x[i][1];
     }
-    for (int pass = 0; pass < PASSES && !(left <= settled); pass++) {
+    for (int pass = 0; pass < PASSES && !(left <= converged); pass++) {
         const struct system_state now = evaluate_system(r, t + 0.5 * h, q_mid, m.u);
         const struct middle before = m;
         if (!accelerate(r, s, model, h, &now, (const double(*)[2])x, &m))

@@ -266,20 +266,20 @@ static double size_of(const struct ct_animation *m)
 static double *find_resolution(const struct work *w)
 {
     // Layout: of the picture
-    const double seen = 1e-6; // relative to the picture, which can be enlarged a thousand times
+    const double smallest = 1e-6; // relative to the picture, which can be enlarged 1000 times
     const double enlarged = 100;
-    const double seen_force = 1e-4; // relative to the largest force
+    const double smallest_force = 1e-4; // relative to the largest force
     const struct ct_animation *m = w->m;
     const size_t beams = ct_animation_beam_column(m, 0),
                  loads = ct_animation_beam_column(m, m->scene.nbeam);
-    const double place = seen * size_of(m),
-                 force = seen_force * extent(m, loads, 1, m->ncolumn - loads);
+    const double place = smallest * size_of(m),
+                 force = smallest_force * extent(m, loads, 1, m->ncolumn - loads);
     double *resolution = CT_NEWN(w->a, double, m->ncolumn + 1);
     for (size_t c = 0; c < m->ncolumn; c++)
         resolution[c] = c >= loads ? force
                       : c >= beams ? place / enlarged
                       : c % 7 < 3  ? place
-                                   : seen;
+                                   : smallest;
     return resolution;
 }
 

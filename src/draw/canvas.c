@@ -11,7 +11,7 @@ const char *const ct_palette[]
 // Layout: of the picture
 static const double cell = 2; // [px]
 
-// Places far outside, and those that are not known, are not worth an overflow.
+// Clamps positions far outside the picture and those that are not finite.
 static int tenths(double px)
 {
     // Layout: of the picture
@@ -21,7 +21,7 @@ static int tenths(double px)
 
 // ---- text ----------------------------------------------------------------------------------
 
-// Control characters cannot stand in XML at all.
+// Control characters are not allowed in XML.
 void ct_canvas_escape(FILE *out, const char *text)
 {
     for (; *text; text++)
@@ -144,8 +144,8 @@ static double off_line(struct ct_spot a, struct ct_spot b, struct ct_spot p)
     return hypot(across, beyond);
 }
 
-// The farthest point from a chord stays, and both parts are looked at again. (Douglas and Peucker
-// 1973)
+// The farthest point from a chord is kept, and both parts are simplified recursively. (Douglas
+// and Peucker 1973)
 static void keep_farthest(const struct ct_spot *p, size_t first, size_t last, double most,
                           bool *keep)
 {
@@ -168,7 +168,7 @@ static void keep_farthest(const struct ct_spot *p, size_t first, size_t last, do
 size_t ct_spots_thin(struct ct_arena *a, struct ct_spot *p, size_t n, double most)
 {
     // Limit: of the stack
-    enum { PIECE = 500 }; // bounds the depth of the recursion, and its cost for what is rough
+    enum { PIECE = 500 }; // bounds the depth of the recursion, and its cost for rough lines
     bool *keep = CT_NEWN(a, bool, n + 1);
     size_t kept = 0;
     for (size_t first = 0; first < n; first += PIECE) {
@@ -228,7 +228,7 @@ void ct_canvas_close(struct ct_canvas *c)
     fputs("</g>\n", c->out);
 }
 
-// Relative steps of whole tenths: short, and no error adds up.
+// Relative steps in whole tenths of a pixel: short, and errors do not accumulate.
 void ct_canvas_lines(struct ct_canvas *c, const struct ct_spot *p, size_t n, bool closed,
                      const char *attributes, double halo)
 {

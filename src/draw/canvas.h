@@ -39,14 +39,14 @@ void ct_canvas_open(struct ct_canvas *c, const char *kind, const char *component
 void ct_canvas_close(struct ct_canvas *c);
 
 /// A polyline, or a polygon when closed. attributes: style that differs from the group's. halo
-/// [px] > 0: what is taken around it; 0: nothing.
+/// [px]: width of the occupied cells around it; 0: none.
 void ct_canvas_lines(struct ct_canvas *c, const struct ct_spot *p, size_t n, bool closed,
                      const char *attributes, double halo);
 void ct_canvas_line(struct ct_canvas *c, struct ct_spot a, struct ct_spot b,
                     const char *attributes, double halo);
 void ct_canvas_circle(struct ct_canvas *c, struct ct_spot at, double radius,
                       const char *attributes, double halo);
-/// An arc from angle a to b [rad], counterclockwise as it is seen.
+/// An arc from angle a to b [rad], counterclockwise on the screen.
 void ct_canvas_arc(struct ct_canvas *c, struct ct_spot at, double radius, double a, double b,
                    const char *attributes);
 /// anchor: "start", "middle" or "end"

@@ -1,4 +1,4 @@
-// See dimension.h. Signals have units by what they are of; sums keep them, and so do products
+// See dimension.h. Signals have the unit of their quantity; sums keep units, and so do products
 // with a number.
 #include "draw/dimension.h"
 
@@ -36,7 +36,7 @@ static const struct {
                   {"work", "J"},
                   {"total", "J"}};
 
-// "q2", "u", "a", "effort1" of a joint, by what its coordinate measures.
+// Unit of "q2", "u", "a", "effort1" of a joint, from the quantity that its coordinate measures.
 static const char *unit_of_coordinate(const struct ct_build *b, int joint, const char *property)
 {
     static const char *const kinds[] = {"q", "u", "a", "effort"};
@@ -60,7 +60,7 @@ static const char *unit_of_coordinate(const struct ct_build *b, int joint, const
     return m->measure[place].kind == CT_MEASURE_LENGTH ? of_length[k] : of_angle[k];
 }
 
-// OWNER.PROPERTY or OWNER.PROPERTY.x, " in AXES" behind it; an owner may have a dot itself.
+// OWNER.PROPERTY or OWNER.PROPERTY.x, optionally with " in AXES"; an owner may contain a dot.
 static const char *unit_of_signal(const struct ct_build *b, const char *name)
 {
     char text[200];
@@ -95,7 +95,8 @@ static const char *unit_of_signal(const struct ct_build *b, const char *name)
 
 static const char *unit_of(const struct ct_build *b, ct_ex e, int depth);
 
-// Of a sum and the like: that of both, or of the one where the other is a number.
+// Unit of a sum and similar operators: that of both operands, or of one if the other is a
+// number.
 static const char *shared_unit(const struct ct_build *b, uint32_t first, uint32_t second,
                                int depth)
 {

@@ -1,5 +1,5 @@
-// A system as a line drawing: at its start, at a time, or with the paths of its points over a
-// run.
+// A system as a line drawing: in its initial configuration, at a time, or with the paths of its
+// points over a run.
 #include "draw/picture.h"
 
 #include "sim/sim.h"
@@ -14,12 +14,12 @@ struct drawing {
     struct ct_scene scene;
     struct ct_view view;
     struct ct_program program;
-    double *value; // at the state that is shown
+    double *value; // at the drawn state
     double *path;  // 3 x npath x nsample
     size_t npath, nplace, nsample;
     struct source { // of a path
         int body;
-        size_t at; // of its place among the values
+        size_t at; // index of its position among the values
     } * source;
 };
 
@@ -89,8 +89,8 @@ static bool compile(void *task)
     return true;
 }
 
-// The evaluator stands at the sample. Paths go with the picture of the start, a time with that of
-// its end.
+// Called with the evaluator at a sample. Paths are drawn with the initial configuration, a time
+// with the last sample.
 static bool at_row(void *user, double t, const double *value, size_t n)
 {
     struct drawing *d = user;

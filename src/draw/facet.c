@@ -7,7 +7,7 @@
 #include <string.h>
 
 // Layout: of the picture
-enum { ROUND = 48 }; // corners of what is round
+enum { ROUND = 48 }; // corners of round shapes
 
 // ---- places --------------------------------------------------------------------------------
 
@@ -58,7 +58,7 @@ static void scale_to_one(double v[3])
         v[i] /= length;
 }
 
-// Two unit vectors across n.
+// Two unit vectors perpendicular to n.
 static void across(const double n[3], double a[3], double b[3])
 {
     int k = 0;
@@ -72,7 +72,7 @@ static void across(const double n[3], double a[3], double b[3])
     cross(n, a, b);
 }
 
-// 0 ... ROUND-1 at one end, then those of the other one.
+// Corners 0 ... ROUND-1 at one end, then those at the other end.
 static void cylinder_corners(const struct ct_model *m, const struct ct_solid *solid,
                              double (*p)[3])
 {
@@ -147,7 +147,7 @@ static void find_normal(const double a[3], const double b[3], const double c[3],
         n[i] /= length;
 }
 
-// Light falls from above, over the left shoulder.
+// Light falls from above left, from behind the viewer.
 static double light_on(const struct ct_view *v, const double n[3])
 {
     const double l
@@ -173,8 +173,7 @@ static struct ct_facet *add(struct work *w, const int *corner, size_t n, const b
     return &f->facet[f->n - 1];
 }
 
-// A piece whose corners go round counterclockwise, seen from outside; nothing where it looks
-// away.
+// Adds a facet whose corners are counterclockwise seen from outside; nothing if it faces away.
 static void add_outside(struct work *w, const int *corner, size_t n, const bool *is_edge)
 {
     double normal[3];
@@ -249,7 +248,7 @@ static void add_sphere(struct work *w, const double centre[3])
 
 // ---- triangles -----------------------------------------------------------------------------
 
-// A side of a triangle, its ends in an order of their own.
+// A side of a triangle, with its ends in a fixed order.
 struct side {
     const float *a, *b;
     size_t triangle;
@@ -274,7 +273,7 @@ static int compare_sides(const void *p, const void *q)
     return s->triangle != t->triangle ? (s->triangle < t->triangle ? -1 : 1) : s->k - t->k;
 }
 
-// Lines are where the surface has a kink, an end, or turns away from the eye.
+// Lines are drawn where the surface has a kink or an edge, or turns away from the viewer.
 static bool is_line(const double (*normal)[3], const struct side *s, size_t n,
                     const struct ct_view *v)
 {

@@ -1,5 +1,5 @@
-// See picture.h. From the back to the front: paths, ground, shapes, bodies, springs and loads,
-// joints, names; below all of it the axes, gravity and the scale.
+// See picture.h. Order from back to front: paths, ground, shapes, bodies, springs and loads,
+// joints, names. Axes, gravity and the scale are in the strip below.
 #include "draw/sketch.h"
 
 #include <string.h>
@@ -51,7 +51,7 @@ static void label_body(struct ct_sketch *d, int body)
     add_label(d, m->instance.name, attributes, CT_FONT, away, place, n);
 }
 
-// Bodies' names first, then those of joints, springs and loads.
+// Names: bodies first, then joints, springs and loads.
 static void write_names(struct ct_sketch *d)
 {
     // Layout: of the picture
@@ -118,7 +118,7 @@ static void draw_gravity(struct ct_sketch *d, struct ct_spot at)
         const struct ct_spot v = {p.x / (size * length), p.y / (size * length)};
         ct_draw_arrow(&d->pen, (struct ct_spot){at.x - half * v.x, at.y - half * v.y},
                       (struct ct_spot){at.x + half * v.x, at.y + half * v.y}, "#000000", 1.6);
-    } else { // along the line of sight: a dot to the eye, a cross away from it
+    } else { // along the viewing direction: a dot towards the viewer, a cross away
         // Layout: of the picture
         const double r = 7, c = 0.7071 * r;
         ct_canvas_circle(&d->canvas, at, r,
@@ -148,7 +148,7 @@ static const char *length_name(struct ct_arena *a, double mantissa, int exponent
     return ct_arena_printf(a, "%.4g km", mantissa * pow(10, exponent - 3));
 }
 
-// The longest round length that is at most so wide.
+// The longest round length of at most this width.
 static void draw_scale(struct ct_sketch *d, double right, double y)
 {
     static const double mantissas[] = {5, 2, 1};

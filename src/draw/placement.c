@@ -1,5 +1,5 @@
-// See placement.h. A label tries directions around each of its places, the nearest first: a
-// greedy choice, which is known to come near to the best one where labels are not crowded.
+// See placement.h. A label tries directions around each of its anchor points, the nearest
+// first. This greedy choice is known to be nearly optimal where labels are not crowded.
 #include "draw/placement.h"
 #include "base/pi.h"
 
@@ -12,7 +12,7 @@ struct box {
     struct ct_spot low, high;
 };
 
-// The text's box that touches a point at a distance from the place, in a direction.
+// The box of the text at a distance from the anchor point, in a direction.
 static struct box box_at(const struct ct_label *l, struct ct_spot at, double angle, double away,
                          double width)
 {
@@ -26,7 +26,7 @@ static struct box box_at(const struct ct_label *l, struct ct_spot at, double ang
 static bool find_box(const struct ct_canvas *c, const struct ct_label *l, struct box *found)
 {
     const double width = ct_canvas_text_width(l->text, l->font);
-    // to the upper right first, then around
+    // the upper right first, then the other directions
     static const int order[NDIRECTION] = {2, 6, 14, 10, 4, 12, 0, 8, 1, 3, 5, 7, 9, 11, 13, 15};
     for (int k = 0; k < NDISTANCE; k++)
         for (size_t i = 0; i < l->n; i++)

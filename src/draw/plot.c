@@ -16,8 +16,8 @@ enum { MOST_NAME = 220, SMALL = 12, LINE = 17 };
 struct ct_plot {
     struct ct_ctx own;
     const struct ct_system *system;
-    const char *columns; // as asked for
-    size_t *column;      // numbers of results
+    const char *columns; // as requested
+    size_t *column;      // indices of results
     size_t ncolumn;
     double *row; // t, then the columns
     size_t nrow, row_cap;
@@ -25,7 +25,8 @@ struct ct_plot {
 
 // ---- columns -------------------------------------------------------------------------------
 
-// The column that text begins with, up to a comma or its end: names may have commas themselves.
+// The column named at the beginning of text, up to a comma or its end: names may contain
+// commas.
 static bool match(const struct ct_equations *e, const char *text, size_t *column,
                   size_t *length)
 {
@@ -114,7 +115,7 @@ struct axis {
     double from, to; // [px]
 };
 
-// About `count` ticks at 1, 2 or 5 times a power of ten; both ends on ticks, where `is_whole`.
+// About `count` ticks at 1, 2 or 5 times a power of ten; both ends are ticks if `is_whole`.
 static struct axis choose_axis(double low, double high, int count, bool is_whole)
 {
     static const double mantissas[] = {1, 2, 5, 10};
@@ -278,7 +279,7 @@ static const char *column_name(const struct work *w, size_t column)
     return w->p->system->equations.result[w->p->column[column]].name;
 }
 
-// A name that fits into the legend.
+// A name shortened to fit into the legend.
 static const char *short_name(struct ct_arena *a, const char *name)
 {
     size_t n = strlen(name);

@@ -24,8 +24,8 @@ static int count_lengths(const struct ct_motion *m)
     return n;
 }
 
-// By the number of lengths and of rotations; what slides without a length that is measured is a
-// screw.
+// The symbol of a joint from its numbers of lengths and rotations; a joint that slides without
+// a measured length is a screw.
 static enum ct_symbol symbol_of(const struct ct_motion *m, int nlength)
 {
     const int nangle = m->quaternion >= 0 ? 3 : m->nturn;
@@ -44,7 +44,7 @@ static bool is_given(const struct ct_instance *self, const char *key)
     return ct_instance_value(self, key)->given;
 }
 
-// The axis of a length or of a turn; of two turns the second one is fixed in `to`.
+// The axis of a length or of a rotation; of two rotations the second axis is fixed in `to`.
 static void find_axes(const struct ct_model *model, const struct ct_motion *m,
                       struct ct_scene_joint *j)
 {
@@ -83,7 +83,7 @@ static void hold(bool *held, int frame)
         held[frame] = true;
 }
 
-// The frames that are held, body by body in one list.
+// The frames held by joints, springs and forces, body by body in one list.
 static void list_held(struct ct_arena *a, struct ct_scene *s, const bool *held)
 {
     const struct ct_model *m = s->model;
@@ -154,7 +154,8 @@ static void push_frame(struct ct_build *b, struct values *v, int node)
         push(v, is_turned ? R.e[i] : i % 4 == 0 ? CT_EX_ONE : CT_EX_ZERO);
 }
 
-// Enough that a polyline looks smooth where every element bends like a wave of its own.
+// Number of points such that a polyline looks smooth even if every element bends in a full
+// wave.
 static int points_of_beam(const struct ct_flexible *f)
 {
     // Layout: of the picture
@@ -188,7 +189,7 @@ static void push_load(struct ct_build *b, struct values *v, struct ct_scene_forc
         }
 }
 
-// Springs and bushings have both ends, and say by their keys what they are.
+// Springs and bushings have two ends; their keys show which parts they have.
 static void create_force(const struct ct_instance *self, struct ct_scene_force *force)
 {
     *force = (struct ct_scene_force){.self = self, .from = self->from, .to = self->to};

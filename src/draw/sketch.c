@@ -1,5 +1,4 @@
-// See sketch.h: how large the picture is, where symbols are, what bodies without a shape are
-// drawn as.
+// See sketch.h: size of the picture, positions of symbols, outlines of bodies without a shape.
 #include "draw/sketch.h"
 
 #include "component/roundoff.h"
@@ -8,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// [px]: of the geometry at most; around it; the strip below; the whole at least
+// Sizes [px]: largest of the geometry; margin; strip below; smallest of the whole
 enum {
     // Layout: of the picture
     MOST_WIDTH = 640,
@@ -35,7 +34,7 @@ static void reach_out(struct reach *r, const struct ct_view *v, const double pla
     }
 }
 
-// Shown where less than two places of a body are held.
+// Centres of mass are shown for bodies with fewer than two held positions.
 static bool shows_centre(const struct ct_sketch *d, int body)
 {
     const double *c = d->s->body[body].com;
@@ -102,7 +101,7 @@ void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
                                       (*height - CT_STRIP + h * d->view.scale) / 2};
 }
 
-// Pins as large as fits between neighbours.
+// The largest size of pins that fits between neighbours.
 double ct_sketch_symbol_size(const struct ct_sketch *d)
 {
     // Layout: of the picture
@@ -122,7 +121,7 @@ double ct_sketch_symbol_size(const struct ct_sketch *d)
 
 // ---- joints: where their symbols are -------------------------------------------------------
 
-// Where something else than joint i holds a frame's place, too.
+// Is the position of a frame also held by something other than joint i?
 static bool is_shared(const struct ct_sketch *d, size_t i, int frame)
 {
     const double same = 1; // [px]
@@ -149,8 +148,8 @@ bool ct_sketch_is_telescope(const struct ct_sketch *d, size_t i)
                > least;
 }
 
-// What slides on ground is a block where it is; a telescope between two moving bodies has its
-// block half-way.
+// Position of a slider's block: a body that slides on ground has it at its own end; a telescope
+// between two moving bodies half-way.
 struct ct_spot ct_sketch_joint_spot(const struct ct_sketch *d, size_t i)
 {
     const struct ct_scene_joint *j = &d->s->joint[i];
@@ -163,7 +162,7 @@ struct ct_spot ct_sketch_joint_spot(const struct ct_sketch *d, size_t i)
     return ct_sketch_is_telescope(d, i) ? ct_sketch_between(from, to, 0.5) : to;
 }
 
-// Bodies of which nothing but a slider's block is seen.
+// Bodies that are visible only as a slider's block.
 void ct_sketch_find_blocks(struct ct_sketch *d)
 {
     d->is_on_block = CT_NEWN(d->a, bool, d->s->model->nbody);
@@ -232,7 +231,7 @@ static size_t hull(struct ct_arena *a, struct ct_spot *p, size_t n)
     return k;
 }
 
-// Does the line from a to b, or from b to a, lead on to c?
+// Does the line from a to b, or from b to a, extend to c?
 static bool extends(const double a[3], const double b[3], const double c[3])
 {
     // Layout: of the picture
@@ -275,7 +274,7 @@ static void find_outline(struct ct_sketch *d, int body)
         o->n = hull(d->a, o->p, o->n);
 }
 
-// Both bodies of a telescope reach to its block.
+// Both bodies of a telescope extend to its block.
 static void reach_blocks(struct ct_sketch *d)
 {
     for (size_t i = 0; i < d->s->model->njoint; i++) {
@@ -301,7 +300,7 @@ void ct_sketch_find_outlines(struct ct_sketch *d)
         find_outline(d, (int)i);
 }
 
-// Direction in which a body lies as seen from a place: to the middle of what is drawn of it.
+// Direction of a body from a position: to the middle of what is drawn of it.
 struct ct_spot ct_sketch_direction(const struct ct_sketch *d, int body, struct ct_spot from)
 {
     struct ct_spot middle = {0, 0};

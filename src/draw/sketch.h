@@ -1,9 +1,9 @@
-// A picture while it is drawn: what its parts share.
+// State of a picture while it is drawn, shared by its files.
 //
-//     sketch.c        scale, places of symbols, outlines of bodies
+//     sketch.c        scale, positions of symbols, outlines of bodies
 //     sketch_body.c   paths, shapes, bodies, beams
 //     sketch_joint.c  supports, joints, springs, loads
-//     picture.c       names, axes, scale, and the order of all
+//     picture.c       names, axes, scale, and the drawing order
 #ifndef CT_DRAW_SKETCH_H
 #define CT_DRAW_SKETCH_H
 
@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-/// Distances below this part of the picture are not seen. Layout: a thousandth of a pixel.
+/// Distances below this fraction of the picture are invisible. Layout: a thousandth of a pixel.
 #define CT_SKETCH_RESOLUTION 1e-6
 
 // Layout: of the picture
@@ -28,13 +28,13 @@ struct ct_sketch {
     struct ct_canvas canvas;
     struct ct_pen pen;
     double size;          // of the scene [m]
-    const double **block; // by body: place of the block of its telescope; NULL: it has none
-    int *nseen;           // by body: ends of joints that are seen
-    bool *is_on_block;    // by body: a slider's block is what is seen of it
-    struct ct_outline {   // by body: what it is drawn as where it has no shape
+    const double **block; // by body: position of the block of its telescope; NULL: none
+    int *nseen;           // by body: number of visible ends of joints
+    bool *is_on_block;    // by body: it is visible only as a slider's block
+    struct ct_outline {   // by body: its outline if it has no shape
         struct ct_spot *p;
         size_t n;
-        bool has_centre; // the body ends there
+        bool has_centre; // the outline includes the centre of mass
         struct ct_spot centre;
         double depth;
     } * outline;
@@ -103,17 +103,16 @@ static inline double ct_sketch_size_of(const double v[3])
 
 /// Scale and place of the view; width and height of the picture [px].
 void ct_sketch_fit(struct ct_sketch *d, double *width, double *height);
-/// Pins as large as fits between neighbours [px].
+/// The largest size of pins that fits between neighbours [px].
 double ct_sketch_symbol_size(const struct ct_sketch *d);
-/// Bodies of which a slider's block is seen, and how many ends of joints are seen on each.
+/// Finds bodies visible as a slider's block, and the number of visible ends of joints on each.
 void ct_sketch_find_blocks(struct ct_sketch *d);
 void ct_sketch_find_outlines(struct ct_sketch *d);
-/// Slides joint i between two moving bodies, with its block half-way?
+/// Does joint i slide between two moving bodies, with its block half-way?
 bool ct_sketch_is_telescope(const struct ct_sketch *d, size_t i);
 /// Where the symbol of joint i is.
 struct ct_spot ct_sketch_joint_spot(const struct ct_sketch *d, size_t i);
-/// Unit vector from a place to the middle of what is drawn of a body; zero where that is the
-/// place itself.
+/// Unit vector from a position to the middle of what is drawn of a body; zero if both coincide.
 struct ct_spot ct_sketch_direction(const struct ct_sketch *d, int body, struct ct_spot from);
 
 // ---- sketch_body.c -------------------------------------------------------------------------
@@ -128,7 +127,7 @@ void ct_sketch_draw_bodies(struct ct_sketch *d);
 void ct_sketch_draw_supports(struct ct_sketch *d);
 void ct_sketch_draw_joints(struct ct_sketch *d);
 void ct_sketch_draw_forces(struct ct_sketch *d);
-/// Has a load an arrow at this time?
+/// Is an arrow drawn for a load at this time?
 bool ct_sketch_acts(const struct ct_sketch *d, const struct ct_scene_force *f);
 
 #endif

@@ -155,7 +155,7 @@ void ct_sketch_draw_shapes(struct ct_sketch *d)
     }
 }
 
-// A white rim tells which of two crossing lines is in front.
+// A white rim shows which of two crossing lines is in front.
 static void draw_body_line(struct ct_sketch *d, const struct ct_spot *p, size_t n, bool closed,
                            const char *color, double width)
 {
@@ -170,7 +170,7 @@ static void draw_body_line(struct ct_sketch *d, const struct ct_spot *p, size_t 
     ct_canvas_lines(&d->canvas, p, n, closed, style, width / 2 + 1.5);
 }
 
-// The axes of a body that nothing holds.
+// The axes of a free body.
 static void draw_triad(struct ct_sketch *d, int frame, double length)
 {
     for (int i = 0; i < 3; i++) {
@@ -200,7 +200,7 @@ static void draw_lump(struct ct_sketch *d, int body)
     }
     if (d->nseen[body] == 0)
         draw_triad(d, d->s->model->body[body].frame, TRIAD);
-    if (b->has_mass && d->nseen[body] < 2) // else it is hidden by what holds it
+    if (b->has_mass && d->nseen[body] < 2) // otherwise symbols of joints hide it
         ct_draw_centre(&d->pen, at, ct_sketch_color_of(body));
 }
 
@@ -221,7 +221,7 @@ static void draw_body(struct ct_sketch *d, int body)
     ct_canvas_close(&d->canvas);
 }
 
-// A tube along the axis; what is held beside the axis hangs on a line from there.
+// A tube along the axis of a beam, with lines to joints off the axis.
 static void draw_beam(struct ct_sketch *d, const struct ct_scene_beam *beam)
 {
     const struct ct_scene_body *b = &d->s->body[beam->body];

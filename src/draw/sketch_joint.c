@@ -11,7 +11,7 @@ static void joint_axis(const struct ct_sketch *d, const struct ct_scene_joint *j
     ct_scene_direction(d->value, k ? j->to : j->from, j->axis[k], out);
 }
 
-// The longer part of a guide's direction is downwards, or to the right.
+// Orients a guide's direction so that its larger component is downwards or to the right.
 static struct ct_spot below(struct ct_spot along)
 {
     const struct ct_spot side = {-along.y, along.x};
@@ -20,7 +20,7 @@ static struct ct_spot below(struct ct_spot along)
     return turned ? (struct ct_spot){-side.x, -side.y} : side;
 }
 
-// Do the bodies that are jointed to a slider's block lie on this side of it?
+// Are the bodies attached to a slider's block on this side of it?
 static bool is_crowded(const struct ct_sketch *d, size_t i, struct ct_spot at,
                        struct ct_spot side)
 {
@@ -43,19 +43,19 @@ static bool is_crowded(const struct ct_sketch *d, size_t i, struct ct_spot at,
     return most > clearly && most > -least;
 }
 
-// What a slider slides on: hatched ground beside it, or a line of the body that guides it.
+// The guide of a slider: hatched ground next to it, or a line of the guiding body.
 static void draw_guide(struct ct_sketch *d, size_t i, struct ct_spot at)
 {
     const struct ct_scene_joint *j = &d->s->joint[i];
     // Layout: of the picture
-    const double s = d->pen.size, seen = 0.05;
+    const double s = d->pen.size, smallest = 0.05;
     double axis[3];
     joint_axis(d, j, 0, axis);
     const struct ct_spot a = ct_view_across(&d->view, axis);
     const double length = hypot(a.x, a.y);
     const bool on_ground
         = ct_sketch_body_of(d, j->from) == 0 || ct_sketch_body_of(d, j->to) == 0;
-    if (length < seen) {
+    if (length < smallest) {
         if (on_ground)
             ct_draw_ground(&d->pen, at, 1);
         return;
@@ -65,7 +65,7 @@ static void draw_guide(struct ct_sketch *d, size_t i, struct ct_spot at)
     if (is_crowded(d, i, at, side))
         side = (struct ct_spot){-side.x, -side.y};
     if (on_ground) {
-        // it lies beside the block by half the block's thickness, seen from the side
+        // offset by half the block's thickness, as seen from the side
         const double off = (d->view.shortening < 1 ? 1.9 : 1.35) * s;
         const struct ct_spot foot = {at.x + off * side.x, at.y + off * side.y};
         ct_draw_wall(&d->pen, foot, (struct ct_spot){-side.x, -side.y}, 6 * s);
@@ -74,7 +74,7 @@ static void draw_guide(struct ct_sketch *d, size_t i, struct ct_spot at)
     const int guide = ct_sketch_body_of(d, j->from);
     const struct ct_spot from = ct_sketch_frame_spot(d, j->from);
     const double over = ((at.x - from.x) * along.x + (at.y - from.y) * along.y) > 0 ? 4 : -4;
-    if (ct_sketch_is_telescope(d, i)) // both bodies reach to the block
+    if (ct_sketch_is_telescope(d, i)) // both bodies extend to the block
         return;
     char style[96];
     snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"%d\" fill=\"none\"",
@@ -216,14 +216,14 @@ void ct_sketch_draw_joints(struct ct_sketch *d)
                                         [CT_SYMBOL_WELD] = "joint weld",
                                         [CT_SYMBOL_ROD] = "joint rod",
                                         [CT_SYMBOL_OTHER] = "joint other"};
-    // blocks first: what turns on a slider is seen on it
+    // blocks first, so that pins on a slider are visible
     for (int is_late = 0; is_late < 2; is_late++)
         for (size_t i = 0; i < d->s->model->njoint; i++) {
             const struct ct_scene_joint *j = &d->s->joint[i];
             if (!ct_sketch_is_seen(j) || ct_sketch_slides(j->symbol) == (is_late == 1))
                 continue;
             open_joint(d, i, kinds[j->symbol]);
-            if (j->has_spring || j->has_damper) // a coil goes around what slides in it
+            if (j->has_spring || j->has_damper) // a coil is drawn around the slider
                 draw_springs(d, ct_sketch_frame_spot(d, j->from),
                              ct_sketch_frame_spot(d, j->to), j->has_spring,
                              j->has_damper && !j->has_spring);
@@ -249,11 +249,11 @@ static void draw_load(struct ct_sketch *d, const struct ct_scene_force *f)
     const double *force = d->value + f->first, *torque = force + 3;
     const struct ct_spot at = ct_sketch_frame_spot(d, f->to);
     // Layout: of the picture
-    const double arm = 44, seen = 0.05, r = 3 * d->pen.size; // [px]
+    const double arm = 44, smallest = 0.05, r = 3 * d->pen.size; // [px]
     if (ct_sketch_size_of(force) > 0) {
         const struct ct_spot p = ct_view_across(&d->view, force);
         const double length = hypot(p.x, p.y);
-        if (length > seen * ct_sketch_size_of(force)) {
+        if (length > smallest * ct_sketch_size_of(force)) {
             const struct ct_spot along = {p.x / length, p.y / length};
             const struct ct_spot to_body
                 = ct_sketch_direction(d, ct_sketch_body_of(d, f->to), at);
@@ -267,7 +267,7 @@ static void draw_load(struct ct_sketch *d, const struct ct_scene_force *f)
         }
     }
     if (ct_sketch_size_of(torque) > 0) {
-        // counterclockwise where its vector points to the eye
+        // counterclockwise if its vector points to the viewer
         const bool ccw = ct_dot3(torque, d->view.toward) >= 0;
         // Layout: of the picture
         const double from = -2.2, to = 2.2;

@@ -28,8 +28,9 @@ static double length_of(struct ct_spot d)
 static struct ct_spot unit(struct ct_spot d, struct ct_spot standard)
 {
     // Layout: of the picture
-    const double length = length_of(d), seen = 1e-3; // less is along the line of sight
-    return length > seen ? (struct ct_spot){d.x / length, d.y / length} : standard;
+    // below it the vector is along the viewing direction
+    const double length = length_of(d), smallest = 1e-3;
+    return length > smallest ? (struct ct_spot){d.x / length, d.y / length} : standard;
 }
 
 static struct ct_spot left_of(struct ct_spot d)
@@ -57,7 +58,7 @@ void ct_draw_cylinder(struct ct_pen *pen, struct ct_spot at, const double axis[3
 {
     // Layout: of the picture
     const double facing = ct_dot3(axis, pen->view->toward), r = pen->size,
-                 from_end = 0.999; // a cylinder that is seen from its end is a circle
+                 from_end = 0.999; // a cylinder seen from its end is a circle
     if (fabs(facing) > from_end) {
         ct_canvas_circle(pen->canvas, at, r, outline, 2);
         return;
@@ -91,8 +92,8 @@ static bool normalise(double v[3])
     return length > least;
 }
 
-// Two unit vectors across a unit vector n, one of them as nearly along the line of sight as can
-// be, or upright.
+// Two unit vectors perpendicular to a unit vector n, one of them as close as possible to the
+// viewing direction, or upright.
 static void across(const struct ct_view *v, const double n[3], double a[3], double b[3])
 {
     cross3(n, v->toward, a);
@@ -103,15 +104,15 @@ static void across(const struct ct_view *v, const double n[3], double a[3], doub
     cross3(n, a, b);
 }
 
-// A box of half edges h along n, a, b: the faces that look here.
+// A box of half edges h along n, a, b: the visible faces.
 static void draw_box(struct ct_pen *pen, struct ct_spot at, const double n[3],
                      const double a[3], const double b[3], const double h[3])
 {
     const double *axis[3] = {n, a, b};
     for (int k = 0; k < 3; k++) {
         // Layout: of the picture
-        const double facing = ct_dot3(axis[k], pen->view->toward), seen = 1e-3;
-        if (fabs(facing) < seen)
+        const double facing = ct_dot3(axis[k], pen->view->toward), smallest = 1e-3;
+        if (fabs(facing) < smallest)
             continue;
         const double sign = facing > 0 ? 1 : -1;
         const struct ct_spot c = at_plus(at, sign * h[k], ct_view_across(pen->view, axis[k]));
@@ -126,7 +127,7 @@ static void draw_box(struct ct_pen *pen, struct ct_spot at, const double n[3],
     }
 }
 
-// Axes of a box about n that look like a solid: ground's up, where that is across n, else any.
+// Axes of a box about n that look solid: the vertical, if it is perpendicular to n, else any.
 static void box_axes(const struct ct_view *v, const double n[3], double a[3], double b[3])
 {
     cross3(v->up, n, a);
@@ -207,7 +208,7 @@ void ct_draw_other(struct ct_pen *pen, struct ct_spot at)
 
 // ---- ground --------------------------------------------------------------------------------
 
-// Strokes behind a line from a to b, on the side of `behind`.
+// Hatching of a line from a to b, on the side of `behind`.
 static void hatch(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, struct ct_spot behind)
 {
     const double gap = fmax(0.75 * pen->size, 3), depth = fmax(0.85 * pen->size, 3);
@@ -223,7 +224,7 @@ static void hatch(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, struct
                        "stroke=\"#404040\" stroke-width=\"8\"", 0);
     }
     ct_canvas_take_polygon(pen->canvas, box, 4);
-    for (int k = 0; k < 4; k++) // thin ones too
+    for (int k = 0; k < 4; k++) // also if it is thin
         ct_canvas_take_box(pen->canvas, box[k], box[k]);
 }
 

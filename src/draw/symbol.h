@@ -1,5 +1,5 @@
-// The symbols of the field: joints, ground, springs, dampers, arrows. All sizes follow from one,
-// that of a pin.
+// Symbols of joints, ground, springs, dampers and arrows. All sizes are multiples of the size
+// of a pin.
 #ifndef CT_DRAW_SYMBOL_H
 #define CT_DRAW_SYMBOL_H
 
@@ -11,8 +11,8 @@ struct ct_pen {
     double size; // radius of a pin [px]
 };
 
-/// A pin about an axis (ground axes): a circle seen from its end, else a short cylinder; stretch:
-/// half its length, in sizes.
+/// A pin about an axis (ground axes): a circle seen from its end, otherwise a short cylinder;
+/// stretch: half its length, in multiples of the size.
 void ct_draw_cylinder(struct ct_pen *pen, struct ct_spot at, const double axis[3],
                       double stretch);
 /// The block of a slider along an axis.
@@ -23,13 +23,13 @@ void ct_draw_cross(struct ct_pen *pen, struct ct_spot at, const double a[3], con
 /// A ball in a socket, which opens towards a direction.
 void ct_draw_ball(struct ct_pen *pen, struct ct_spot at, struct ct_spot open);
 void ct_draw_weld(struct ct_pen *pen, struct ct_spot at);
-/// A square in the plane across the normal.
+/// A square in the plane with this normal.
 void ct_draw_plate(struct ct_pen *pen, struct ct_spot at, const double normal[3]);
 void ct_draw_other(struct ct_pen *pen, struct ct_spot at);
 
 /// Bearing on hatched ground below (down 1) or above (-1).
 void ct_draw_ground(struct ct_pen *pen, struct ct_spot at, int down);
-/// A hatched wall through a place; along: unit vector out of the wall.
+/// A hatched wall at a position; along: unit vector out of the wall.
 void ct_draw_wall(struct ct_pen *pen, struct ct_spot at, struct ct_spot along, double half);
 
 void ct_draw_spring(struct ct_pen *pen, struct ct_spot a, struct ct_spot b, double offset);

@@ -21,14 +21,15 @@ static int longest(const double v[3])
     return k;
 }
 
-// The axis of ground that points up: against gravity, where this is along an axis; else z.
+// The vertical axis of ground: against gravity, if that is along an axis; otherwise z.
 static int upward(const struct ct_scene *s)
 {
     const int k = longest(s->gravity);
     return s->gravity[k] < 0 ? k : 2;
 }
 
-// Lines of sight meet the three axes at equal angles; the axis that is up stays up.
+// Isometric view: the viewing direction has equal angles with the three axes; the vertical axis
+// is upright.
 static void set_iso(struct ct_view *v, int up)
 {
     static const double axes[3][2][3] = {{{0, 1, 0}, {0, 0, 1}},  // up is x

@@ -9,9 +9,9 @@ struct ct_view {
     const char *name;                  // "x", "y", "z", "iso"
     double right[3], up[3], toward[3]; // unit vectors; toward: to the eye
     double scale;                      // [px/m], of lengths across the view
-    double shortening;     // of lengths along those ground axes that are seen obliquely
-    double low[2];         // the point [m] that is at `origin`
-    struct ct_spot origin; // [px]
+    double shortening;                 // of lengths along ground axes in oblique views
+    double low[2];                     // the point [m] that is at `origin`
+    struct ct_spot origin;             // [px]
 };
 
 /// Chooses a view by name. NULL: along the normal of a planar mechanism if that is an axis,
@@ -19,7 +19,7 @@ struct ct_view {
 bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *name);
 
 struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3]);
-/// Of a direction: across the view, per unit of length; y downwards.
+/// Projection of a direction onto the view, per unit of length; y downwards.
 struct ct_spot ct_view_across(const struct ct_view *v, const double direction[3]);
 double ct_view_depth(const struct ct_view *v, const double place[3]);
 

@@ -60,7 +60,7 @@ static inline double number_of(uint64_t bits)
 
 // a b - p for the rounded product p, without a fused operation (Dekker): both halves of a number
 // have 26 bits.
-static inline double lost(double a, double b, double p)
+static inline double product_remainder(double a, double b, double p)
 {
     // Definition: Veltkamp's splitting of 53 bits into halves, key dekker1971
     const double split = 0x1p27 + 1, x = split * a, y = split * b;
@@ -73,7 +73,7 @@ static inline double lost(double a, double b, double p)
 #define BITS(v) bits_of(v)
 #define NUMBER(b) number_of(b)
 #define K(name) k1_##name
-#define LOST(a, b, p) lost(a, b, p)
+#define PRODUCT_REMAINDER(a, b, p) product_remainder(a, b, p)
 #define MADD(a, b, c) ((a) * (b) + (c))
 #define REST(a, n, q) ((a) - (n) * (q))
 #define KERNEL kernel_1
@@ -123,7 +123,7 @@ EACH_CONSTANT(FOUR_NUMBERS)
 #define BITS(v) bits_of(v)
 #define NUMBER(b) number_of(b)
 #define K(name) k1_##name
-#define LOST(a, b, p) __builtin_fma(a, b, -(p))
+#define PRODUCT_REMAINDER(a, b, p) __builtin_fma(a, b, -(p))
 #define MADD(a, b, c) __builtin_fma(a, b, c)
 #define REST(a, n, q) __builtin_fma(-(n), q, a)
 #define KERNEL kernel_1_fused
@@ -145,7 +145,7 @@ static kernel_fn choose_kernel(void)
 #define BITS(v) ((four_integers)(v))
 #define NUMBER(b) ((four)(b))
 #define K(name) k4_##name
-#define LOST(a, b, p) _mm256_fmsub_pd(a, b, p)
+#define PRODUCT_REMAINDER(a, b, p) _mm256_fmsub_pd(a, b, p)
 #define MADD(a, b, c) _mm256_fmadd_pd(a, b, c)
 #define REST(a, n, q) _mm256_fnmadd_pd(n, q, a)
 #define KERNEL kernel_4

@@ -45,7 +45,7 @@ static void fit(struct picture *p)
         right = fmax(right, p->at[v].x);
         bottom = fmax(bottom, p->at[v].y);
     }
-    p->left -= 2.0 * MARGIN; // names stand beside the vertices
+    p->left -= 2.0 * MARGIN; // names are next to the vertices
     p->top -= MARGIN;
     p->width = right - p->left + 2.0 * MARGIN;
     p->height = bottom - p->top + MARGIN;
@@ -250,8 +250,8 @@ static void put_equations(struct ct_html *h)
     struct ct_incidence cutsets[2];
     int row[2] = {0, 0};
     struct ct_derivation d;
-    int nentry
-        = 0; // circuits have as many beside their chords as cutsets beside their branches
+    // circuits have as many entries without their chords as cutsets without their branches
+    int nentry = 0;
     for (int k = 0; k < 2; k++) {
         struct ct_incidence Af;
         ct_cutsets_derive(h->a, e->graph, tree[k], &Af);

@@ -1,5 +1,5 @@
-// Sections `left-out` and `manifest`: what is not in the equations; what the page was made
-// from, and how it is made again.
+// Sections `left-out` and `manifest`: what the equations neglect; the sources of the page and
+// the command that reproduces it.
 #include "base/sha256.h"
 #include "html/html.h"
 

@@ -1,5 +1,5 @@
-// Section `motion`: the mechanism at its start as a line drawing; the script puts the moving
-// one in its place.
+// Section `motion`: the initial configuration as a line drawing; the script replaces it by the
+// animation.
 #include "html/html.h"
 
 #include "draw/picture.h"
@@ -13,7 +13,7 @@ static size_t most_rows(const struct ct_animation *m)
     return n < LEAST_ROWS ? LEAST_ROWS : n > MOST_ROWS ? MOST_ROWS : n;
 }
 
-// Redundant constraints leave multipliers open, and reactions with them.
+// Redundant constraints leave multipliers, and so reactions, undetermined.
 static bool has_open_reactions(const struct ct_html *h)
 {
     bool is_open = false;

@@ -1,4 +1,5 @@
-// Section `summary`: what the system is, and lights that lead to the sections that say more.
+// Section `summary`: properties of the system, and indicators with links to the sections with
+// details.
 #include "html/html.h"
 
 #include "formulate/beam/flexible_body.h"
@@ -72,7 +73,8 @@ static void put_stop(struct ct_html *h)
     fputs("</p>\n", h->out);
 }
 
-// The error asked for, and ten times that, as simulate notes it.
+// Compares the estimated error with the requested one and with ten times that, as simulate
+// does.
 static void put_error_light(struct ct_html *h)
 {
     const struct ct_sim *sim = h->sim;

@@ -1,4 +1,4 @@
-// Sections `trees` and `loops`: how unknowns were chosen, and what closed loops make of them.
+// Sections `trees` and `loops`: the choice of unknowns, and the closed loops.
 #include "formulate/build.h"
 #include "html/components.h"
 #include "html/html.h"
@@ -195,7 +195,7 @@ static void put_releases(struct ct_html *h)
     fputs("</ul>\n", h->out);
 }
 
-// How near over time, of all rows: a figure as those of the outputs.
+// Distance of all rows from a singular configuration over time, as a figure.
 static void put_figure(struct ct_html *h)
 {
     const struct ct_recording *r = h->recording;

@@ -1,4 +1,4 @@
-// The page of `modes --report`: the user selects a mode, and the system moves in it.
+// The page of `modes --report`, which animates the mode selected by the user.
 //
 //     row 0         positions at the configuration
 //     row 2 i + 1   their derivatives along the real part of mode i

@@ -1,4 +1,4 @@
-// What formats of arrays share; see archive.h.
+// Functions shared by the formats of arrays; see archive.h.
 #include "report/archive.h"
 
 #include <string.h>
@@ -63,7 +63,8 @@ size_t ct_archive_longest(const char *const *text, size_t n)
 
 void ct_archive_write(struct ct_archive *z, const struct ct_archive_bytes *bytes)
 {
-    fwrite(bytes->b, 1, bytes->n, z->file->stream); // errors show when the file is closed
+    // errors are reported when the file is closed
+    fwrite(bytes->b, 1, bytes->n, z->file->stream);
     z->offset += bytes->n;
 }
 

@@ -23,8 +23,8 @@ struct ct_archive {
         uint32_t crc, size, packed, offset; // of .npz
     } * entry;
     size_t nentry, cap;
-    uint64_t offset;  // of what comes next
-    bool is_too_long; // for the format
+    uint64_t offset;  // of the next entry
+    bool is_too_long; // the contents exceed the format
 };
 
 /// Shape of an array: n rows and m columns; in .npz it may also be a vector.
@@ -53,8 +53,7 @@ void ct_archive_vector(struct ct_archive *z, const char *name, const double *v, 
 /// each in .mat.
 void ct_archive_names(struct ct_archive *z, const char *name, const char *const *text,
                       size_t n);
-/// Completes the archive; the file stays open. Errors: E002 for contents that exceed the
-/// format.
+/// Completes the archive; the file stays open. Errors: E002 if the contents exceed the format.
 bool ct_archive_finish(struct ct_ctx *ctx, struct ct_archive *z);
 
 struct ct_archive_bytes;

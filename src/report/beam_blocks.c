@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// Layout: fewer coordinates are no shorter as a vector.
+// Layout: with fewer coordinates a vector is not shorter.
 enum { LEAST_COORDINATES = 2 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
@@ -18,7 +18,7 @@ static ct_ex symbol(struct ct_exs *x, enum ct_sym_kind kind, const char *name)
     return ct_ex_sym(x, kind, ct_arena_strdup(x->arena, name), not_a_number);
 }
 
-// An axis along which no coordinate moves the beam gets no symbol.
+// Symbols of rows by axis; zero for an axis along which no coordinate moves the beam.
 static void name_axes(struct ct_arena *a, struct ct_exs *x, const char *letter,
                       const struct ct_flexible *f, const ct_ex3 *column, ct_ex *row,
                       ct_ex *transposed)
@@ -82,7 +82,7 @@ static void name_block(struct ct_arena *a, const struct ct_equations *e,
     s->applied = symbol(x, CT_SYM_LOCAL, ct_arena_printf(a, "Q_%s", f->name));
 }
 
-// The integrals of a beam with the same symbols for all its coordinates, except m_ff.
+// Inertia integrals of a beam with one symbol for all its coordinates, except m_ff.
 static struct ct_inertia *block_inertia(struct ct_arena *a, const struct ct_inertia *parts,
                                         const struct ct_beam_block *s)
 {
@@ -109,7 +109,7 @@ struct finder {
     struct ct_equations *e;
     struct ct_beam_blocks *out;
     int *beam;      // by speed: its block, -1: none
-    int *row;       // by speed: its row; of a block: the line below it, -1: not yet there
+    int *row;       // by speed: its row; in a block: the line below it, -1: none yet
     int *block_row; // by beam
     bool is_same;   // rows of a block are equal so far
 };
@@ -129,7 +129,7 @@ static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
     own[7] = as_column[7] = s->elastic;
 }
 
-// Which symbols stand among the n nodes of the last walk? false: none.
+// Which of the symbols are among the n nodes of the last walk? False: none.
 static bool find_symbols(const struct ct_exs *x, size_t n, const ct_ex symbol[NSYMBOL],
                          bool found[NSYMBOL])
 {
@@ -153,7 +153,8 @@ static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool
     *own = CT_EX_ZERO;
     *rest = v;
     symbols_of(s, symbol, as_column);
-    const size_t nwalk = ct_ex_walk_kinds(x, &v, 1, 1u << CT_SYM_LOCAL); // that of all symbols
+    // the walk for all symbols
+    const size_t nwalk = ct_ex_walk_kinds(x, &v, 1, 1u << CT_SYM_LOCAL);
     if (!find_symbols(x, nwalk, symbol, found))
         return;
     for (int i = 0; i < NSYMBOL; i++) {
@@ -190,10 +191,10 @@ static void add_left(struct finder *f, int row, ct_ex coef, ct_ex of)
     CT_PUSH(f->a, r->left, r->nleft, r->left_cap, t);
 }
 
-// Treats a coordinate that moves the frame of its own beam, as the rotation at the start of a
-// beam whose frame is the chord. For coordinates k and l of the beam, M[k][l] contains c_k m_l
-// + m_k c_l, where c_k is the motion of the frame. With the same symbol for m_k and m_l, half
-// the derivative of M[k][k] by it is c_k.
+// Adds the terms of a coordinate that moves the frame of its own beam, such as the rotation at
+// the start of a beam whose frame is the chord. For coordinates k and l of the beam, M[k][l]
+// contains c_k m_l + m_k c_l, where c_k is the motion of the frame. With one symbol for m_k and
+// m_l, c_k is half the derivative of M[k][k] by it.
 static void add_own_motion(struct finder *f, size_t k, ct_ex v)
 {
     struct ct_exs *x = f->e->x;
@@ -308,7 +309,7 @@ static void close_lines(struct finder *f)
 
 // ---- for reading ---------------------------------------------------------------------------
 
-// What is collected and shared, term by term.
+// Collects all terms and introduces shared definitions.
 struct list {
     ct_ex **at;
     size_t n, cap;
@@ -339,7 +340,7 @@ static void list_all(struct ct_arena *a, struct ct_beam_blocks *s, const struct 
         list(a, l, &r->effort[i]);
 }
 
-// Collected where that pays, with names for what is written more than once.
+// Collects terms where the result is shorter, with definitions for repeated expressions.
 static void make_readable(struct ct_arena *a, struct ct_equations *e, struct ct_reduced *r,
                           const ct_ex *effort, struct ct_beam_blocks *s)
 {

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-// Layout: operators and operands below which a name is no shorter.
+// Layout: number of operators and operands below which a name is not shorter.
 enum { LEAST_NAMED = 8 };
 
 static const char *const axis_name[] = {"x", "y", "z"};
@@ -19,7 +19,7 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
     CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
 }
 
-// The angular velocity of the frame stands in other parts.
+// The angular velocity of the frame, which other parts contain.
 static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
 {
     return p->nturning && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
@@ -38,7 +38,7 @@ static ct_ex make(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
     return symbol;
 }
 
-// value under a name, or itself where it is short or constant.
+// A symbol defined as `value`; value itself if it is short or constant.
 static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
                     const char *name)
 {
@@ -48,8 +48,8 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
     return make(a, x, p, value, name);
 }
 
-// In space, where there are several beams, an angular velocity has a name however short it is:
-// beams on one body then differ by their names alone.
+// In space, with several beams, an angular velocity always has a name. The parts of equal beams
+// then differ by names alone.
 static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
                             ct_ex value, const char *name, bool always)
 {
@@ -63,7 +63,7 @@ static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam
     return symbol;
 }
 
-// value, a node of the equations.
+// The same for a node of the equations.
 static ct_ex name(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
                   const char *text)
 {
@@ -74,7 +74,7 @@ static ct_ex name(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
     return symbol;
 }
 
-// Of a planar mechanism: is axis i of the beam the normal of the plane?
+// In a planar mechanism: is axis i of the beam the normal of the plane?
 static bool is_normal(struct ct_build *b, const struct ct_flexible *f, int i)
 {
     double v;
@@ -99,8 +99,8 @@ static void name_rigid(struct ct_arena *a, struct ct_build *b, const struct ct_f
     }
 }
 
-// Forces with u' = 0: quadratic velocity ones, elastic ones, those of the motion relative to
-// the frame.
+// Forces with u' = 0: quadratic velocity forces, elastic forces, and forces of the motion
+// relative to the frame.
 static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_flexible *f,
                         struct ct_beam_parts *p, struct ct_named_inertia *out)
 {
@@ -160,11 +160,11 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
     name_forces(a, b, f, p, out);
 }
 
-// Two elements in space; operators and operands of all parts that are collected and read.
-// Limit: of the time to collect; beyond, the sums are counted
+// Limits of what is collected and printed: coordinates (two elements in space); operators and
+// operands of all parts.
 enum { MOST_COORDINATES = 12, MOST_SPEEDS = 1000, LONGEST = 40000 };
 
-// Sums over points of sections that vary are not read by anyone.
+// Sums over integration points of varying sections are too long to print.
 static bool varies(const struct ct_exs *x, const struct ct_beam *beam)
 {
     const ct_ex of[]
@@ -242,8 +242,8 @@ void ct_beam_parts_derive(struct ct_arena *a, struct ct_equations *e, enum ct_lo
 {
     const size_t n = e->build->nflexible;
     *p = (struct ct_beam_parts){.inertia = CT_NEWN(a, struct ct_inertia *, n + 1)};
-    // terms of higher order in `small` coordinates are left out by derivatives, for which names
-    // are constants
+    // terms of higher order in `small` coordinates are dropped by differentiation, which takes
+    // names for constants
     for (size_t i = 0; i < n && !ct_small_motion_is_wanted(e->build); i++)
         ct_beam_parts_add(a, e, i, which, p);
 }

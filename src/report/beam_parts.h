@@ -1,17 +1,19 @@
-// Parts of the matrices of beams under names, so that equations of motion read as sums of them.
+// Named parts of the matrices of beams, so that equations of motion are printed as sums of
+// them.
 //
 //     s_rod.x             first moment of rod in its own axes                          (A.3)
 //     i_rod.zz            entry of m_thetatheta                                        (A.8)
 //     m_rf_rod.1.u.x      of the coordinate rod.1.u: row of A'*m_rf, of m_thetaf       (A.7), (A.15)
 //     m_ff_rod.1.v.1.u    entry of m_ff                                                (A.17)
 //     Q_vf_rod.1.u        quadratic velocity force                                     (3.87)
-//     F_v_rod.x, T_v_rod.z    force and torque of the motion relative to the frame with u' = 0; with those of its
-//                         turning, w x (w x s) and w x i w, minus Q_vr and Q_vtheta    (3.87)
-//     om_rod.x            angular velocity of the frame in its own axes, in which forces and torques stand
-//     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f where that is linear (4.11)
+//     F_v_rod.x, T_v_rod.z    force and torque of the motion relative to the frame, u' = 0;
+//                         with w x (w x s) and w x i w: minus Q_vr and Q_vtheta        (3.87)
+//     om_rod.x            angular velocity of the frame in its own axes, as are forces and torques
+//     V_q_rod.1.u         derivative of the strain energy, and damping; K_f q_f if linear  (4.11)
 //
-// stage_beam_matrices.c prints them, with numbers of liang2017. What always holds: an equation
-// with its parts put in is the equation without them, up to round-off.
+// stage_beam_matrices.c prints them with the equation numbers of liang2017. What always holds:
+// with the definitions of the parts substituted an equation equals the one without them, up to
+// round-off.
 #ifndef CT_REPORT_BEAM_PARTS_H
 #define CT_REPORT_BEAM_PARTS_H
 
@@ -21,12 +23,12 @@ struct ct_inertia;
 
 struct ct_beam_parts {
     struct ct_definitions definitions;
-    ct_ex *node, *symbol; // of the engine's expressions, those with a name
+    ct_ex *node, *symbol; // named nodes of the equations and their symbols
     size_t n, node_cap, symbol_cap, definition_cap;
-    ct_ex turning[3], turning_full[3]; // om of the beam in hand, and what it is
+    ct_ex turning[3], turning_full[3]; // symbols om of the current beam, and their values
     int nturning;
-    struct ct_inertia *
-        *inertia; // by beam: its integrals by name, NULL where it has none; NULL: not wanted
+    // by beam: its named inertia integrals, NULL if it has none; NULL: not requested
+    struct ct_inertia **inertia;
 };
 
 /// Whether to include parts that are too long to print without definitions.

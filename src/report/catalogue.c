@@ -1,4 +1,4 @@
-// Lists of what there is: component types and methods.
+// Lists of component types and methods.
 #include "base/entry.h"
 #include "component/class.h"
 #include "integrate/problem.h"
@@ -9,7 +9,7 @@
 
 static const char *const family_names[] = {"bodies", "joints", "forces"};
 
-// Column of the descriptions: behind the longest key.
+// Column of the descriptions: after the longest key.
 static int key_width(const struct ct_key *key, int n)
 {
     int width = 12;

@@ -85,7 +85,7 @@ static void write_json(const struct ct_columns *t, FILE *out)
     ct_json_end(&j);
 }
 
-// The arrays, and the names of all columns in order: those of .mat are not the same.
+// The arrays, and the names of all columns in order, as .mat changes names.
 static void fill_archive(struct ct_archive *z, const struct ct_columns *t)
 {
     const char **name = CT_NEWN(z->arena, const char *, t->ncolumn + 1);

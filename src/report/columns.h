@@ -25,14 +25,15 @@ void ct_columns_init(struct ct_columns *t, struct ct_arena *a, const char *name,
                      enum ct_column_kind kind);
 /// One more column; returns its number.
 size_t ct_columns_add(struct ct_columns *t, const char *name, enum ct_column_kind kind);
-/// Append to a column. Not finite, and NULL: an empty field, null in JSON.
+/// Append to a column. Values that are not finite, and NULL: an empty field, null in JSON.
 void ct_columns_number(struct ct_columns *t, size_t column, double value);
 void ct_columns_text(struct ct_columns *t, size_t column, const char *text);
-/// path NULL or "-": CSV on standard output. All columns have the same length. Errors: E002,
-/// E006, E007.
+/// Writes the table to path; NULL or "-": CSV on standard output. All columns have the same
+/// length.
+/// Errors: E002, E006, E007.
 bool ct_columns_write(struct ct_ctx *ctx, const struct ct_columns *t, const char *path);
-/// All of the table onto a file that is open and stays so; suffix: none of those of CSV.
-/// Errors: E002.
+/// Writes the table to an open file, which stays open; suffix: none of those of CSV. Errors:
+/// E002.
 bool ct_columns_put(struct ct_ctx *ctx, const struct ct_columns *t, enum ct_suffix suffix,
                     struct ct_outfile *file);
 

@@ -65,7 +65,7 @@ void ct_csv_text(struct ct_csv *w, const char *text)
         put(w, '"');
 }
 
-// Whole rows go out; the stream keeps none of them.
+// Writes whole rows; the stream buffers none of them.
 static void write_rows(struct ct_csv *w)
 {
     if (w->gzip)

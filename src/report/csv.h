@@ -1,10 +1,10 @@
 // Results as comma-separated values (RFC 4180), row by row; as FILE.csv.gz compressed.
 //
-//     t,crank.q,"atan2(y, x)"         header: quoted where a comma, quote or line end asks for it
+//     t,crank.q,"atan2(y, x)"         header: quoted if it contains a comma, quote or line end
 //     0,0.5,1.25                      numbers: fewest digits that read back to the same bits
 //
-// What always holds: each row has as many fields as the header (asserted); what has reached the
-// system ends with a whole row; the file appears under its name only when it is complete
+// What always holds: each row has as many fields as the header (asserted); the data passed to
+// the system ends with a whole row; the file gets its name only when it is complete
 // (outfile.h).
 #ifndef CT_REPORT_CSV_H
 #define CT_REPORT_CSV_H
@@ -18,7 +18,7 @@ struct ct_csv {
     struct ct_arena *arena;
     size_t ncolumn;
     size_t nfield; // in the current row
-    char *text;    // rows that wait, and the current one  (n used, cap)
+    char *text;    // buffered rows, and the current one  (n used, cap)
     size_t n, cap;
 };
 

@@ -17,7 +17,7 @@ unsigned char *ct_deflate(struct ct_arena *a, const unsigned char *b, size_t n, 
 struct ct_gzip;
 /// Creates a stream that writes to out and lives until the arena is destroyed.
 struct ct_gzip *ct_gzip_create(struct ct_arena *a, FILE *out);
-/// Writes text; errors show on the stream.
+/// Writes text; errors are reported by the stream.
 void ct_gzip_write(struct ct_gzip *g, const char *text, size_t n);
 /// Completes the stream; afterwards nothing more can be written.
 void ct_gzip_finish(struct ct_gzip *g);

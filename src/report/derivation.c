@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-// A rate reads as the primed coordinate; angular velocities keep their own names.
+// A rate is printed as the primed coordinate; angular velocities keep their own names.
 static const char *plain_name(const struct ct_derivation *d, const struct ct_sym *s)
 {
     const struct ct_equations *e = d->e;
@@ -84,7 +84,7 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
 
 // ---- the order of parameters ---------------------------------------------------------------
 
-// Masses and inertias stand before lengths, gravity last: m*g*l reads m*l*g.
+// Order of factors: masses and inertias, then lengths, then gravity.
 static int *rank_parameters(struct ct_derivation *d)
 {
     struct ct_exs *x = d->e->x;
@@ -263,7 +263,7 @@ const char *ct_derivation_inertia_torque(struct ct_derivation *d, const struct c
     if (is_massless || body->is_particle)
         return NULL;
     if (ct_ex_same(body->inertia[0], body->inertia[1])
-        && ct_ex_same(body->inertia[1], body->inertia[2])) { // I w is along w
+        && ct_ex_same(body->inertia[1], body->inertia[2])) { // I w is parallel to w
         const char *I = ct_derivation_text(d, body->inertia[0]);
         if (strchr(I, ' '))
             I = ct_arena_printf(d->a, "(%s)", I);

@@ -1,4 +1,4 @@
-// Names and texts that the stages of the derivation share, in the look of the page.
+// Names and texts shared by the stages of the derivation, in the format of the page.
 #ifndef CT_REPORT_DERIVATION_H
 #define CT_REPORT_DERIVATION_H
 
@@ -13,12 +13,12 @@ enum { CT_MOST_MATRIX_SPEEDS = CT_PAGE_WIDTH };
 
 struct ct_derivation {
     struct ct_arena *a;
-    struct ct_arena *work; // of one text, then cleared
+    struct ct_arena *work; // workspace of one text, then cleared
     struct ct_equations *e;
     const struct ct_model *m;
     bool is_recursive; // which form the equations get (reduced.h)
     struct ct_page page;
-    struct ct_print print; // for expressions, in the page's look
+    struct ct_print print; // style of expressions, in the format of the page
     const int *rank;       // of the first nrank symbols: their order in products
     size_t nrank;
 };
@@ -40,7 +40,7 @@ const char *ct_derivation_text_as(struct ct_derivation *d, ct_ex v, const struct
 const char *ct_derivation_text(struct ct_derivation *d, ct_ex v);
 /// The same where no number comes from the model's data: q/2, not 0.5*q.
 const char *ct_derivation_exact(struct ct_derivation *d, ct_ex v);
-/// As ct_derivation_text, after collecting.
+/// As ct_derivation_text, for the collected expression.
 const char *ct_derivation_collected(struct ct_derivation *d, ct_ex v);
 /// A name of the model as mathematics: "crank.q", or LaTeX of it.
 const char *ct_derivation_name(struct ct_derivation *d, const char *name);
@@ -94,8 +94,8 @@ struct ct_substituted {
 };
 void ct_derivation_substitute(struct ct_derivation *d, struct ct_substituted *s);
 
-/// The cutset equation F(own) + F(...) - ... of branch `own`; row i of a cutset matrix (rows:
-/// its transpose).
+/// The cutset equation F(own) + F(...) - ... of branch `own`; row i of a cutset matrix, given
+/// by rows (its transpose in compressed columns).
 const char *ct_derivation_cutset(struct ct_derivation *d, const struct ct_incidence *rows,
                                  int i, int own, const char *letter);
 /// d or S of a chord as a sum over the branches from its tail to its head.

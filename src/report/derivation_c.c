@@ -17,7 +17,7 @@ static bool is_keyword(const char *s)
            "else", "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long",
            "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct",
            "switch", "typedef", "union", "unsigned", "void", "volatile", "while",
-           // what the function itself and math.h use
+           // names used by the function itself and by math.h
            "t", "q", "u", "M", "Q", "J", "Phi", "gam", "mode", "kept", "table", "sin", "cos",
            "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
            "pow", "fabs", "y0", "y1", "yn", "j0", "j1", "jn", "gamma"};
@@ -44,7 +44,7 @@ static const char *symbol(void *data, struct ct_arena *a, const struct ct_sym *s
     if (s->kind == CT_SYM_SWITCH || s->kind == CT_SYM_MEMORY)
         return ct_arena_printf(a, s->kind == CT_SYM_SWITCH ? "mode[%u]" : "kept[%u]", s->index);
     if (!n->of[k]) {
-        const char *name = ct_c_name(n->d->a, s->name); // stays, unlike what is in a
+        const char *name = ct_c_name(n->d->a, s->name); // outlives the arena a
         for (int i = 2; is_taken(n, name); i++)
             name = ct_arena_printf(n->d->a, "%s_%d", ct_c_name(a, s->name), i);
         n->of[k] = name;
@@ -74,7 +74,8 @@ static void mark_below(struct writer *w, const ct_ex *root, size_t nroot)
             w->is_used[x->node[x->stack[k]].a] = true;
 }
 
-// Only what the results use is declared: the rest would warn. Definitions use earlier ones only.
+// Declares only what the results use, to avoid compiler warnings. Definitions use earlier ones
+// only.
 static void mark_used(struct writer *w, const struct ct_reduced *r)
 {
     const struct ct_exs *x = w->d->e->x;
@@ -139,7 +140,7 @@ static void put_results(struct writer *w, const struct ct_reduced *r)
         fprintf(w->out, "    gam[%zu] = %s;\n", i, text(w, r->gam[i]));
 }
 
-// A name inside a comment of one line: what could end the line is written as a blank.
+// A name inside a one-line comment: characters that could end the line become blanks.
 static void put_comment_name(FILE *out, const char *name)
 {
     for (; *name; name++)

@@ -1,4 +1,4 @@
-// The derivation for programs.
+// The derivation as JSON.
 //
 // Rows and columns count from 0; M holds its lower triangle. Expressions are in the grammar of
 // model files with speeds as J.u and accelerations as J.a; definitions use earlier ones only.
@@ -24,7 +24,7 @@ static const char *text(struct writer *w, ct_ex v)
 
 // ---- topology ------------------------------------------------------------------------------
 
-// Coordinates of an element by the names of its dofs; those that are fixed are left out.
+// Coordinates of an element by the names of its dofs; fixed ones are omitted.
 static void put_element(struct writer *w, const struct ct_flexible *f, int k)
 {
     const struct ct_element *e = &f->element[k];
@@ -39,8 +39,8 @@ static void put_element(struct writer *w, const struct ct_flexible *f, int k)
     ct_json_end(&w->j);
 }
 
-// The element as a function of its dofs, xi and h; s: its stretch. Energy is not there where
-// sections vary.
+// The element as a function of its dofs, xi and h; s: its stretch. Without energy if sections
+// vary.
 static void put_function(struct writer *w, const struct ct_flexible *f)
 {
     struct ct_beam_element e;
@@ -81,7 +81,7 @@ static void put_beams(struct writer *w)
     ct_json_end(&w->j);
 }
 
-// The equations of a page that are about a component, as text.
+// The equations of one component on a page, as text.
 static void put_equations_about(struct writer *w, const struct ct_page *p, const char *name)
 {
     ct_json_array(&w->j, "equations");
@@ -115,7 +115,7 @@ static void put_component(struct writer *w, const char *name, const char *type,
 static void put_terminal(struct writer *w)
 {
     const struct ct_build *b = w->d->e->build;
-    ct_stage_terminal(w->d); // the page of this writer is never printed
+    ct_stage_terminal(w->d); // the page itself is not printed
     ct_json_array(&w->j, "terminal");
     for (size_t i = 0; i < b->topology->nedge; i++) {
         const struct ct_edge_info *e = &b->topology->edge[i];
@@ -136,7 +136,7 @@ static void put_terminal(struct writer *w)
         put_beams(w);
 }
 
-// Rows of an integer matrix: what they are called, edges and their signs.
+// Rows of an integer matrix: name, edges and their signs.
 static void put_rows(struct writer *w, const char *key, const char *own_key,
                      const struct ct_incidence *S, const char *const *name)
 {
@@ -218,7 +218,7 @@ static void put_definitions(struct writer *w, const struct ct_definitions *list)
     ct_json_end(&w->j);
 }
 
-// Circuits with the terminal equations put in.
+// Circuits with the terminal equations substituted.
 static void put_substituted(struct writer *w)
 {
     const struct ct_equations *e = w->d->e;
@@ -346,7 +346,7 @@ static void put_known(struct writer *w, const struct ct_reduced *r)
     ct_json_end(&w->j);
 }
 
-// Terms of the equations, and what they come from.
+// Terms of the equations, and the components they come from.
 static void put_terms(struct writer *w, const struct ct_reduced *r)
 {
     static const char *const kind[]
@@ -396,7 +396,7 @@ static void put_reduced(struct writer *w)
     put_known(w, &r);
     put_definitions(w, &r.definitions);
     size_t nM = e->nM;
-    while (nM && ct_speed_is_state(e, (size_t)e->M[nM - 1].row)) // behind all others
+    while (nM && ct_speed_is_state(e, (size_t)e->M[nM - 1].row)) // after all others
         nM--;
     if (r.is_recursive) {
         put_sides(w, &r);

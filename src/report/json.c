@@ -58,7 +58,7 @@ static void quote(FILE *out, const char *text)
     fputc('"', out);
 }
 
-// What comes before a value: comma, line and key.
+// The separator before a value: comma, line break and key.
 static void start_value(struct ct_json *j, const char *key)
 {
     if (j->depth == 0) {

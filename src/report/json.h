@@ -9,9 +9,9 @@
 //     ct_json_end(j);                             }
 //
 // Every function that starts a value takes its key first: a name in an object, NULL in an array
-// and at the top. What always holds: the output is valid JSON in UTF-8 whatever the strings
-// contain; numbers have the fewest digits that read back, and what is not finite is null. To
-// write to memory instead of a file, pass what open_memstream gives.
+// and at the top. What always holds: the output is valid JSON in UTF-8 for any strings; numbers
+// have the fewest digits that read back; values that are not finite are null. To write to
+// memory, pass the stream of open_memstream.
 #ifndef CT_REPORT_JSON_H
 #define CT_REPORT_JSON_H
 

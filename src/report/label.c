@@ -1,4 +1,4 @@
-// Names by meaning for the expressions of the recursion; see reduced.h.
+// Names for the expressions of the recursion, such as angular velocities; see reduced.h.
 #include "report/reduced.h"
 
 struct labels {
@@ -6,8 +6,8 @@ struct labels {
     enum ct_level level;
 };
 
-// Of -e the label, with a sign, stands at e: in the recursive form alone (share.h takes it off
-// again), as elsewhere the same text without its sign belongs to someone else.
+// Sets the label of an expression. The label of -e is stored with a sign at e, in the recursive
+// form alone, where share.h removes the sign.
 static void label(const struct labels *l, ct_ex e, const char *letter, const char *name,
                   const char *part)
 {
@@ -38,8 +38,8 @@ static void label33(const struct labels *l, const ct_ex33 *A, const char *letter
         label(l, A->e[i], letter, name, part[i]);
 }
 
-// The first node that turns with each cluster, its own body's frame if there is one; and the
-// first at each anchor.
+// The first node of each cluster, the frame of its own body if there is one; and the first node
+// at each anchor.
 static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
 {
     for (size_t i = 0; i < b->topology->nnode; i++) {
@@ -57,8 +57,8 @@ static bool is_same(ct_ex3 a, ct_ex3 b)
         && ct_ex_same(a.e[2], b.e[2]);
 }
 
-// Anchors where nodes are that are placed from the anchor before: the last of these nodes,
-// which is the frame that goes on from there.
+// Anchors with nodes placed relative to the previous anchor: the last of these nodes, the frame
+// from which the path continues.
 static void name_ends_of_links(struct ct_build *b, const char **anchor)
 {
     const struct ct_kinematics *k = b->kinematics;
@@ -103,7 +103,7 @@ static void label_anchor(const struct labels *l, int a, const char *name)
         label3(l, self->a[CT_BIAS], "a", name);
 }
 
-// What moves as one beyond each anchor: masses, first moments, inertias.
+// Names of the outboard sums at each anchor: masses, first moments, inertias.
 static void label_lumped(const struct labels *l, const char *const *cluster,
                          const char *const *anchor)
 {

@@ -1,7 +1,6 @@
-// See marked_model.h. Marked are masses, inertias, places of points, section and material of
-// beams, what joints and forces are given by expressions, and gravity; not directions, whose
-// effect shows in the coordinates about or along them, and not initial values, which are in no
-// equation.
+// See marked_model.h. Marked are masses, inertias, positions of points, section and material of
+// beams, expressions of joints and forces, and gravity. Not marked are directions, whose effect
+// shows in the coordinates along or about them, and initial values, which are in no equation.
 #include "report/marked_model.h"
 
 #include "base/sort.h"
@@ -27,7 +26,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 
 // ---- origins -------------------------------------------------------------------------------
 
-// An origin while the list is sorted. at: where its number is to be written.
+// An origin while the list is sorted. at: destination of its number.
 struct entry {
     struct ct_origin origin;
     size_t order;
@@ -57,7 +56,7 @@ static int by_line(const void *unused, const void *va, const void *vb)
     return (a->order > b->order) - (a->order < b->order);
 }
 
-// force, gravity: numbers of theirs (out).
+// force, gravity: numbers of their origins (out).
 static void list_origins(struct marker *k, uint32_t *force, uint32_t *gravity)
 {
     const struct ct_model *m = k->m;
@@ -70,7 +69,8 @@ static void list_origins(struct marker *k, uint32_t *force, uint32_t *gravity)
     for (size_t i = 0; i < m->nparameter; i++)
         add(k->a, &list, m->parameter[i].name, m->parameter[i].mark, &out->of_parameter[i],
             false);
-    const struct ct_mark ground = m->body[0].instance.mark; // the file's where it is not given
+    // the position of the file if it is not given
+    const struct ct_mark ground = m->body[0].instance.mark;
     add(k->a, &list, "ground", ground.line ? ground : (struct ct_mark){0}, &out->of_body[0],
         true);
     for (size_t i = 1; i < m->nbody; i++)
@@ -101,7 +101,7 @@ static void list_origins(struct marker *k, uint32_t *force, uint32_t *gravity)
             out->of_frame[i] = out->of_body[m->frame[i].body];
 }
 
-// Marks are parameters, too: of value 1.
+// Marks are parameters of value 1.
 static void add_parameters(struct marker *k)
 {
     const struct ct_marked_model *out = k->out;
@@ -169,7 +169,7 @@ static void mark_bodies(struct marker *k)
     }
 }
 
-// Points of a beam are marked as the beam is: one at its end is at its length.
+// Points of a beam have the mark of the beam, as a point at its end is at its length.
 static void mark_frames(struct marker *k)
 {
     struct ct_model *m = k->m;

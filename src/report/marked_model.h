@@ -1,4 +1,4 @@
-// A model whose numbers tell where they come from: each is multiplied by the mark of its component.
+// A model that traces its numbers: each is multiplied by the mark of its component.
 //
 //     crank: {mass: m1, com: [r/2, 0, 0]}     mass m1*mark(crank), com [r/2*mark(crank), 0, 0]
 //
@@ -19,13 +19,13 @@ struct ct_marked_model {
     struct ct_model model;
     struct ct_origin *origin; // in the order of the file
     size_t norigin;
-    ct_ex *mark; // by origin; CT_EX_ZERO: it has none, as parameters are symbols themselves
+    ct_ex *mark; // by origin; CT_EX_ZERO for parameters, which are symbols themselves
     // numbers of origins; of bodies, frames, joints and parameters of the model
     uint32_t *of_body, *of_frame, *of_joint, *of_parameter;
 };
 
-/// model with expressions in x, a store that has all of those of the model; x grows. Everything
-/// lives in a.
+/// A marked copy of `model` with expressions in x, a store that contains those of the model and
+/// grows. Owned by a.
 void ct_marked_model_create(struct ct_arena *a, const struct ct_model *model, struct ct_exs *x,
                             struct ct_marked_model *out);
 

@@ -2,8 +2,7 @@
 //
 // Each array: type, rows, columns, 0, length of the name with its NUL (32 bits each), the name,
 // the numbers by columns. Names of variables are letters, digits and underscores: other
-// characters become underscores, and a number is put behind what is there already.
-// Source: MathWorks, MAT-File Format, "Version 4 MAT-File Format".
+// characters become underscores, and a repeated name gets a number.
 #include "report/archive.h"
 
 #include <stdio.h>
@@ -96,7 +95,7 @@ static void add_names(struct ct_archive *z, const char *name, const char *const 
 
 static void finish(struct ct_archive *z)
 {
-    (void)z; // it ends with its last array
+    (void)z; // the file ends with its last array
 }
 
 const struct ct_archive_format ct_archive_mat = {add_numbers, add_names, finish};

@@ -1,8 +1,8 @@
 // Mathematics as presentation MathML Core; see mathml.h.
 //
 // LaTeX is read item by item: a nucleus (a letter, a number, a command with its groups, a pair
-// of delimiters with what they hold) and its scripts. An item becomes one element, a command
-// with a sign of its own an operator.
+// of delimiters with contents) and its scripts. An item becomes one element; a command for a
+// sign becomes an operator.
 #include "report/mathml.h"
 
 #include "base/entry.h"
@@ -41,7 +41,7 @@ static size_t decode(const char *s, size_t n, uint32_t *code)
                         : (u[0] & 0xF0) == 0xE0 ? 3
                         : (u[0] & 0xF8) == 0xF0 ? 4
                                                 : 0;
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; // no longer form than needed
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; // shortest form only
     if (!length || length > n)
         return 0;
     *code = length == 1 ? u[0] : u[0] & (0x7Fu >> length);
@@ -116,7 +116,7 @@ static const char *skip_blanks(const char *s, const char *end)
     return s;
 }
 
-// Behind the group that starts at s.
+// The position after the group that starts at s.
 static const char *skip_group(const char *s, const char *end)
 {
     int depth = 0;
@@ -131,7 +131,7 @@ static const char *skip_group(const char *s, const char *end)
     return end;
 }
 
-// What the group at s holds, or the one character; *s moves behind it.
+// The contents of the group at s, or one character; *s moves after it.
 static struct span take_group(const char **s, const char *end)
 {
     const char *at = skip_blanks(*s, end);
@@ -155,8 +155,8 @@ static bool starts(const char *s, const char *end, const char *word)
     return (size_t)(end - s) >= n && !memcmp(s, word, n);
 }
 
-// Behind what `open` opens at s and `close` closes, both commands, at the same depth; *inner
-// ends before that.
+// The position after the command `close` that matches `open` at s, at the same depth; *inner
+// ends before it.
 static const char *skip_pair(const char *s, const char *end, const char *open,
                              const char *close, const char **inner)
 {
@@ -176,7 +176,7 @@ static const char *skip_pair(const char *s, const char *end, const char *open,
     return end;
 }
 
-// How many groups follow a command.
+// Number of groups after a command.
 static int count_groups(const char *name, size_t n)
 {
     static const char *const one[] = {"mathrm", "boldsymbol", "operatorname", "text", "sqrt",
@@ -219,7 +219,7 @@ static const char *skip_nucleus(const char *s, const char *end)
     return at;
 }
 
-// A nucleus with its scripts; empty where there are none.
+// A nucleus with its scripts, which may be empty.
 struct item {
     struct span nucleus, below, above;
     const char *end;
@@ -272,7 +272,7 @@ static const char *find_sign(const struct sign *list, size_t count, const char *
 }
 #define FIND_SIGN(list, name, n) find_sign((list), COUNT(list), (name), (n))
 
-// Text with the signs that ct_latex_quoted quotes.
+// Text with the characters that ct_latex_quoted escapes.
 static void put_unquoted(FILE *out, struct span t)
 {
     static const struct sign quoted[]
@@ -312,7 +312,7 @@ static void put_element_row(FILE *out, struct span t)
     fputs("</mrow>", out);
 }
 
-// Upright words; a single letter would be italic.
+// Upright words; a single letter is italic by default.
 static void put_words(FILE *out, struct span t)
 {
     fputs(t.end - t.s == 1 ? "<mi mathvariant=\"normal\">" : "<mi>", out);
@@ -341,7 +341,7 @@ static void put_delimiter(FILE *out, char c, const char *form, bool is_tall)
                 is_tall ? "true" : "false", c);
 }
 
-// Does anything in it need delimiters that are taller than a letter?
+// Does it contain anything taller than a letter, which needs tall delimiters?
 static bool is_tall(struct span t)
 {
     static const char *const tall[] = {"\\frac", "\\begin", "\\sqrt", "\\int"};
@@ -459,7 +459,7 @@ static void put_command(FILE *out, struct span t)
 
 // ---- rows ----------------------------------------------------------------------------------
 
-// A sign is that of a number or of the first term where nothing stands before it.
+// A sign with nothing before it belongs to a number or to the first term.
 static void put_operator(FILE *out, char c, bool is_first)
 {
     const char *text = c == '-' ? "\u2212" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : NULL;
@@ -479,7 +479,7 @@ static bool is_operator(char c)
     return strchr("+-=<>()[]|,.;:!/*", c);
 }
 
-// Does a sign behind this item belong to what follows?
+// Does a sign after this item belong to the next item?
 static bool leads(struct span nucleus)
 {
     static const char *const before[] = {"\\neq", "\\leq", "\\geq", "\\times", "\\cdot"};
@@ -518,7 +518,7 @@ static bool is_function(struct span nucleus)
             || is_named(nucleus.s + 1, n, "operatorname"));
 }
 
-// The argument of a function that needs no parentheses stands apart.
+// The argument of a function without parentheses is separated by a space.
 static void put_application(FILE *out, const struct item *it, const char *end)
 {
     const char *next = skip_blanks(it->end, end);
@@ -569,10 +569,9 @@ void ct_mathml_inline(FILE *out, const char *latex)
 
 // ---- terms ---------------------------------------------------------------------------------
 
-// Widths in LaTeX at 10 pt [pt], so 10 are 1 em. A phone is 390 px wide, 22 em within margins
-// of 1 em: what is wider than a line there, its indent off, may be broken; a piece of half that
-// is long enough to end behind a factor.
-// Layout: as above
+// Widths in LaTeX at 10 pt [pt]: 10 are 1 em. A phone is 390 px wide, 22 em within margins of 1
+// em. A term wider than an indented line there may be broken; a piece may end before a factor
+// when it has half that width.
 enum { PHONE_LINE = 180, LONG_PIECE = PHONE_LINE / 2 };
 
 static size_t width_of(struct span t)
@@ -580,7 +579,7 @@ static size_t width_of(struct span t)
     return ct_latex_width(t.s, (size_t)(t.end - t.s));
 }
 
-// A term that is written in pieces, between which a line may end.
+// A term written in pieces; lines may end between them.
 struct pieces {
     FILE *out;
     bool is_open;
@@ -604,7 +603,7 @@ static void end_piece(struct pieces *p)
 
 static void put_pieces(struct pieces *p, struct span t, bool is_first);
 
-// Parentheses that do not fit a line: the first piece opens them, the last one closes them.
+// Parentheses that do not fit a line: opened in the first piece, closed in the last.
 static void put_wide_fenced(struct pieces *p, const struct item *it)
 {
     char open, close;
@@ -621,7 +620,7 @@ static void put_wide_fenced(struct pieces *p, const struct item *it)
         put_item(p->out, &last, false, it->end);
 }
 
-// Does an item begin a factor, before which a long piece may end?
+// Does an item begin a factor, so that a long piece may end before it?
 static bool begins_factor(struct span nucleus)
 {
     const bool is_space = *nucleus.s == '\\' && !command_length(nucleus.s, nucleus.end);
@@ -652,7 +651,7 @@ static void put_pieces(struct pieces *p, struct span t, bool is_first)
     }
 }
 
-// Each word is an element, so that lines end between them.
+// Each word is an element, so that lines can end between words.
 static void put_note(FILE *out, const char *note)
 {
     for (size_t n; *note; note += n + strspn(note + n, " ")) {
@@ -710,7 +709,7 @@ static void put_typeset(FILE *out, const struct ct_mathml_term *t, bool is_first
     fputs("</mrow>", out);
 }
 
-// is_first: of its side; the sign of a further one stands between terms.
+// is_first: the first term of a side; the sign of a later one is an operator between terms.
 static void put_term(FILE *out, const struct ct_mathml_term *t, bool is_first)
 {
     if (t->plain)

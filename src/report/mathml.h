@@ -1,11 +1,11 @@
 // Mathematics as presentation MathML Core, for pages in HTML.
 //
-// There is one notation, that of LaTeX (expr/print.h, ct_derivation_text and its neighbours for
-// a page of CT_LOOK_HTML or CT_LOOK_LATEX); this module translates it:
+// The source is the LaTeX of expr/print.h and of ct_derivation_text for a page of CT_LOOK_HTML
+// or CT_LOOK_LATEX; this module translates it:
 //
 //     \frac{m \, l^{2}}{3} \, \ddot{\theta}     ->     <mfrac>...</mfrac> <mover><mi>θ</mi><mo>¨</mo></mover>
 //
-// An equation is one element, its sides are rows of terms that wrap, and each term says which
+// An equation is one element. Its sides are rows of terms that wrap; each term lists the
 // components it comes from:
 //
 //     <math data-equation="main.u" class="equation">
@@ -13,10 +13,9 @@
 //       <mrow class="right"> <mo>=</mo> <mrow class="side"> <mrow class="term" ...> ... </mrow> ... </mrow> </mrow>
 //     </math>
 //
-// What always holds: what is written is well-formed as XML in UTF-8. Text of a model is
-// escaped; characters that XML does not allow, invalid UTF-8, and those that change the
-// direction of text become U+FFFD. Layout is left to ct_mathml_style; a page without it is
-// readable.
+// What always holds: the output is well-formed XML in UTF-8. Text of a model is escaped;
+// characters that XML does not allow, invalid UTF-8, and those that change the direction of
+// text become U+FFFD. Layout is left to ct_mathml_style; a page without it is readable.
 #ifndef CT_REPORT_MATHML_H
 #define CT_REPORT_MATHML_H
 
@@ -27,7 +26,7 @@
 /// Text in HTML and in attributes in double quotes: escaped, at most n bytes.
 void ct_html_text(FILE *out, const char *s, size_t n);
 
-/// Rules of a style sheet for what is written here.
+/// Style sheet rules for this output.
 extern const char ct_mathml_style[];
 
 /// Mathematics, without an element `math` around it.

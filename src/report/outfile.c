@@ -34,7 +34,7 @@ static bool is_at(const struct stat *file, const char *path)
         && there.st_ino == file->st_ino;
 }
 
-// LOST: between opening and locking another one has moved the file to its final name.
+// LOST: another process has renamed the file between opening and locking.
 static enum grip grip(struct ct_ctx *ctx, const struct ct_outfile *o, int fd)
 {
     struct stat file;
@@ -58,7 +58,7 @@ static enum grip grip(struct ct_ctx *ctx, const struct ct_outfile *o, int fd)
 static int open_partial(struct ct_ctx *ctx, const struct ct_outfile *o)
 {
     for (;;) {
-        // without O_NONBLOCK a FIFO of that name would be waited for
+        // without O_NONBLOCK a FIFO of that name would block
         const int fd
             = open(o->partial, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
         if (fd < 0)

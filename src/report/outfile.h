@@ -1,13 +1,12 @@
-// A result file that is either whole or not there.
+// A result file that is either complete or absent.
 //
 //     open: FILE.partial  -- writing -->  FILE.partial  -- close -->  FILE
 //                                               `-- abandon, crash -->  FILE.partial stays
 //
-// What always holds: until close has succeeded FILE is what it was before; FILE.partial is
-// written by one process at a time (it is locked), is never a link, and has reached the disk
-// before it becomes FILE. Only a file that is not a regular one, such as /dev/null, is written
-// to directly. Where a file system has no locks the last of two writers that begin at the same
-// time wins.
+// What always holds: FILE is unchanged until close has succeeded. FILE.partial is written by
+// one process at a time (it is locked), is never a link, and is on the disk before it becomes
+// FILE. Only a file that is not a regular one, such as /dev/null, is written directly. On a
+// file system without locks the last of two simultaneous writers wins.
 #ifndef CT_REPORT_OUTFILE_H
 #define CT_REPORT_OUTFILE_H
 

@@ -26,7 +26,7 @@ char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n)
     return text;
 }
 
-// low + step k, k = 0 .. MOST, spans what is finite in a column.
+// low + step k, k = 0 .. MOST, spans the finite values of a column.
 static void find_scale(const double *value, size_t nrow, size_t ncolumn, double *low,
                        double *step)
 {
@@ -39,7 +39,7 @@ static void find_scale(const double *value, size_t nrow, size_t ncolumn, double 
             most = fmax(most, v);
         }
     }
-    if (!(most >= *low)) // nothing is
+    if (!(most >= *low)) // no value is finite
         *low = most = 0;
     *step = most / MOST - *low / MOST; // without overflow
 }

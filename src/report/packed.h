@@ -3,23 +3,23 @@
 //     numbers -> multiples k of a step -> second differences -> bytes, plane by plane -> deflate -> base64
 //
 // Columns of samples are smooth, so that second differences are small: most of their bytes are
-// zero. A step is 2^-24 of a column's range, which is far less than a screen or four digits
-// show.
+// zero. A step is 2^-24 of a column's range, below the resolution of a screen and of four
+// digits.
 //
 // What always holds: the same numbers give the same bytes; unpacked numbers differ by half a
-// step of their column at most; what is not finite comes back as NaN. web/packed.js reads them.
+// step of their column at most; values that are not finite come back as NaN. web/packed.js
+// reads them.
 #ifndef CT_REPORT_PACKED_H
 #define CT_REPORT_PACKED_H
 
 #include "base/arena.h"
 #include "report/json.h"
 
-/// A table of nrow rows and ncolumn columns, a row after the other, as the member `key` of an
-/// object that is open:
+/// A table of nrow rows and ncolumn columns, row by row, as the member `key` of an open object:
 ///
 ///     {"count": nrow, "columns": ncolumn, "low": [...], "step": [...], "data": "base64"}
 ///
-/// a: for the time of the call. Returns the length of `data`.
+/// a: workspace. Returns the length of `data`.
 size_t ct_pack_write(struct ct_json *j, struct ct_arena *a, const char *key,
                      const double *value, size_t nrow, size_t ncolumn);
 

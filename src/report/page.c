@@ -82,8 +82,8 @@ struct ct_page_equation *ct_page_equation(struct ct_page *p, const char *label,
 
 // ---- summaries -----------------------------------------------------------------------------
 
-// Layout: lines at each end of a list: two points of a chain in a plane, one in space with its
-// rotation.
+// Layout: entries shown at each end of a list: two points of a chain in a plane, one in space
+// with its rotation.
 enum { FEW = 4 };
 
 static bool is_list(size_t n)
@@ -100,10 +100,10 @@ enum ct_shown ct_page_shown(const struct ct_page *p, size_t i, size_t n)
 
 static void shorten_table(struct ct_page *p, struct ct_page_block *b)
 {
-    const size_t n = strlen(b->align), nrow = b->ncell / n - 1; // without the head
+    const size_t n = strlen(b->align), nrow = b->ncell / n - 1; // without the header
     if (!is_list(nrow))
         return;
-    const char **row = b->cell + n * (1 + FEW); // the first that goes
+    const char **row = b->cell + n * (1 + FEW); // the first that is omitted
     for (size_t k = 0; k < n; k++)
         row[k] = k == 0 ? "..."
                : k == 1 ? ct_arena_printf(p->arena, "%zu more", nrow - 2 * FEW)
@@ -112,7 +112,7 @@ static void shorten_table(struct ct_page *p, struct ct_page_block *b)
     b->ncell = n * (2 + 2 * FEW);
 }
 
-// A side that fills more than a screen, by its length.
+// Is the side longer than a screen?
 static const char *shorten_side(struct ct_page *p, const char *side)
 {
     const size_t n = side ? strlen(side) : 0;
@@ -168,7 +168,7 @@ static bool is_sign(const char *s)
     return s[0] == ' ' && (s[1] == '+' || s[1] == '-') && s[2] == ' ';
 }
 
-// Length of the group of braces that starts s: what it holds may be any text. 0: it does not end.
+// Length of the group of braces at the beginning of s, with any contents. 0: it does not end.
 static size_t group_length(const char *s)
 {
     int depth = 0;
@@ -193,7 +193,7 @@ size_t ct_page_first_term(const char *s)
             depth++;
         else if (strchr(")]}", s[i]))
             depth--;
-        else if (s[i] == '\\') // cases hold together
+        else if (s[i] == '\\') // cases are not broken
             depth += !strncmp(s + i, "\\begin{", 7) - !strncmp(s + i, "\\end{", 5);
         else if (i > 0 && depth <= 0 && is_sign(s + i))
             return i;

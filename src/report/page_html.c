@@ -7,10 +7,10 @@
 #include <stdint.h>
 #include <string.h>
 
-// What browsers would say: readable in print, in the dark, at 390 px; only tables and matrices
-// scroll, and on their own.
+// Style sheet: readable in print, in dark mode and at 390 px; only tables and matrices scroll,
+// each by itself.
 const char ct_page_style[]
-    // what is wider than its place scrolls, with a shadow at the end where there is more
+    // wide elements scroll, with a shadow at the end if there is more
     = ".table, .matrix, div.wide, pre.wide { overflow-x: auto; "
       "background: linear-gradient(to right, var(--paper, Canvas) 40%, transparent) 0 0 / 3em "
       "100% "
@@ -60,7 +60,7 @@ static struct ct_mathml_side split_terms(struct ct_arena *a, const char *s,
     return (struct ct_mathml_side){term, n};
 }
 
-// Words of a note are items of the last side, so that they wrap with its terms.
+// The words of a note are items of the last side, so that they wrap with its terms.
 static struct ct_mathml_side add_note(struct ct_arena *a, struct ct_mathml_side side,
                                       const char *note)
 {
@@ -88,8 +88,8 @@ static void put_equation(FILE *out, struct ct_arena *a, const struct ct_page_equ
     fputs(e->label ? "</div>\n" : "", out);
 }
 
-// Signs of equality stand in a column where left sides leave room for the right ones, a third
-// of a phone's line.
+// Equal signs are aligned if left sides leave enough width for the right sides, a third of a
+// phone's line.
 static bool is_aligned(const struct ct_page_block *b)
 {
     for (size_t i = 0; i < b->nequation; i++) {
@@ -112,10 +112,10 @@ static void put_equations(FILE *out, struct ct_arena *a, const struct ct_page_bl
 
 // ---- tables and matrices -------------------------------------------------------------------
 
-// Columns that hold more than a name or a number wrap.
+// Columns with more than names or numbers wrap.
 static bool *find_words(struct ct_arena *a, const struct ct_page_block *b, size_t n)
 {
-    // Layout: a longer text is words
+    // Layout: a longer text wraps
     enum { LONGEST_NAME = 24 };
     bool *has_words = CT_NEWN(a, bool, n + 1);
     for (size_t i = n; i < b->ncell; i++)

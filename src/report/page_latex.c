@@ -1,8 +1,7 @@
 // Pages as LaTeX; see page.h.
 //
-// Widths are estimated (ct_latex_width), so that lines end where a margin would be passed.
-// Groups of equations are align*, which may go on on the next page; columns of tables that are
-// too wide become paragraphs.
+// Lines are broken by estimated widths (ct_latex_width). Groups of equations are align*, which
+// may continue on the next page; columns of tables that are too wide become paragraphs.
 #include "report/page.h"
 
 #include "expr/print.h"
@@ -12,7 +11,7 @@
 
 // ---- words ---------------------------------------------------------------------------------
 
-// may_break: a line may end behind the dots and underscores of a name.
+// may_break: a line may end after the dots and underscores of a name.
 static void put_characters(FILE *out, const char *s, size_t n, bool may_break)
 {
     for (size_t i = 0; i < n; i++) {
@@ -56,9 +55,7 @@ static size_t words_width(const char *s)
 
 // ---- equations -----------------------------------------------------------------------------
 
-// What lines are indented by: \quad, and again where they go on; the room an estimate may be
-// wrong by.
-// Layout: of a page
+// Indents of first and continued lines (\quad each), and the margin for errors of the estimate.
 enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
 // Before a factor, or a relation.
@@ -68,8 +65,8 @@ static bool is_within_product(const char *s)
         || !strncmp(s, " \\leq ", 6) || !strncmp(s, " \\geq ", 6);
 }
 
-// Length of a piece up to the next place where a line may end: before a sign, or a factor, at any
-// depth of parentheses but not within braces or cases.
+// Length of a piece up to the next possible line break: before a sign or a factor, at any depth
+// of parentheses but not within braces or cases.
 static size_t piece_of(const char *s, bool at_factors)
 {
     int braces = 0;
@@ -88,15 +85,14 @@ static size_t piece_of(const char *s, bool at_factors)
 // A line that is being written.
 struct line {
     FILE *out;
-    size_t column, room; // [pt], from the place where the first line starts
+    size_t column, room; // [pt], from the start of the first line
     size_t indent;       // of further lines [pt]
-    const char *again;   // what starts them
+    const char *again;   // text that starts them
     size_t *nline;       // of the environment
 };
 
-// Lines of an environment: TeX holds all of it in memory. Within an equation it may be longer,
-// so that most end behind one.
-// Layout: of a page
+// Largest number of lines of an environment, which TeX keeps in memory. It ends between
+// equations; within an equation it may have more.
 enum { MOST_LINES = 60, MOST_LINES_WITHIN = 200 };
 
 // Ends a line of align*, and the environment where it is long enough.
@@ -115,8 +111,8 @@ static bool is_over(const struct line *l, size_t width)
     return l->column + width + SLACK > l->room && l->column > l->indent;
 }
 
-// A delimiter cannot be open at the end of a line: invisible ones close and open the `depth`
-// that are. A sign after the empty group is that of a sum.
+// Delimiters cannot span lines: invisible ones close and open the `depth` open ones. A sign
+// after an empty group is a binary operator.
 static void end_line(struct line *l, int depth)
 {
     for (int i = 0; i < depth; i++)
@@ -136,7 +132,7 @@ static int depth_after(int depth, const char *s, size_t n)
     return depth;
 }
 
-// A term wider than a line, broken within: between products where a sum in it does not fit either.
+// Breaks a term that is wider than a line: between products if a sum in it does not fit either.
 static void put_wide_term(struct line *l, const char *s, size_t length)
 {
     const char *end = s + length;
@@ -146,7 +142,7 @@ static void put_wide_term(struct line *l, const char *s, size_t length)
         if (l->indent + SLACK + ct_latex_width(s, n) > l->room)
             n = piece_of(s, true);
         if (!strncmp(s, " \\, ", 4)
-            && is_over(l, ct_latex_width(s, n))) // amid a product: its next factor
+            && is_over(l, ct_latex_width(s, n))) // within a product: its next factor
             n = piece_of(s, true);
         n = n < (size_t)(end - s) ? n : (size_t)(end - s);
         const size_t width = ct_latex_width(s, n);
@@ -171,7 +167,7 @@ static void put_wide_term(struct line *l, const char *s, size_t length)
     }
 }
 
-// Terms of a sum, on further lines where they do not fit.
+// Terms of a sum, continued on further lines.
 static void put_sum(struct line *l, const char *s)
 {
     while (*s) {
@@ -220,7 +216,7 @@ static void put_note(struct line *l, const char *note)
     fputs(")}", l->out);
 }
 
-// Labels before the left sides; those that leave too little room stand on lines of their own.
+// Labels before the left sides; long labels have lines of their own.
 static void put_labelled(FILE *out, const struct ct_page_equation *e, size_t label_width,
                          size_t *nline)
 {
@@ -308,8 +304,8 @@ static bool is_math(const struct ct_page_block *b, size_t cell)
 // Layout: of a page
 enum { SEPARATION = 12 }; // between columns [pt]
 
-// The widest part of a cell that cannot be broken [pt]: a formula, or what stands between
-// blanks, dots and underscores.
+// The widest unbreakable part of a cell [pt]: a formula, or a word between blanks, dots and
+// underscores.
 static size_t unbroken_width(const struct ct_page_block *b, size_t cell, struct ct_arena *a)
 {
     const char *s = b->cell[cell];
@@ -327,9 +323,9 @@ static size_t unbroken_width(const struct ct_page_block *b, size_t cell, struct 
     return widest;
 }
 
-// Widths of the columns where the table is wider than a line, else zeros: each has room for
-// what cannot be broken, and they share the rest by what they lack. Returns whether even that
-// is too wide.
+// Widths of the columns if the table is wider than a line, else zeros. Each column has at least
+// the width of its unbreakable parts; the remaining width is shared in proportion to what is
+// missing. Returns whether even that is too wide.
 static bool share_line(const struct ct_page_block *b, struct ct_arena *a, size_t *width)
 {
     const size_t n = strlen(b->align), line = LINE - SLACK - SEPARATION * n;

@@ -11,7 +11,7 @@ static void put_indent(FILE *out, size_t n)
     fprintf(out, "%*s", (int)n, "");
 }
 
-// Plain words, broken at blanks.
+// Text, broken at blanks.
 static void put_words(FILE *out, const char *s, size_t indent)
 {
     size_t column = 0;
@@ -37,9 +37,8 @@ static void put_words(FILE *out, const char *s, size_t indent)
     fputs("\n", out);
 }
 
-// Where to break s so that at most `room` characters stay before: at the sign of a sum or the
-// comma of a list with the fewest open brackets, the last of those; then before a factor; 0 if
-// nowhere.
+// Position at which to break s after at most `room` characters: at the last sign of a sum or
+// comma of a list with the fewest open brackets, otherwise before a factor; 0 if there is none.
 static size_t break_place(const char *s, size_t room)
 {
     size_t best = 0;
@@ -53,12 +52,12 @@ static size_t break_place(const char *s, size_t room)
         if (i > 4 && s[i] == ' ' && (s[i + 1] == '+' || s[i + 1] == '-') && s[i + 2] == ' ')
             rank = 0;
         else if (i > 4 && s[i] == ' ' && s[i - 1] == ',')
-            rank = 0, level--; // a list falls apart before the sums in it
+            rank = 0, level--; // a list is broken before the sums in it
         else if (i > 4 && s[i] == '*' && depth == 0)
             rank = 1;
         if (rank == 9)
             continue;
-        // a deeper sign is taken only if all at the shallower level stand in the first third
+        // a deeper sign is used only if all signs at the shallower level are in the first third
         const bool better = best == 0 || rank < best_rank
                          || (rank == best_rank && (level <= best_level || 3 * best < room));
         if (better) {
@@ -79,7 +78,7 @@ static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
         const size_t at = break_place(s, room);
         if (!at)
             break;
-        const bool keep = s[at] == '*'; // a factor's sign stays on the next line
+        const bool keep = s[at] == '*'; // the sign of a factor goes to the next line
         fprintf(out, "%.*s\n", (int)at, s);
         put_indent(out, indent);
         for (const char *end = s + at + !keep; s < end; s++)
@@ -98,7 +97,7 @@ static void put_note(FILE *out, const char *note)
     fputs("\n", out);
 }
 
-// Below an equation that leaves no room.
+// A note below an equation that fills the line.
 static void put_line_of_note(FILE *out, const char *note, size_t indent)
 {
     fputs("\n", out);
@@ -140,7 +139,7 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
             put_note(out, e->note);
         return;
     }
-    // a short left side, or one of a column, keeps the right one on its line
+    // a short or aligned left side keeps the right side on its line
     const bool is_short = left < 14 || (!e->label && left <= left_width);
     put_wrapped(out, e->left, column, column + 4);
     size_t start = column + 4;
@@ -161,8 +160,7 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
         fputs("\n", out);
 }
 
-// Left sides up to this are brought to one width, so that the equal signs stand below each other.
-// Layout: columns
+// Left sides up to this width are padded to one width, so that equal signs are aligned.
 enum { ALIGNED = 20 };
 
 static void put_equations(FILE *out, const struct ct_page_block *b)
@@ -178,7 +176,7 @@ static void put_equations(FILE *out, const struct ct_page_block *b)
         put_equation(out, &b->equation[i], width, left_width);
 }
 
-// Plain words from `column` on, broken at blanks.
+// Text from `column` on, broken at blanks.
 static void put_cell_words(FILE *out, const char *s, size_t indent)
 {
     size_t column = indent;

@@ -2,8 +2,8 @@
 //
 //     simulate [##########..........]  50 %
 //
-// What always holds: nothing is written unless the stream is a terminal and something has
-// changed, so an update costs nothing worth counting and logs stay clean.
+// What always holds: output is written only to a terminal and only after a visible change, so
+// that updates are cheap and logs stay clean.
 #ifndef CT_REPORT_PROGRESS_H
 #define CT_REPORT_PROGRESS_H
 

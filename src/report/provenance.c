@@ -1,6 +1,6 @@
 // See provenance.h.
 //
-//     reduced.h        the equations as they are printed
+//     reduced.h        the printed equations
 //     marked_model.h   the model with marks
 //     normal_form.h    monomials of a sum
 #include "report/provenance.h"
@@ -17,7 +17,7 @@
 
 // Above this number of operators and operands a side is not expanded. If a side uses
 // definitions, collected definitions have fewer than 1000 (reduced.c).
-// Limit: of the time to expand; beyond it a side has no table of terms.
+// Limit: of the time to expand; a longer side has no table of terms.
 static const double longest = 20000;
 
 // ---- sets of origins -----------------------------------------------------------------------
@@ -104,18 +104,19 @@ struct finder {
     size_t term_cap;
     struct ct_arena *a; // of all this
     struct ct_marked_model marked;
-    struct ct_exs *x;    // of the marked equations; has all nodes of those that are printed
+    // store of the marked equations; contains the nodes of the printed ones
+    struct ct_exs *x;
     struct ct_reduced m; // marked, with the symbols of the equations
     struct sets sets;
     uint32_t *set;   // by node of x: origins of its marks
     ct_ex *plain;    // by node: without marks
-    ct_ex *labelled; // by node: marks as labels, and definitions for what they name
+    ct_ex *labelled; // by node: marks replaced by labels, and definitions by their symbols
     ct_ex *label;    // by set, once needed
     size_t label_cap;
     ct_ex *definition;  // by node: the symbol that stands for it; 0: none
     double (*value)[2]; // by node: at two points
     uint32_t *shown;    // by node of the printed equations: origins of its symbols
-    uint32_t *with; // by origin: one that is named with it, the body of a frame; itself: none
+    uint32_t *with; // by origin: the origin listed with it, for a frame its body; itself: none
 };
 
 // Derives the same equations from the marked model on the same trees.
@@ -152,7 +153,7 @@ static struct ct_build *derive_marked(struct finder *f)
     return is_same && !quiet->nerror ? b : NULL;
 }
 
-// Symbols of e, with as many switches and memories as `least` has.
+// Symbols of e, with at least as many switches and memories as `least`.
 static size_t list_symbols(const struct ct_equations *e, const struct ct_equations *least,
                            ct_ex *s)
 {
@@ -172,7 +173,7 @@ static size_t list_symbols(const struct ct_equations *e, const struct ct_equatio
     return n;
 }
 
-// out: the values of `list` (n) where `want` (nwant) has entries. Both are in one order.
+// out = the values of `list` (n) at the entries of `want` (nwant). Both are in one order.
 static void take_entries(ct_ex *out, const struct ct_entry *want, size_t nwant,
                          const struct ct_entry *list, size_t n)
 {
@@ -187,14 +188,14 @@ static void take_entries(ct_ex *out, const struct ct_entry *want, size_t nwant,
         }
 }
 
-// Expressions of the equations, which stand in one array: M, J, Q, phi, gam, effort, output.
+// Expressions of the equations in one array: M, J, Q, phi, gam, effort, output.
 static size_t count_expressions(const struct finder *f)
 {
     const struct ct_equations *e = f->d->e;
     return e->nM + e->nJ + e->nu + 2 * e->nrow + e->ndriver + (f->r->output ? e->nresult : 0);
 }
 
-// The equations of the marked build as those that are printed are listed.
+// The equations of the marked build in the order of the printed ones.
 static void take_marked(struct finder *f, struct ct_build *b)
 {
     const struct ct_equations *e = f->d->e, *own = b->eqs;
@@ -250,8 +251,8 @@ static ct_ex with_label(struct finder *f, ct_ex e, uint32_t set)
     return set ? ct_ex_mul(f->x, e, label_of(f, set)) : e;
 }
 
-// Products and sums are multiplied out; whatever else is in a denominator or a function has its
-// marks outside.
+// Products and sums are multiplied out; of other functions and denominators marks are factored
+// out.
 static ct_ex labelled(struct finder *f, uint32_t id, const struct ct_exnode *n)
 {
     struct ct_exs *x = f->x;
@@ -289,7 +290,7 @@ static uint32_t *origin_of_symbols(struct finder *f)
 
 // ---- definitions ---------------------------------------------------------------------------
 
-// A definition by the values of what it names.
+// A definition found by the values of its expression.
 struct named {
     double value[2];
     ct_ex symbol;
@@ -338,7 +339,7 @@ static bool is_same(double a, double b)
     return fabs(a - b) <= same_value * fabs(b);
 }
 
-// The definition of what has these values, with its sign; 0: there is none.
+// The definition with these values, up to a sign (out); 0: there is none.
 static ct_ex definition_with(struct finder *f, const struct named *list, size_t n,
                              const double value[2])
 {
@@ -359,8 +360,8 @@ static ct_ex definition_with(struct finder *f, const struct named *list, size_t 
     return CT_EX_ZERO;
 }
 
-// Definitions of nodes that the marked equations have but for marks, by node; the others by
-// value, in *out.
+// Definitions of nodes: by node where the marked equations contain it except for marks; the
+// others by value, in *out.
 static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struct named **out)
 {
     const struct ct_definitions *list = &f->r->definitions;
@@ -380,7 +381,7 @@ static size_t list_named(struct finder *f, const uint32_t *id, size_t nid, struc
     return n;
 }
 
-// Nodes of the marked equations and of what is named, children before parents.
+// Nodes of the marked equations and of the definitions, children before parents.
 static size_t list_nodes(struct finder *f, uint32_t **id)
 {
     const size_t nroot = count_expressions(f);
@@ -434,18 +435,18 @@ static void mark_nodes(struct finder *f)
 
 // ---- origins of terms ----------------------------------------------------------------------
 
-// A side of an equation: what is printed, and what of the marked equations is the same.
+// A side of an equation as printed, and the same side of the marked equations.
 struct side {
     enum ct_equation_kind kind;
     size_t equation;
     bool is_right;
-    size_t nterm; // as it is printed
-    ct_ex marked; // the same of the marked equations, with labels
+    size_t nterm; // of the printed side
+    ct_ex marked; // of the marked equations, with labels
     uint32_t set; // of all its marks
 };
 
-// An expression of f->x in a store of its own, so that work on it does not depend on the size
-// of that one.
+// An expression of f->x copied to its own store, so that the cost of operations does not depend
+// on the size of f->x.
 struct small {
     struct ct_exs x;
     struct ct_exs *from;
@@ -491,8 +492,8 @@ static size_t copy_quaternions(struct finder *f, struct small *s, struct ct_aren
     return n;
 }
 
-// Marks of an acceleration's or multiplier's coefficient where a term is such a product; of the
-// whole side otherwise.
+// Marks of the coefficient if a term is a coefficient times an acceleration or multiplier;
+// otherwise those of the whole side.
 static uint32_t marks_of_coefficient(const struct finder *f, const struct side *side,
                                      ct_ex term)
 {
@@ -525,7 +526,7 @@ static uint32_t marks_of_coefficient(const struct finder *f, const struct side *
     return side->set;
 }
 
-// By monomial: the origins it has in the marked equation; UINT32_MAX: it is not there.
+// By monomial: its origins in the marked equation; UINT32_MAX: it does not occur.
 static uint32_t *sets_of_monomials(struct finder *f, struct ct_arena *a,
                                    const struct ct_normal_monomial *list, size_t n, size_t *cap)
 {
@@ -542,7 +543,7 @@ static uint32_t *sets_of_monomials(struct finder *f, struct ct_arena *a,
     return set;
 }
 
-// term[i]: the terms of a side as they are matched; set (nterm, out).
+// Origins of the terms of a side, matched one by one: set (nterm, out).
 static void match(struct finder *f, const struct side *side, const ct_ex *term, size_t nterm,
                   uint32_t *set)
 {
@@ -642,7 +643,7 @@ static size_t list_sides(struct finder *f, struct side **out)
     return n;
 }
 
-// The full expressions of all terms: definitions put in.
+// The full expressions of all terms: with definitions substituted.
 static void find_full(struct finder *f)
 {
     struct ct_provenance *p = f->out;
@@ -732,7 +733,7 @@ static void find_shown(struct finder *f)
     }
 }
 
-// Frames name their bodies, too.
+// Adds the bodies of frames.
 static void find_bodies_of_frames(struct finder *f)
 {
     const struct ct_model *m = f->d->m;
@@ -795,7 +796,7 @@ static uint32_t set_of_side(struct finder *f, const struct side *s)
     return set;
 }
 
-// The marked equations with labels, as they are printed.
+// The marked equations with labels, as printed.
 static struct ct_reduced with_labels(struct finder *f)
 {
     struct ct_reduced r = f->m;
@@ -833,8 +834,8 @@ static void find_marks(struct finder *f, struct side *side, size_t nside, uint32
     }
 }
 
-// Outputs that are reactions or accelerations, collected as the equations are; others have no
-// terms to list. NULL: none.
+// Outputs that are reactions or accelerations, collected like the equations; others have no
+// list of terms. NULL: none.
 static ct_ex *list_outputs(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const unsigned wanted = 1u << CT_SYM_A | 1u << CT_SYM_LAM;
@@ -863,7 +864,7 @@ void ct_provenance_derive(struct ct_derivation *d, const struct ct_reduced *r,
     for (size_t i = 0; i < nside; i++)
         list_terms(&f, &side[i]);
     find_full(&f);
-    // what follows works on a copy of the store, which has all of these expressions
+    // the following uses a copy of the store, which contains all these expressions
     ct_marked_model_create(work, d->m, ct_exs_clone(work, d->e->x), &f.marked);
     f.sets = make_sets(work, f.marked.norigin);
     find_shown(&f);

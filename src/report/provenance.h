@@ -1,21 +1,20 @@
-// Where the terms of the equations come from: the components of the model behind each of them.
+// Origin of the terms of the equations: the components of the model that contribute to each of
+// them.
 //
 //     (r^2*(m1/4 + m2 + m3) + J1)*main.q''     crank, crank.pin, rod, slider, main; r, m1, J1, m2, m3
 //
-// A term names a component if its value depends on the data of that component (masses, places,
-// stiffnesses, pitches, efforts ...) or shows one of its coordinates or multipliers. Directions
-// of axes count with the coordinates that they belong to.
+// A term lists a component if its value depends on the data of that component (masses,
+// positions, stiffnesses, pitches, efforts ...) or contains one of its coordinates or
+// multipliers. Directions of axes count with their coordinates.
 //
-// Method: the equations are derived once more, on the same trees, from a model in which every
-// number of a component is multiplied by a symbol of that component, its mark, whose value is
-// 1. Marks are carried through the derivation like any parameter. A term that was simplified
-// and collected is expanded, as is the marked equation, and each monomial of the term has the
-// marks that this monomial has in the marked equation; where terms merge these are united.
-// Nothing of this is done unless it is asked for.
+// Method: the equations are derived again, on the same trees, from a model in which every
+// number of a component is multiplied by the mark of that component, a symbol of value 1. Marks
+// are propagated like parameters. A simplified term and the marked equation are both expanded.
+// A monomial of the term has the marks of the same monomial in the marked equation; the marks
+// of merged terms are united. This is done only on request.
 //
-// What always holds: the terms of a side sum to that side of the equation; a component that a
-// term depends on is in its list. Where a sum is too long to be expanded the list may be longer
-// than needed.
+// What always holds: the terms of a side sum to that side of the equation; a component on which
+// a term depends is in its list. If a sum is too long to be expanded the list may contain more.
 #ifndef CT_REPORT_PROVENANCE_H
 #define CT_REPORT_PROVENANCE_H
 
@@ -33,10 +32,10 @@ enum ct_equation_kind {
 /// A top-level term of one side of an equation, with its sign.
 struct ct_equation_term {
     enum ct_equation_kind kind;
-    size_t equation; // speed, row, driver or output, as the kind says
+    size_t equation; // index of the speed, row, driver or output
     bool is_right;
-    ct_ex e;                // as it is printed: may use definitions
-    const char *text;       // the same, as it stands behind the terms before it
+    ct_ex e;                // as printed; may use definitions
+    const char *text;       // the same, as printed after the previous term
     ct_ex full;             // the same without definitions
     const uint32_t *origin; // into the list of origins, ascending  (norigin)
     size_t norigin;
@@ -45,8 +44,7 @@ struct ct_equation_term {
 struct ct_provenance {
     struct ct_origin *origin; // in the order of the file
     size_t norigin;
-    struct ct_equation_term
-        *term; // by kind, equation, side; within a side in the order of print
+    struct ct_equation_term *term; // ordered by kind, equation, side, then as printed
     size_t nterm;
 };
 
@@ -65,7 +63,7 @@ void ct_provenance_derive(struct ct_derivation *d, const struct ct_reduced *r,
 const char *ct_provenance_equation(const struct ct_equations *e,
                                    const struct ct_equation_term *t);
 
-/// Values of all terms: the full expressions (nterm), for ct_ex_values, ct_tape_compile or
+/// The full expressions of all terms (nterm), for ct_ex_values, ct_tape_compile or
 /// ct_evaluator_add_program with the store e->x. In a.
 ct_ex *ct_provenance_values(struct ct_arena *a, const struct ct_provenance *p);
 

@@ -72,8 +72,8 @@ static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
     return n.op == CT_OP_ADD ? ct_ex_add(x, a, b) : ct_ex_sub(x, a, b);
 }
 
-// An equation keeps its terms apart where that costs little: -g*m1*l1*s1 - g*m2*l2*s2 rather than
-// -g*(m1*l1*s1 + m2*l2*s2).
+// Terms of an equation stay separate if that is not much longer: -g*m1*l1*s1 - g*m2*l2*s2
+// rather than -g*(m1*l1*s1 + m2*l2*s2).
 static ct_ex keep_apart(struct ct_equations *e, ct_ex v)
 {
     struct ct_exs *x = e->x;
@@ -95,8 +95,8 @@ static ct_ex keep_apart(struct ct_equations *e, ct_ex v)
     return v;
 }
 
-// What is there at rest and what the speeds add, each collected: gravity stays apart from the
-// centrifugal terms, even if both share a factor.
+// Collects terms at rest and terms of the speeds separately: gravity stays apart from
+// centrifugal terms, even with a common factor.
 ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex v)
 {
     struct ct_exs *x = e->x;
@@ -113,7 +113,7 @@ ct_ex ct_reduced_collect_force(struct ct_equations *e, struct ct_arena *a, ct_ex
     return size(e, apart) <= 1.5 * size(e, whole) + 8 ? apart : whole;
 }
 
-// What all expressions would show in full, up to the size that is still collected.
+// Size of all expressions printed in full, up to the largest that is collected.
 static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
 {
     const double most = largest_collected + 1;
@@ -133,8 +133,8 @@ static double size_of_all(const struct ct_equations *e, const ct_ex *effort)
     return size;
 }
 
-// Driven branch coordinates: their rows of the cutsets, less what the joint does by itself and
-// gears do on it.
+// Efforts of driven branch coordinates: their rows of the cutsets, minus the joint's own effort
+// and those of gears.
 static void find_efforts(struct ct_equations *e, ct_ex *effort)
 {
     struct ct_build *b = e->build;
@@ -205,7 +205,7 @@ void ct_reduced_recur(struct ct_arena *a, struct ct_equations *e, struct ct_redu
 
 // ---- sharing -------------------------------------------------------------------------------
 
-// All expressions one after the other; where = NULL: only their number.
+// Lists all expressions; where NULL: returns only their number.
 static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r, ct_ex **where)
 {
     const bool is_recursive = r->is_recursive;
@@ -229,7 +229,7 @@ static size_t list_all(const struct ct_equations *e, const struct ct_reduced *r,
     return n;
 }
 
-// Bodies are short by now: like terms that the names have brought to light are collected.
+// Definitions are short now: collects like terms that appear with the new names.
 static ct_ex tidy(struct ct_equations *e, ct_ex v)
 {
     return ct_reduced_size(e->x, v, 1000) < 1000 ? collect(e, v) : v;
@@ -242,7 +242,7 @@ static int by_id(const void *unused, const void *a, const void *b)
     return (m > n) - (m < n);
 }
 
-// Each named node becomes a symbol; children have smaller ids, so one sweep upwards does.
+// Each named node becomes a symbol, in one loop over ascending ids.
 static void replace_named(struct ct_arena *a, struct ct_arena *work, struct ct_equations *e,
                           struct ct_definitions *list, struct ct_share *share,
                           const ct_ex *root, size_t nroot, ct_ex *map)
@@ -272,7 +272,7 @@ static void replace_named(struct ct_arena *a, struct ct_arena *work, struct ct_e
     }
 }
 
-// The order a reader meets them in: those a definition needs stand before it.
+// Order of definitions: those that a definition uses come before it.
 struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equations *e,
                                           ct_ex *const *where, size_t n, bool names_first,
                                           double *size)
@@ -280,9 +280,9 @@ struct ct_definitions ct_definitions_find(struct ct_arena *a, struct ct_equation
     const struct ct_share_options o = {
         .most = names_first ? SIZE_MAX : 20000,
         .enough = 2000,
-        .least = names_first ? CT_PAGE_WIDTH : 0, // a definition takes a line: it must save one
+        .least = names_first ? CT_PAGE_WIDTH : 0, // a definition takes a line and must save one
         .names_first = names_first};
-    struct ct_arena *work = ct_arena_create_under(a); // of tables as large as the store
+    struct ct_arena *work = ct_arena_create_under(a); // for tables of the size of the store
     ct_ex *root = CT_NEWN(work, ct_ex, n + 1);
     struct ct_definitions list;
     for (size_t i = 0; i < n; i++)

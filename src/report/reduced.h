@@ -79,7 +79,7 @@ ct_ex ct_reduced_left(struct ct_equations *e, const struct ct_reduced *r, size_t
 ct_ex ct_reduced_right(struct ct_equations *e, const struct ct_reduced *r, size_t i);
 ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, size_t row);
 
-/// Names for what the recursion computes, by the frames it belongs to, as labels of the store:
+/// Names for the quantities of the recursion, by their frames, as labels of the store:
 ///
 ///     phi_rod, c_rod, s_rod   angle of rod about a fixed axis, its cosine and sine
 ///     R_rod.xy                rotation of rod
@@ -87,11 +87,11 @@ ct_ex ct_reduced_row_left(struct ct_equations *e, const struct ct_reduced *r, si
 ///     d_pin.x, v_pin.x, a_pin.x   vector from the previous joint to pin; its rates with all u' = 0
 ///     F_pin.x, T_rod.x        force and torque that the branch must supply, with all u' = 0
 ///
-/// At CT_FULL these are those of the recursive form, with the symbols u'. There a is less
-/// gravity, and F is the force that all outboard of pin needs beyond m*a. What is lumped has
-/// names, too:
+/// At CT_FULL they are those of the recursive form, with the symbols u'. There a is the
+/// acceleration minus gravity, and F is the force on everything outboard of pin except m*a. Lumped
+/// quantities have names, too:
 ///
-///     m_pin, h_rod.x, I_rod.zz    mass outboard of pin; first moment and inertia of rod with what hangs on it
+///     m_pin, h_rod.x, I_rod.zz    mass outboard of pin; first moment, inertia of the augmented body
 void ct_reduced_label(struct ct_equations *e, enum ct_level level);
 
 #endif

@@ -1,6 +1,6 @@
-// See same_page.h. Mathematics is read by the grammar that expr/print.h writes: sums of
-// products of powers, each made a number of its parts; sums and products add those of theirs,
-// so that their order does not count. All else is words.
+// See same_page.h. Mathematics is parsed by the grammar of expr/print.h as sums of products of
+// powers. Each part gets a hash from those of its operands. Hashes of the operands of sums and
+// products are added, so that their order does not matter. All else is text.
 #include "report/same_page.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ struct meaning {
 
 struct reader {
     struct ct_arena *arena;
-    const char *name, *at; // at: of the text that is read
+    const char *name, *at; // at: position of the parser
     size_t name_length;
     struct meaning *meaning;
     size_t n, cap;
@@ -51,7 +51,8 @@ static uint64_t meaning_of(const struct reader *r, size_t number)
     return number;
 }
 
-// n characters of p, with one sign for the name and short names by their meaning.
+// Hash of n characters of p, with a placeholder for the name and short names replaced by their
+// definitions.
 static uint64_t read_words(const struct reader *r, const char *p, size_t n)
 {
     const char *end = p + n;
@@ -75,7 +76,7 @@ static uint64_t read_words(const struct reader *r, const char *p, size_t n)
 
 static uint64_t read_sum(struct reader *r);
 
-// A list in parentheses or brackets, whose order counts.
+// A list in parentheses or brackets, whose order matters.
 static uint64_t read_list(struct reader *r)
 {
     uint64_t value = mix(3, (unsigned char)*r->at);
@@ -134,7 +135,7 @@ static uint64_t read_sum(struct reader *r)
     }
 }
 
-// Mathematics, or words where it is not all of the text.
+// Hash of mathematics, or of text if the parser does not reach the end.
 static uint64_t read_text(struct reader *r, const char *text)
 {
     if (!text)
@@ -153,7 +154,7 @@ static uint64_t read_equation(struct reader *r, const struct ct_page_equation *e
     return mix(value, read_text(r, e->note));
 }
 
-// t1 = ...: says nothing by itself.
+// A definition t1 = ... is not hashed by itself.
 static bool learn(struct reader *r, const struct ct_page_equation *e)
 {
     const size_t n = short_name(e->left);

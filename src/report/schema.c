@@ -1,7 +1,7 @@
 // JSON Schema (draft 2020-12) of the model file, from the class tables.
 //
-// It checks shapes, keys, required keys and words. What a schema cannot know (units, names,
-// expressions) is left to the reader: a number or text stands for every scalar.
+// It checks structure, keys, required keys and words. Units, names and expressions are checked
+// by the reader: the schema accepts a number or text for every scalar.
 #include "base/entry.h"
 #include "report/schema.h"
 
@@ -60,8 +60,7 @@ static void write_class(struct ct_json *j, const struct ct_component_class *c)
     ct_json_end(j);
 }
 
-// if type is NAME then the object is a NAME, as it is without type if NAME is the standard
-// class of its family
+// If type is NAME the object is a NAME; without type it is the standard class of its family.
 static void write_choice(struct ct_json *j, const struct ct_component_class *c)
 {
     char name[64];
@@ -249,7 +248,7 @@ static void write_of_beams(struct ct_json *j)
     ct_json_end(j);
 }
 
-// One of the kinds, with what all of them have.
+// One of the kinds, with the keys common to all.
 static void write_solid(struct ct_json *j, const char *kind, int length, const char *more)
 {
     ct_json_object(j, NULL);

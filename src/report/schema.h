@@ -1,7 +1,7 @@
-// JSON Schema from inside: what the parts of the file's schema are written with.
+// Functions that write the parts of the JSON Schema.
 //
-//     schema.c       the parts
-//     schema_key.c   what a key of a class may hold
+//     schema.c       the sections of the model file
+//     schema_key.c   values allowed for a key of a class
 #ifndef CT_REPORT_SCHEMA_H
 #define CT_REPORT_SCHEMA_H
 
@@ -21,7 +21,7 @@ void ct_schema_typed(struct ct_json *j, const char *key, const char *type, const
 /// Keys are names of the model's own.
 void ct_schema_named_keys(struct ct_json *j);
 
-/// A key of a class: what it may hold.
+/// Writes the values allowed for a key of a class.
 void ct_schema_key(struct ct_json *j, const struct ct_key *key);
 
 #endif

@@ -222,7 +222,7 @@ static void put_rotation(struct ct_derivation *d, const struct ct_flexible *f)
         "rotation of the section at x");
 }
 
-// (5.4), (5.5): the section at x, and what the whole needs of its frame and of its coordinates.
+// (5.4), (5.5): motion of the section at x in terms of the frame and the elastic coordinates.
 static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
 {
     const bool latex = ct_derivation_is_latex(d);
@@ -306,7 +306,7 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
         "rotary inertia per length");
 }
 
-// Displacement along the axis: what the dofs say and what bending takes.
+// Displacement along the axis: that of the axial dofs minus foreshortening.
 static const char *axial_text(struct ct_derivation *d, const struct ct_flexible *f,
                               const char *plain)
 {
@@ -319,7 +319,7 @@ static const char *axial_text(struct ct_derivation *d, const struct ct_flexible 
                      : latex ? " - S_0 - S(\\xi)"
                              : " - S0 - S(xi)";
     if (!strcmp(plain, "0") && *more)
-        return more + 1; // begins with a sign: " - S0 ..." reads "- S0 ..."
+        return more + 1; // starts with its sign: " - S0 ..." becomes "- S0 ..."
     return ct_arena_printf(d->a, "%s%s", plain, more);
 }
 
@@ -424,7 +424,7 @@ static void put_element(struct ct_derivation *d, const struct ct_flexible *f)
     put_energy(d, f, &e);
 }
 
-// Which coordinates the elements have for their dofs, family by family.
+// Table of the coordinates for the dofs of each element, family by family.
 static void put_index(struct ct_derivation *d, const struct ct_flexible *f)
 {
     const int n = f->beam->nelement;
@@ -472,7 +472,8 @@ static void put_whole(struct ct_derivation *d, size_t i)
     ct_beam_matrices_put(d, i);
 }
 
-// As text, what is said of a beam is not said again of one that differs by its name.
+// In text format, the description of a beam is not repeated for one that differs by its name
+// alone.
 void ct_beams_put_terminal(struct ct_derivation *d)
 {
     const struct ct_build *b = d->e->build;

@@ -1,7 +1,7 @@
 // Beams on the pages of the derivation.
 //
-// An element is shown once, as a function of its own dofs; a table says which coordinates each
-// element has for them.
+// An element is printed once, as a function of its own dofs; a table lists the coordinates of
+// each element for them.
 #ifndef CT_REPORT_STAGE_BEAM_H
 #define CT_REPORT_STAGE_BEAM_H
 
@@ -14,7 +14,7 @@ struct ct_beam_element {
     struct ct_exs *x;
     ct_ex dof[CT_DOF]; // zero where the beam does not deform that way
     ct_ex xi, h;       // place on the element, 0 ... 1; its length
-    ct_ex axial;       // displacement of the axis without what bending adds
+    ct_ex axial;       // displacement along the axis without foreshortening
     ct_ex shortening;  // int (v'^2 + w'^2)/2 dx over the element
     ct_ex v, w, twist;
     ct_ex stretch; // the symbol s
@@ -37,15 +37,15 @@ const char *ct_beam_sentence(struct ct_arena *a, const struct ct_flexible *f);
 
 /// Terminal equations: inertia, elastic coordinates, the element and its coordinates.
 void ct_beams_put_terminal(struct ct_derivation *d);
-/// What liang2017 calls the matrices of the beam and the shape integrals of its element.
-/// (stage_beam_matrices.c)
+/// The matrices of the beam and the shape integrals of its element in the notation of
+/// liang2017. (stage_beam_matrices.c)
 void ct_beam_matrices_put(struct ct_derivation *d, size_t beam);
-/// Angular velocity of its frame, where it has a name in them.
+/// Angular velocity of its frame, if the matrices use a name for it.
 void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t beam);
 void ct_beam_matrices_put_element(struct ct_derivation *d, const struct ct_flexible *f);
 /// Arms to sections.
 void ct_beams_put_arms(struct ct_derivation *d);
-/// One equation per elastic coordinate: what the beam gives goes into its arms.
+/// One equation per elastic coordinate: the generalised force of the beam acts on its arms.
 void ct_beams_put_cutsets(struct ct_derivation *d);
 
 #endif

@@ -1,14 +1,15 @@
-// The matrices of a beam under the names and numbers of liang2017: (3.41), (3.75), (3.87),
-// (3.92), appendix A.1.
+// The matrices of a beam with the names and equation numbers of liang2017: (3.41), (3.75),
+// (3.87), (3.92), appendix A.1.
 //
 //     [ m_rr  m_rtheta      m_rf     ] [ R''  ]
-//     [       m_thetatheta  m_thetaf ] [ w'   ] = Q_g + Q_v - [0, 0, K_f q_f] + what joints and loads give   (4.11)
+//     [       m_thetatheta  m_thetaf ] [ w'   ] = Q_g + Q_v - [0, 0, K_f q_f] + Q   (4.11)
 //     [ sym                 m_ff     ] [ q_f'']
 //
-// R: place of the beam's frame, ground axes; w: its angular velocity, its own axes; A: its
-// rotation. They are those of the program (beam_dynamics.h), so what liang2017 leaves out is in
-// them: rotary inertia of the sections, lumped masses. Signs are those of a right side; errors
-// of the printed formulas are put right, and said so in docs/liang2017.md.
+// R: position of the beam's frame, ground axes; w: its angular velocity, its own axes; A: its
+// rotation; Q: joints and loads. The matrices are those of the program (beam_dynamics.h) and
+// include what liang2017 neglects: rotary inertia of the sections and lumped masses. Signs are
+// those of a right side. Errors of the printed formulas are corrected and listed in
+// docs/liang2017.md.
 #include "report/stage_beam.h"
 
 #include "expr/collect.h"
@@ -47,7 +48,7 @@ static void put(struct ct_derivation *d, const char *left, const char *latex_lef
 // ---- matrices with names of rows and columns -----------------------------------------------
 
 struct matrix {
-    const char *name, *latex; // what stands before its entries
+    const char *name, *latex; // prefix of its entries
     const char *says;         // in the heading
     const char *number;       // of the equation
     const char *const *row, *const *column;
@@ -56,7 +57,7 @@ struct matrix {
     bool is_symmetric;  // the lower triangle is shown
 };
 
-// Matrices that are wider than a page: what is not zero, one by one.
+// A matrix wider than a page: the nonzero entries, one by one.
 static void put_entries(struct ct_derivation *d, const struct matrix *m)
 {
     const char *name = pick(d, m->name, m->latex);
@@ -230,7 +231,7 @@ static void put_stiffness(struct ct_derivation *d, const struct element *e)
     }
 }
 
-// What bending takes from the axis: H, B_s and the integrals with them.
+// Foreshortening: H, B_s and the integrals with them.
 static void put_foreshortening(struct ct_derivation *d, const struct element *e)
 {
     if (e->one.axial == CT_AXIAL_LINEAR)
@@ -445,7 +446,7 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
                                    name, name, n, n, K, true});
 }
 
-// Long ones with names for what is written more than once.
+// Prints long ones with definitions for repeated subexpressions.
 static void put_definitions(struct ct_derivation *d, const struct ct_definitions *list)
 {
     const bool is_long = ct_beam_parts_are_long(d->e->x, list);
@@ -469,8 +470,8 @@ static void put_definitions(struct ct_derivation *d, const struct ct_definitions
                          NULL);
 }
 
-// of_frame: the angular velocity of the frame alone, which depends on what carries the beam; or
-// all else.
+// of_frame: only the angular velocity of the frame, which depends on the inboard bodies;
+// otherwise all else.
 static struct ct_definitions some_parts(struct ct_derivation *d, const struct ct_beam_parts *p,
                                         bool of_frame)
 {

@@ -35,7 +35,7 @@ static const char *names_of(struct ct_derivation *d, const struct ct_provenance 
     return *names ? names : "system";
 }
 
-// Components of each term of a side, as many as the page has terms; "system" where there is none.
+// Components of each term of a side, one text per printed term; "system" if there is none.
 static const char *const *components_of(struct ct_derivation *d, const struct ct_provenance *p,
                                         enum ct_equation_kind kind, size_t equation,
                                         bool is_right, const char *text)
@@ -54,7 +54,7 @@ static const char *const *components_of(struct ct_derivation *d, const struct ct
     return list;
 }
 
-// p: of the equations, from number `first` of their kind on; NULL: not wanted.
+// p: provenance of the equations, from number `first` of their kind; NULL: not requested.
 static void put_group(struct ct_derivation *d, const struct group *g,
                       const struct ct_provenance *p, enum ct_equation_kind kind, size_t first)
 {
@@ -137,7 +137,7 @@ static void put_efforts(struct ct_derivation *d, const struct group *g,
     }
 }
 
-// All that the equations and the definitions show; returns how many.
+// Lists all expressions of the equations and definitions; returns their number.
 static size_t list_shown(struct ct_derivation *d, const struct group g[NGROUP],
                          const struct ct_reduced *r, ct_ex **e)
 {
@@ -153,7 +153,7 @@ static size_t list_shown(struct ct_derivation *d, const struct group g[NGROUP],
     return n;
 }
 
-// Does a symbol stand in one of the equations, or in a definition?
+// Does a symbol occur in an equation or a definition?
 static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
                   const struct ct_reduced *r, ct_ex symbol)
 {
@@ -166,7 +166,7 @@ static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
     return false;
 }
 
-// Symbols that stand for what changes at events, or from one step to the next.
+// Explains the symbols of switches and memories.
 static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
                      const struct ct_reduced *r)
 {
@@ -228,7 +228,7 @@ static bool put_matrix(struct ct_derivation *d, const char *const *row, size_t n
 // Layout: of a page
 enum { MOST_COLUMNS = 40 };
 
-// What is larger than a page stands in the equations alone, and this is said.
+// A matrix larger than a page is only mentioned; its entries are in the equations.
 void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
@@ -283,7 +283,7 @@ static bool is_used(struct ct_exs *x, size_t nwalk, ct_ex symbol)
     return false;
 }
 
-// Parts that the equations use stand before the other definitions.
+// Parts that the equations use come before the other definitions.
 static void put_before(struct ct_derivation *d, const struct ct_beam_parts *parts,
                        const struct group g[NGROUP], struct ct_reduced *r)
 {
@@ -301,7 +301,7 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
         CT_PUSH(d->a, root, n, cap, own.at[i].value);
     size_t nwalk = ct_ex_walk(x, root, n);
     bool *used = CT_NEWN(d->a, bool, all->n + 1);
-    for (int pass = 0; pass < 2; pass++) { // an angular velocity is used by other parts alone
+    for (int pass = 0; pass < 2; pass++) { // an angular velocity is used only by other parts
         for (size_t i = 0; i < all->n; i++)
             if (!used[i] && (used[i] = is_used(x, nwalk, all->at[i].symbol)))
                 CT_PUSH(d->a, root, n, cap, all->at[i].value);
@@ -323,8 +323,8 @@ static void put_before(struct ct_derivation *d, const struct ct_beam_parts *part
     }
 }
 
-// M, Q and efforts in names. false: an entry of M that the engine finds to vanish does not in
-// names.
+// M, Q and efforts in named parts. False: an entry of M that vanishes in the equations does not
+// vanish in named parts.
 static bool take_named(const struct ct_equations *e, const struct ct_named_dynamics *named,
                        struct ct_reduced *r)
 {
@@ -366,7 +366,7 @@ static bool name_parts(struct ct_derivation *d, const struct ct_beam_parts *part
     return true;
 }
 
-// Expressions without names; false: they are too long to read.
+// Expressions without definitions; false: they are too long to read.
 static bool prepare(struct ct_derivation *d, struct ct_reduced *r)
 {
     struct group g[NGROUP] = {0};
@@ -392,7 +392,7 @@ void ct_derivation_reduce(struct ct_derivation *d, struct ct_reduced *r)
     }
 }
 
-// Text and LaTeX have the parts of beams with their terminal equations, HTML folds them.
+// Text and LaTeX print the parts of beams with their terminal equations; HTML folds them.
 static void put_definitions(struct ct_derivation *d, const struct ct_reduced *r)
 {
     const bool is_html = d->page.look == CT_LOOK_HTML;
@@ -417,7 +417,7 @@ bool ct_derivation_blocks(struct ct_derivation *d, struct ct_reduced *r,
     return parts->definitions.n && ct_beam_blocks_derive(d->a, d->e, parts, r, s);
 }
 
-// Before the definitions: what the names of blocks mean.
+// Explains the names of blocks, before the definitions.
 static void explain_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
 {
     for (size_t i = 0; i < s->n; i++) {
@@ -449,7 +449,7 @@ static void put_blocks(struct ct_derivation *d, const struct ct_beam_blocks *s)
     }
 }
 
-// What the names of the recursion stand for: those that there are.
+// Explains the names of the recursion that occur.
 static const char *legend(struct ct_derivation *d, const struct ct_definitions *list)
 {
     static const char *const name[][2]

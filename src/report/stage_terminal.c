@@ -1,4 +1,4 @@
-// What each component says on its own: its law, with the names and data of this model.
+// Terminal equations of each component, with the names and data of the model.
 #include "report/stage_beam.h"
 
 #include "formulate/build.h"
@@ -191,7 +191,7 @@ static void put_effort(struct ct_derivation *d, const struct ct_edge_info *e, in
                          ct_derivation_text(d, f), NULL);
 }
 
-// Symbols named after the coordinates, so that chords read like branches.
+// Symbols named after the coordinates, so that chords are printed like branches.
 static void name_coordinates(struct ct_derivation *d, const struct ct_edge_info *e,
                              struct ct_motion *m)
 {

@@ -8,7 +8,7 @@
 #include <limits.h>
 #include <string.h>
 
-// Of each kind; more are counted, not printed, unless all are asked for.
+// Limits of lists; longer ones are only counted unless all are requested.
 static int most_equations(const struct ct_derivation *d)
 {
     return d->page.is_full ? INT_MAX : 120;
@@ -21,7 +21,7 @@ static const char *number_text(struct ct_derivation *d, int edge)
     return ct_arena_printf(d->a, "%d", edge + 1);
 }
 
-// A name as the head of a row.
+// A name as the header of a row.
 static const char *word(struct ct_derivation *d, const char *name)
 {
     return ct_derivation_is_latex(d)
@@ -91,7 +91,7 @@ void ct_stage_graph(struct ct_derivation *d)
 // ---- trees ---------------------------------------------------------------------------------
 
 // The f-cutset or f-circuit matrix of a tree: branches first, then chords, so that one block is
-// the unit matrix.
+// a unit matrix.
 static void put_tree_matrix(struct ct_derivation *d, const struct ct_tree *t, bool cutsets)
 {
     const struct ct_equations *e = d->e;
@@ -156,7 +156,7 @@ static void put_more(struct ct_derivation *d, int n)
         ct_page_sentence(&d->page, "... and %d more", n - most_equations(d));
 }
 
-// A particle takes no torque: no balance of torques is its own.
+// A particle has no balance of torques.
 static bool has_balance(const struct ct_derivation *d, int edge, bool of_rotation)
 {
     return !of_rotation || d->e->build->topology->edge[edge].has_rotation;
@@ -224,8 +224,8 @@ static const char *moment_text(struct ct_derivation *d, int edge, int own)
                            ct_derivation_of(d, "r", d->e->node_name[w[edge].head]), force);
 }
 
-// Row i of a cutset matrix: what the branch itself gives to the left, if it is a body its
-// inertia, the rest to the right.
+// Row i of a cutset matrix: the branch itself on the left, for a body its inertia; the rest on
+// the right.
 static void put_balance(struct ct_derivation *d, const struct ct_incidence *rows, int i,
                         int own, bool of_rotation)
 {
@@ -234,7 +234,7 @@ static void put_balance(struct ct_derivation *d, const struct ct_incidence *rows
     struct ct_growing_text right = {0};
     for (int k = rows->start[i]; k < rows->start[i + 1]; k++) {
         const int edge = rows->row[k];
-        // + (W or -inertia) on the left, with the branch's own sign turned
+        // with the branch's own sign reversed
         const bool negative
             = ((rows->value[k] < 0) != (body_of(d, edge) != NULL)) == is_inertia;
         const char *const term[] = {of_rotation ? torque_text(d, edge) : force_text(d, edge),
@@ -335,12 +335,11 @@ static void put_circuits(struct ct_derivation *d, const struct ct_tree *t, bool 
     put_more(d, n);
 }
 
-// Beyond so many nodes of all expressions collecting them takes seconds and nobody reads them
-// in full.
-// Limit: of the time to collect; beyond, expressions stay as they are
+// Number of nodes above which collecting takes seconds and the result is too long to read.
+// Limit: of the time to collect; longer expressions are printed as they are
 static const double largest_collected = 5000;
 
-// Collects what is small enough; false: it is not.
+// Collects an expression that is small enough; false: it is too large.
 static bool collect(struct ct_derivation *d, ct_ex *const *where, size_t n)
 {
     const struct ct_collect_options o = {.scratch = d->a};
@@ -357,7 +356,7 @@ static bool is_long(struct ct_derivation *d, ct_ex *const *where, size_t n)
     size_t lines = 0;
     for (size_t i = 0; i < n; i++) {
         lines += ct_derivation_lines(d, *where[i]);
-        if (lines > 2 * CT_MOST_LINES) // three components of a place share a line
+        if (lines > 2 * CT_MOST_LINES) // three components of a position share a line
             return true;
     }
     return false;

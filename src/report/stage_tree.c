@@ -1,4 +1,4 @@
-// The trees, and what they make of the model: unknowns, drivers, constraint rows.
+// The trees, and the resulting unknowns, drivers and constraint rows.
 #include "report/derivation.h"
 
 #include "formulate/beam/flexible_body.h"

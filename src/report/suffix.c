@@ -39,7 +39,8 @@ bool ct_suffix_read(struct ct_ctx *ctx, const char *path, unsigned allowed,
     if (!path || strcmp(path, "-") == 0)
         return true;
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
-    const char *dot = *base ? strrchr(base + 1, '.') : NULL; // one in front hides a file
+    // a leading dot marks a hidden file
+    const char *dot = *base ? strrchr(base + 1, '.') : NULL;
     if (!dot)
         return true;
     for (size_t i = 0; i < COUNT(suffixes); i++)

@@ -1,12 +1,12 @@
-// What the suffix of a file asks for.
+// The file format given by the suffix of a file name.
 //
-// What always holds: a file is written in the format that its name promises, or not at all.
+// What always holds: a file is written in the format of its suffix, or not at all.
 #ifndef CT_REPORT_SUFFIX_H
 #define CT_REPORT_SUFFIX_H
 
 #include "base/ctx.h"
 
-/// Bits, so that they can be listed; what a name without suffix gets is the lowest one of a list.
+/// Bits, so that they can be combined; a name without suffix gets the lowest one of a list.
 enum ct_suffix {
     CT_SUFFIX_CSV = 1,
     CT_SUFFIX_CSV_GZ = 2,
@@ -18,7 +18,8 @@ enum ct_suffix {
     = CT_SUFFIX_CSV | CT_SUFFIX_CSV_GZ | CT_SUFFIX_JSON | CT_SUFFIX_NPZ | CT_SUFFIX_MAT
 };
 
-/// The one of `allowed` that a path ends with, in capitals or not; of NULL and "-" the lowest one.
+/// The suffix of a path, if it is one of `allowed`, in any case; for NULL and "-" the lowest
+/// one.
 /// Errors: E007 if it ends with something else.
 bool ct_suffix_read(struct ct_ctx *ctx, const char *path, unsigned allowed,
                     enum ct_suffix *suffix);

@@ -1,4 +1,4 @@
-// See tree_pairs.h. Where nothing was searched, the pair that the equations are on is listed alone.
+// See tree_pairs.h. Without a search, only the pair of the equations is listed.
 #include "report/tree_pairs.h"
 
 #include "formulate/build.h"
@@ -96,7 +96,7 @@ void ct_tree_pairs_print_text(FILE *out, struct ct_arena *a, const struct ct_equ
     fputc('\n', out);
 }
 
-// cost: NAN where it was not counted.
+// cost: NAN if it was not counted.
 static void put_pair(struct ct_json *j, struct ct_arena *a, const struct ct_equations *e,
                      const struct ct_tree_candidate *c, bool is_chosen)
 {

@@ -1,11 +1,10 @@
-// Work and precision: what settings of methods cost and how near they come, as a table and as a
-// plot.
+// Work-precision diagrams: time and error of settings of methods, as a table and as a plot.
 //
 //     method,tolerance,elements,formulation,error,seconds,steps,evaluations
 //     dopri5,0.0001,,,3.1e-05,0.00042,81,487
 //
-// What always holds: points of one method stand together, in the order of the ladder; a failed
-// run has no error (NaN), is an empty field in CSV, null in JSON, and is not drawn.
+// What always holds: points of one method are adjacent, in the order of the tolerances; a
+// failed run has no error (NaN): an empty field in CSV, null in JSON, no point in the plot.
 #ifndef CT_REPORT_WORK_PRECISION_H
 #define CT_REPORT_WORK_PRECISION_H
 
@@ -14,8 +13,8 @@
 /// One setting.
 struct ct_work_precision_point {
     const char *method;
-    long elements;           // of beams; 0: none, or not all alike
-    const char *formulation; // of beams; NULL: none, or not all alike
+    long elements;           // of beams; 0: none, or not all equal
+    const char *formulation; // of beams; NULL: none, or not all equal
     double tolerance;        // the step [s] if has_step
     bool has_step;
     double error;   // relative, of the outputs; NaN: the run failed
@@ -23,12 +22,12 @@ struct ct_work_precision_point {
     long steps, evaluations;
 };
 
-/// What the plot shows beside the points.
+/// Further contents of the plot.
 struct ct_work_precision_plot {
     const char *title;
     double wanted;      // error: a line is drawn there; 0: none
-    double uncertainty; // of the reference: errors below mean nothing; 0: not known
-    const struct ct_work_precision_point *best; // is marked; NULL: none
+    double uncertainty; // of the reference: smaller errors are not meaningful; 0: unknown
+    const struct ct_work_precision_point *best; // point to be marked; NULL: none
 };
 
 /// Do both belong to one line of the plot: the same method and the same beams?

@@ -17,7 +17,7 @@ enum { FONT = 130, MARK = 42 };
 static const char *const colours[]
     = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#777777"};
 
-// An axis from 10^low to 10^high, at the places `from` and `to`.
+// An axis from 10^low to 10^high, drawn from `from` to `to`.
 struct axis {
     int low, high, from, to;
 };
@@ -92,7 +92,7 @@ static void print_power(FILE *out, int x, int y, const char *anchor, int exponen
 static const char thin[] = "stroke=\"#f0f0f0\" stroke-width=\"8\"";
 static const char strong[] = "stroke=\"#d0d0d0\" stroke-width=\"10\"";
 
-// Every so many decades have a label: not more than `most` of them.
+// Number of decades per label, for at most `most` labels.
 static int label_spacing(const struct axis *a, int most)
 {
     return (a->high - a->low + most - 1) / most;
@@ -142,7 +142,7 @@ static void draw_frame(const struct canvas *c, const char *title)
 
 // ---- the lines -----------------------------------------------------------------------------
 
-// Shapes tell methods apart in black and white, too.
+// Shapes distinguish methods in black and white.
 static void draw_mark(FILE *out, int x, int y, size_t method)
 {
     // Layout: of a page
@@ -188,7 +188,7 @@ static void draw_method(const struct canvas *c, const struct ct_work_precision_p
     print_text(c->out, x + 380, y + FONT / 3, "start", name);
 }
 
-// An error across the plot, named at its end.
+// A line at an error, labelled at its end.
 static void draw_level(const struct canvas *c, double error, const char *name)
 {
     const int y = place(&c->y, error);

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-// What local and central headers share: version needed .. lengths of name and extra field. 1
-// January 1980, 0:00: the same content is the same file.
+// Fields common to local and central headers: version needed ... lengths of name and extra
+// field. The date is 1 January 1980, 0:00, so that equal contents give equal files.
 static void put_entry(struct ct_archive_bytes *out, const struct ct_archive_entry *e)
 {
     ct_archive_put(out, 20, 2);         // version needed: 2.0

@@ -27,10 +27,10 @@ static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
 {
     // Derived: as CT_VALIDITY_LIMIT, for a deformation at the start that the shape functions
     // cannot represent.
-    const double worth_it = 0.01; // relative limit, as that of the validity indicator
+    const double notable = 0.01; // relative limit, as that of the validity indicator
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        if (f->start_missed > worth_it)
+        if (f->start_missed > notable)
             ct_warning(&sim->own, f->beam->start[0].mark, 0,
                        "beam '%s' starts with what its shapes have of this; they leave out "
                        "%.3g %%",

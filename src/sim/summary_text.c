@@ -434,8 +434,8 @@ static void print_beams(FILE *out, const struct ct_equations *e)
         const struct ct_flexible *f = &e->build->flexible[i];
         fprintf(out, "beam         %s: %s\n", f->name, ct_beam_sentence(e->build->arena, f));
         // Layout: a contribution of a tenth of the stiffness is printed.
-        const double locking = ct_flexible_locking(e->build, f), worth_it = 0.1;
-        if (locking > worth_it)
+        const double locking = ct_flexible_locking(e->build, f), notable = 0.1;
+        if (locking > notable)
             fprintf(out,
                     "             its elements lock: shear makes them %.3g times as stiff in "
                     "bending as they are; take `integration: reduced` or more elements\n",

@@ -41,14 +41,14 @@ int ct_composite_sums_first_part(const struct ct_composite_sums *s, int anchor, 
     return p ? p->first_part : -1;
 }
 
-ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star)
+ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int body)
 {
-    if (!s->has_moment[star])
-        s->moment[star]
-            = ct_cluster_turn(s->b, s->b->dynamics.masses.augmented_body[star].cluster,
-                              s->b->dynamics.masses.augmented_body[star].moment);
-    s->has_moment[star] = true;
-    return s->moment[star];
+    if (!s->has_moment[body])
+        s->moment[body]
+            = ct_cluster_turn(s->b, s->b->dynamics.masses.augmented_body[body].cluster,
+                              s->b->dynamics.masses.augmented_body[body].moment);
+    s->has_moment[body] = true;
+    return s->moment[body];
 }
 
 bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster,

@@ -60,7 +60,7 @@ bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster
 
 /// In ground components: the first moment of an augmented body; the vector from the parent of an
 /// anchor to the anchor (planar: its in-plane part).
-ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int star);
+ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int body);
 ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor);
 /// Lever arm: sum of the vectors on the path to an anchor that rotate with a cluster.
 ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int cluster);

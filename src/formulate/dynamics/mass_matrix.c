@@ -45,11 +45,11 @@ static ct_ex3 double_cross(struct ct_build *b, const struct column *c, ct_ex3 a,
 }
 
 static ct_ex3 augmented_body_torque(struct ct_composite_sums *s, const struct column *c,
-                                    int star)
+                                    int body)
 {
     struct ct_build *b = s->b;
-    const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[star];
-    ct_ex3 sum = double_cross(b, c, ct_composite_sums_body_moment(s, star),
+    const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[body];
+    ct_ex3 sum = double_cross(b, c, ct_composite_sums_body_moment(s, body),
                               ct_composite_sums_reach(s, self->anchor, c->cluster));
     for (int k = 0; k < self->nchild; k++) {
         const int child = b->dynamics.masses.child[self->first_child + k];

@@ -299,14 +299,14 @@ ct_ex ct_coordinate_acceleration(struct ct_build *b, int coordinate, enum ct_lev
     // h . al_rel + h' . w_rel, h = sum of a part fixed in the tail and a part fixed in the head
     const int from = b->kinematics->placement[p.tail].frame,
               to = b->kinematics->placement[p.head].frame;
-    ct_ex3 turning = ct_cluster_cross_velocity(b, to, w.torque);
+    ct_ex3 relative_rate = ct_cluster_cross_velocity(b, to, w.torque);
     if (m->kind == CT_MEASURE_ANGLE)
-        turning = ct_ex3_add(
+        relative_rate = ct_ex3_add(
             x, ct_cluster_cross_velocity(b, from, ct_node_turn(b, p.tail, m->from)),
             ct_cluster_cross_velocity(b, to, ct_node_turn(b, p.head, m->to)));
     return ct_ex_add(x,
                      ct_ex3_dot(x, w.torque, ct_cluster_path_acceleration(b, from, to, level)),
-                     ct_ex3_dot(x, turning, ct_cluster_path_velocity(b, from, to)));
+                     ct_ex3_dot(x, relative_rate, ct_cluster_path_velocity(b, from, to)));
 }
 
 int ct_coordinate_find(const struct ct_build *b, const char *name)

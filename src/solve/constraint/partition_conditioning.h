@@ -2,8 +2,8 @@
 // still good, is a projection accurate enough, are fixed pivots still accurate? Single runs
 // (partition_internal.h) and batches (batch.c) share them.
 //
-//   kappa   largest |J_d^-1 J_i|
-//   sigma   smallest over largest pivot of J_d; it falls when retained rows become dependent
+//     kappa   largest |J_d^-1 J_i|
+//     sigma   smallest over largest pivot of J_d; it falls when retained rows become dependent
 #ifndef CT_SOLVE_CONSTRAINT_PARTITION_CONDITIONING_H
 #define CT_SOLVE_CONSTRAINT_PARTITION_CONDITIONING_H
 

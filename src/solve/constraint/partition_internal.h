@@ -1,11 +1,11 @@
 // Coordinate partitioning: declarations shared by its files.
 //
-//   partition.c          accelerations, multipliers, impulses, by dense matrices
-//   partition_choice.c   choice of independent rows and dependent columns
-//   partition_solver.c   accelerations by solvers with a fixed order of pivots
-//   projection.c         projection onto the constraints
-//   partition_rank.c     distance of J from loss of rank
-//   partition_inertia.c  inertia of some speeds while others are free
+//     partition.c          accelerations, multipliers, impulses, by dense matrices
+//     partition_choice.c   choice of independent rows and dependent columns
+//     partition_solver.c   accelerations by solvers with a fixed order of pivots
+//     projection.c         projection onto the constraints
+//     partition_rank.c     distance of J from loss of rank
+//     partition_inertia.c  inertia of some speeds while others are free
 #ifndef CT_SOLVE_CONSTRAINT_PARTITION_INTERNAL_H
 #define CT_SOLVE_CONSTRAINT_PARTITION_INTERNAL_H
 

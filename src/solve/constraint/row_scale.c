@@ -6,9 +6,9 @@
 // vectors. In a redundant constraint these terms cancel down to round-off or to the accuracy of
 // the data. The remainder is compared with
 //
-//   L_i = sum |d|   for rows of lengths [m],   1 for rows of angles and rows without lever arms
-//   S_k = max L_i   over the rows of lengths of a translation k [m],   1 for rotations
-//   N_i = max(L_i, S_k)
+//     L_i = sum |d|   for rows of lengths [m],   1 for rows of angles and rows without lever arms
+//     S_k = max L_i   over the rows of lengths of a translation k [m],   1 for rotations
+//     N_i = max(L_i, S_k)
 //
 // Entries J_ik S_k / N_i are at most of order 1 and have no unit.
 #include "solve/evaluator/evaluator.h"

@@ -1,9 +1,9 @@
 //
-//   assembly.c           iterations, from targets to initial conditions
-//   assembly_targets.c   targets: demanded and guessed values of coordinates and speeds
-//   assembly_data.c      constraints that are redundant within the tolerance of the data
-//   assembly_report.c    error messages
-//   start_demands.c      are demanded values kept by later stages?
+//     assembly.c           iterations, from targets to initial conditions
+//     assembly_targets.c   targets: demanded and guessed values of coordinates and speeds
+//     assembly_data.c      constraints that are redundant within the tolerance of the data
+//     assembly_report.c    error messages
+//     start_demands.c      are demanded values kept by later stages?
 #ifndef CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
 #define CT_SOLVE_INITIAL_ASSEMBLY_INTERNAL_H
 

@@ -49,8 +49,8 @@ bool ct_static_residual_iterate(struct ct_static_residual *s, struct ct_arena *a
 /// Speeds at which the equilibrium moves with time, K u + J' lam' = -df/dt - K_s u_s and J u =
 /// -v.
 ///
-///   v       in      (nrow) rates of the rows due to u_s
-///   u       in/out  (nu) in: speeds u_s of the held coordinates; out: all speeds
+///     v       in      (nrow) rates of the rows due to u_s
+///     u       in/out  (nu) in: speeds u_s of the held coordinates; out: all speeds
 ///
 /// False where the derivative is singular.
 bool ct_static_residual_rates(struct ct_static_residual *s, struct ct_arena *a, const double *v,

@@ -1,12 +1,12 @@
 // Declarations shared by the files that implement singular.h.
 //
-//   rank_monitor.c               prediction of singular configurations
-//   rank_monitor_record.c        records those that were crossed; is the last step near one?
-//   singular.c, end_of_reach.c   callbacks of the integrator
-//   singular_start.c             is the initial state a singular configuration?
-//   singular_initial_step.c      first step from a singular configuration
-//   singular_dense_output.c      results within a crossing
-//   singularity_test_function.c  determinant that changes its sign at a singular configuration
+//     rank_monitor.c               prediction of singular configurations
+//     rank_monitor_record.c        records those that were crossed; is the last step near one?
+//     singular.c, end_of_reach.c   callbacks of the integrator
+//     singular_start.c             is the initial state a singular configuration?
+//     singular_initial_step.c      first step from a singular configuration
+//     singular_dense_output.c      results within a crossing
+//     singularity_test_function.c  determinant that changes its sign at a singular configuration
 #ifndef CT_SOLVE_SINGULAR_RANK_MONITOR_INTERNAL_H
 #define CT_SOLVE_SINGULAR_RANK_MONITOR_INTERNAL_H
 

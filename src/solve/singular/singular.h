@@ -1,10 +1,10 @@
 // Singular configurations, in which the constraint Jacobian J loses rank: detection along a motion,
 // data for crossing them, starts in or near them, and results within a crossing.
 //
-//   rank monitor    predicts singular configurations, and records those that were crossed
-//   hooks           callbacks of the integrator during a crossing
-//   start           tests of an initial state in or near one, and the first step from there
-//   dense output    results at samples within a crossing
+//     rank monitor    predicts singular configurations, and records those that were crossed
+//     hooks           callbacks of the integrator during a crossing
+//     start           tests of an initial state in or near one, and the first step from there
+//     dense output    results at samples within a crossing
 //
 // At a singular configuration the accelerations have a limit along the motion, but the
 // equations of motion do not determine it. The integrator crosses the configuration in one step
