@@ -468,11 +468,3 @@ const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
     CT_PUSH(a, w.text.s, w.text.n, w.text.cap, '\0');
     return w.text.s;
 }
-
-const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
-                          size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
-                          const struct ct_c_options *options)
-{
-    return ct_c_listing(a, ct_listing_create(a, x, out, nout, in, slot, nin, CT_FUSE_NO),
-                        options);
-}

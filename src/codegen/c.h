@@ -33,12 +33,6 @@ struct ct_c_options {
 const char *ct_c_listing(struct ct_arena *a, const struct ct_listing *l,
                          const struct ct_c_options *options);
 
-/// C source of nout expressions. in[k] is a symbol whose value is at slot[k] of the input; all
-/// symbols needed must be among them. The text lives in a.
-const char *ct_c_function(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
-                          size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
-                          const struct ct_c_options *options);
-
 /// A copy of s that is safe inside a C comment of one line.
 const char *ct_c_comment(struct ct_arena *a, const char *s);
 

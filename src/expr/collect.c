@@ -143,71 +143,8 @@ static bool contains(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n)
     return false;
 }
 
-// By atom: 0 if it contains no symbol of s, 1 + k if it is symbol k, n + 1 if it contains one of
-// them.
-static size_t *roles_of_atoms(const struct ct_collector *c, const ct_ex *s, size_t n)
-{
-    size_t *role = CT_NEWN(c->arena, size_t, c->natom);
-    for (size_t a = 0; a < c->natom; a++) {
-        for (size_t k = 0; k < n; k++)
-            if (ct_ex_same(c->atom[a].e, s[k]))
-                role[a] = 1 + k;
-        if (!role[a] && contains(c->x, c->atom[a].e, s, n))
-            role[a] = n + 1;
-    }
-    return role;
-}
-
-// Index of the symbol whose coefficient the term belongs to; n: none; n + 1: the term is not
-// linear.
-static size_t place_of_term(const struct ct_collector *c, uint32_t mono, const size_t *role,
-                            size_t n)
-{
-    size_t place = n;
-    for (size_t k = 0; k < ct_mono_length(&c->ps, mono); k++) {
-        const struct ct_power p = ct_mono_power(&c->ps, mono, k);
-        if (!role[p.atom])
-            continue;
-        if (place != n || role[p.atom] > n || p.exponent != 1)
-            return n + 1;
-        place = role[p.atom] - 1;
-    }
-    return place;
-}
-
-// Linear form from the terms of the expanded polynomial.
-static bool linear_by_terms(struct ct_collector *c, struct ct_poly p, const ct_ex *s, size_t n,
-                            ct_ex *coefficient, ct_ex *rest)
-{
-    const size_t *role = roles_of_atoms(c, s, n);
-    struct ct_term *t = CT_NEWN(c->arena, struct ct_term, p.n);
-    bool linear = true;
-    for (size_t k = 0; k <= n; k++) {
-        size_t nt = 0;
-        for (size_t i = 0; i < p.n; i++) {
-            const size_t place = place_of_term(c, p.t[i].mono, role, n);
-            linear &= place <= n;
-            if (place != k && !(place > n && k == n))
-                continue;
-            t[nt] = p.t[i];
-            if (k < n) {
-                const uint32_t atom = ct_collector_atom(c, s[k]);
-                const uint32_t out = ct_mono_atom(&c->ps, atom, -1);
-                t[nt].mono = ct_mono_times(&c->ps, t[nt].mono, out);
-            }
-            nt++;
-        }
-        // ct_poly_sum keeps its argument as the result, so each sum gets its own array
-        struct ct_term *own = CT_NEWN(c->arena, struct ct_term, nt);
-        if (nt)
-            memcpy(own, t, nt * sizeof *own);
-        *(k < n ? &coefficient[k] : rest) = finish(c, ct_poly_sum(&c->ps, own, nt));
-    }
-    return linear;
-}
-
-// Linear form by derivatives, where the polynomial is too long to be expanded. False if e is not
-// linear; nothing is then set.
+// e = sum of coefficient[k] s[k] + rest by derivatives. False if e is not linear in s; nothing is
+// then set.
 static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
                                   ct_ex *coefficient, ct_ex *rest,
                                   const struct ct_collect_options *options)
@@ -224,43 +161,6 @@ static bool linear_by_derivatives(struct ct_exs *x, ct_ex e, const ct_ex *s, siz
     *rest = attempt_both(x, ct_ex_subst(x, e, s, zero, n), options)
                 .e; // zero: all elements are node 0
     return true;
-}
-
-struct form {
-    ct_ex *coefficient, rest;
-    bool linear, bundled;
-    double size;
-};
-
-static struct form form_by_terms(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
-                                 const struct ct_collect_options *options, bool early)
-{
-    struct ct_collector *c = start(x, options, early);
-    struct form f = {.coefficient = CT_NEWN(c->arena, ct_ex, n)};
-    const struct ct_poly p = ct_expand(c, e);
-    f.bundled = c->bundled;
-    f.linear = linear_by_terms(c, p, s, n, f.coefficient, &f.rest);
-    f.size = ct_ex_tree_size(x, c->arena, f.rest);
-    for (size_t k = 0; k < n; k++)
-        f.size += ct_ex_tree_size(x, c->arena, f.coefficient[k]);
-    return f;
-}
-
-bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
-                          ct_ex *coefficient, ct_ex *rest,
-                          const struct ct_collect_options *options)
-{
-    const struct form late = form_by_terms(x, e, s, n, options, false);
-    struct form best = form_by_terms(x, e, s, n, options, true);
-    if (best.bundled && late.bundled
-        && linear_by_derivatives(x, e, s, n, coefficient, rest, options))
-        return true;
-    if (best.bundled != late.bundled ? best.bundled : late.size <= best.size)
-        best = late;
-    if (n)
-        memcpy(coefficient, best.coefficient, n * sizeof *coefficient);
-    *rest = best.rest;
-    return best.linear;
 }
 
 // ---- the entry for all --------------------------------------------------------------------------

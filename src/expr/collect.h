@@ -32,13 +32,6 @@ struct ct_collect_options {
 /// the limit bounds. When a fixed budget of nodes is used up, the remaining ones stay as they are.
 ct_ex ct_ex_collect(struct ct_exs *x, ct_ex e, const struct ct_collect_options *options);
 
-/// Linear form e = sum over k of coefficient[k] s[k] + rest in the symbols s[0 ... n), each part
-/// collected.
-/// False if e is not linear in them; rest then also holds the nonlinear terms.
-bool ct_ex_collect_linear(struct ct_exs *x, ct_ex e, const ct_ex *s, size_t n,
-                          ct_ex *coefficient, ct_ex *rest,
-                          const struct ct_collect_options *options);
-
 /// Operators and operands that a full print of e shows. Cost: nodes below e.
 double ct_ex_tree_size(struct ct_exs *x, struct ct_arena *scratch, ct_ex e);
 

@@ -261,24 +261,16 @@ void ct_ex_gradient(struct ct_exs *x, struct ct_arena *scratch, ct_ex a, const c
         out[i] = bar[s[i].id];
 }
 
-// Rebuild a node with new arguments through the public constructors, so that the local rules apply.
-static ct_ex rebuild(struct ct_exs *x, const struct ct_exnode *n, ct_ex a, ct_ex b, ct_ex c)
-{
-    if (n->op == CT_OP_IF)
-        return ct_ex_if(x, a, b, c);
-    if (n->op == CT_OP_TABLE)
-        return ct_ex_table(x, n->b, n->c, a);
-    return ct_op_info[n->op].narg == 1 ? ct_ex_fun(x, (enum ct_op)n->op, a)
-                                       : ct_ex_fun2(x, (enum ct_op)n->op, a, b);
-}
-
+// Through the public constructors, so that the local rules apply.
 ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image)
 {
-    const uint32_t arg[3] = {n.a, n.b, n.c};
-    ct_ex m[3] = {{0}, {0}, {0}};
-    for (int i = 0; i < ct_op_info[n.op].narg; i++)
-        m[i] = image[arg[i]];
-    return rebuild(x, &n, m[0], m[1], m[2]);
+    const enum ct_op op = (enum ct_op)n.op;
+    if (op == CT_OP_IF)
+        return ct_ex_if(x, image[n.a], image[n.b], image[n.c]);
+    if (op == CT_OP_TABLE)
+        return ct_ex_table(x, n.b, n.c, image[n.a]);
+    return ct_op_info[op].narg == 1 ? ct_ex_fun(x, op, image[n.a])
+                                    : ct_ex_fun2(x, op, image[n.a], image[n.b]);
 }
 
 // What has none of the kinds stays as it is.
@@ -325,21 +317,4 @@ ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex e, const ct_ex *from, const ct_
 {
     subst(x, &e, 1, from, to, ns, kinds_of(x, from, ns));
     return e;
-}
-
-ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex e, ct_ex_leaf_fn leaf,
-                   void *data)
-{
-    // model expressions are small, so plain recursion serves
-    const struct ct_exnode n = from->node[e.id];
-    double v;
-    if (ct_ex_is_const(from, e, &v))
-        return ct_ex_const(x, v);
-    if (n.op == CT_OP_SYM)
-        return leaf(data, x, from, e);
-    const uint32_t arg[3] = {n.a, n.b, n.c};
-    ct_ex m[3] = {{0}, {0}, {0}};
-    for (int i = 0; i < ct_op_info[n.op].narg; i++)
-        m[i] = ct_ex_import(x, from, (ct_ex){arg[i]}, leaf, data);
-    return rebuild(x, &n, m[0], m[1], m[2]);
 }

@@ -254,11 +254,6 @@ ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_
                          size_t n);
 /// A node that has operands, made in x from image[id] of each operand.
 ct_ex ct_ex_rebuild(struct ct_exs *x, struct ct_exnode n, const ct_ex *image);
-/// Copy a from store `from` into x; leaf(data, x, from, symbol) gives the node for a symbol.
-typedef ct_ex (*ct_ex_leaf_fn)(void *data, struct ct_exs *x, const struct ct_exs *from,
-                               ct_ex s);
-ct_ex ct_ex_import(struct ct_exs *x, const struct ct_exs *from, ct_ex a, ct_ex_leaf_fn leaf,
-                   void *data);
 /// Value of a, where value[k] is that of symbol k (index into x->sym). Slow: for checks, defaults
 /// and tests.
 double ct_ex_value(const struct ct_exs *x, ct_ex a, const double *value);

@@ -23,13 +23,6 @@ bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path, enum ct
     return ct_csv_end_row(ctx, w);
 }
 
-bool ct_csv_row(struct ct_ctx *ctx, struct ct_csv *w, const double *value)
-{
-    for (size_t i = 0; i < w->ncolumn; i++)
-        ct_csv_number(w, value[i]);
-    return ct_csv_end_row(ctx, w);
-}
-
 static void put(struct ct_csv *w, char c)
 {
     CT_PUSH(w->arena, w->text, w->n, w->cap, c);

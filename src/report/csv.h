@@ -26,9 +26,6 @@ struct ct_csv {
 bool ct_csv_open(struct ct_ctx *ctx, struct ct_csv *w, const char *path, enum ct_suffix suffix,
                  const char *const *column, size_t ncolumn);
 
-/// Writes one row of numbers, value (ncolumn). Errors: E002.
-bool ct_csv_row(struct ct_ctx *ctx, struct ct_csv *w, const double *value);
-
 /// Writes a row field by field, numbers and texts ("" for an empty field), and its end.
 void ct_csv_number(struct ct_csv *w, double value);
 void ct_csv_text(struct ct_csv *w, const char *text);

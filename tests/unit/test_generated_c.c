@@ -11,6 +11,14 @@ static const double table_x[] = {-3, -1, 0, 1.5, 3}, table_y[] = {1, 2, 0, -1, 4
 static const struct ct_table tables[] = {{.n = 5, .x = table_x, .y = table_y},
                                          {.n = 5, .x = table_x, .y = table_y, .m = table_m}};
 
+static const char *function_of(struct ct_arena *a, const struct ct_exs *x, const ct_ex *out,
+                               size_t nout, const ct_ex *in, const size_t *slot, size_t nin,
+                               const struct ct_c_options *options)
+{
+    return ct_c_listing(a, ct_listing_create(a, x, out, nout, in, slot, nin, CT_FUSE_NO),
+                        options);
+}
+
 static void small_function_reads_well(void **unused)
 {
     (void)unused;
@@ -25,7 +33,7 @@ static void small_function_reads_well(void **unused)
     const size_t slot[] = {3, 0};
     const struct ct_c_options o = {.name = "motion", .title = "crank"};
     assert_string_equal(
-        ct_c_function(a, &x, out, 3, in, slot, 2, &o),
+        function_of(a, &x, out, 3, in, slot, 2, &o),
         "/* crank: 3 operations. Compile with -ffp-contract=off to keep the bits. */\n"
         "#include <math.h>\n"
         "\n"
@@ -141,7 +149,7 @@ static void compare(struct random *r, size_t n, size_t split, unsigned lanes)
         out[k] = k < 30 ? e[n + 8 - 1 - random_below(r, n)] : e[random_below(r, 12)];
     const struct ct_c_options o = {.split = split, .lanes = lanes};
     struct object object;
-    object_open(&object, ct_c_function(a, &x, out, 40, sym, slot, 8, &o));
+    object_open(&object, function_of(a, &x, out, 40, sym, slot, 8, &o));
     struct ct_tape *t = ct_tape_compile(a, &x, out, 40, sym, slot, 8);
     double *work = CT_NEWN(a, double, ct_tape_work(t));
     for (int round = 0; round < 20; round++)
