@@ -93,7 +93,7 @@ struct ct_beam {
     bool starts_in_equilibrium;        // `initial: equilibrium`
     const struct ct_beam_given *start; // `initial: {v: ...}`
     int nstart;
-    struct ct_mark formulation_mark, modes_mark, deformation_mark;
+    struct ct_mark formulation_mark, modes_mark;
 };
 
 /// Divide into n equal elements; with cuts, into equal elements between cuts, none longer than

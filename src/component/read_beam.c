@@ -545,7 +545,6 @@ static void fill_choices(const struct work *w)
     const struct ct_value *deformation = get(w, "deformation");
     beam->deformation_given = deformation->given;
     beam->deformation = deformation->given ? (unsigned)deformation->count : CT_BEAM_ALL;
-    beam->deformation_mark = deformation->mark;
     beam->modes = (int)get(w, "modes")->count;
     beam->modes_mark = get(w, "modes")->mark;
     const struct ct_value *shear = get(w, "shear_factor");

@@ -81,7 +81,7 @@ struct ct_topology {
     struct ct_coordinate *coordinate; // of all edges; q, u, value and rate are not set yet
     size_t nnode, node_cap, nedge, edge_cap, wiring_cap, ncoordinate, coordinate_cap;
     int *node_of_frame, *node_of_com; // by frame, by body
-    int *edge_of_joint, *edge_of_body;
+    int *edge_of_joint;
 
     // planar mechanisms: common normal and a basis of the plane (ground components)
     bool is_planar;

@@ -102,7 +102,6 @@ static void every_word_is_one_of_the_struct(void **state)
     check(number(s, b->damping_mass), 0);
     check(number(s, b->damping_stiffness), 1e-3);
     check(number(s, b->twist_inertia), 0); // lumped
-    assert_int_equal(b->deformation_mark.line, 18);
 }
 
 static void each_choice_has_its_own_place(void **state)

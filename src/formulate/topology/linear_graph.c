@@ -139,8 +139,6 @@ static void add_bodies(struct ct_build *b, struct ct_topology *t)
 {
     const struct ct_model *m = b->model;
     t->node_of_com = CT_NEWN(b->arena, int, m->nbody);
-    t->edge_of_body = CT_NEWN(b->arena, int, m->nbody);
-    t->edge_of_body[0] = -1;
     for (size_t i = 1; i < m->nbody; i++) {
         const struct ct_body *body = &m->body[i];
         const struct ct_flexible *f = ct_flexible_of(b, (int)i);
@@ -161,7 +159,6 @@ static void add_bodies(struct ct_build *b, struct ct_topology *t)
         e->index = (int)i;
         e->self = &body->instance;
         e->has_rotation = true;
-        t->edge_of_body[i] = (int)t->nedge - 1;
     }
 }
 
