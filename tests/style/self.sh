@@ -85,6 +85,24 @@ turned() {
 }
 fails_with 'turned.txt: low comes after a folder that may include it' turned
 
+# ---- pages
+mkdir -p docs src/low include components
+printf 'int ct_thing_make(void);\n' >src/low/thing.h
+printf '[`ct_thing_make`](../src/low/thing.h) and `ct_thing_make`, `p_0` ](t_k)\n' >docs/theory.md
+printf '[a](docs/theory.md) [b](https://example.org/a.md)\n' >README.md
+pages() {
+  sh "$tests/style/pages.sh" .
+}
+passes pages
+echo '[gone](../src/low/gone.h)' >docs/more.md
+fails_with 'docs/more.md: there is no ../src/low/gone.h' pages
+rm docs/more.md
+echo '`ct_thing_break`' >>docs/theory.md
+fails_with 'nothing in src is called ct_thing_break' pages
+echo '[`ct_thing_find`](../src/low/thing.h)' >docs/theory.md
+fails_with '../src/low/thing.h has no ct_thing_find' pages
+rm -r docs README.md include components src/low/thing.h
+
 # ---- class names
 mkdir -p src/component components
 touch components/spring.c
