@@ -36,8 +36,8 @@ struct ct_system {
 /// the stores of expressions.
 struct ct_system *ct_system_borrow(struct ct_ctx *own, struct ct_system *sys);
 
-/// The assembled start, with beams settled that ask for it. Errors: those of ct_assembly_solve and
-/// ct_initial_equilibrium_solve.
+/// The assembled initial state, with beams in equilibrium where requested. Errors: those of
+/// ct_assembly_solve and ct_initial_equilibrium_solve.
 bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
                         struct ct_initial_state *start);
 

@@ -69,7 +69,7 @@ const char *ct_batch_obstacle(const struct ct_run_options *o)
     return NULL;
 }
 
-// Do all tables reach to the end of the run? If not a single run reports the error.
+// Do all tables reach to the end of the run? If not, a run alone reports the error.
 static bool tables_reach(const struct ct_exs *x, double end)
 {
     for (size_t i = 0; i < x->ntable; i++)
@@ -406,8 +406,8 @@ static void start_lane(struct ct_batch *s, struct ct_lane *lane, const struct ct
     lane->nstiff = lane->nother = 0;
 }
 
-// Copies the member with which the run was started into lane l, and into lanes that never had one,
-// so that their numbers are finite.
+// Copies the member with which the run was started into lane l, and into lanes that have had no
+// member, so that their numbers are finite.
 static void fill(struct ct_batch *s, int l, const double *y)
 {
     for (int i = 0; i < W; i++)
@@ -422,7 +422,7 @@ static void fill(struct ct_batch *s, int l, const double *y)
     prepare_all(s);
 }
 
-// Are rows dependent at the start only? Such a member is run alone.
+// Are rows dependent in the initial configuration only? Such a member is run alone.
 static bool is_singular_start(const struct ct_batch *s)
 {
     // Derived: half the digits

@@ -26,27 +26,27 @@ enum ct_lane_state { CT_LANE_IDLE, CT_LANE_RUNNING, CT_LANE_ARRIVED, CT_LANE_GIV
 
 struct ct_batch;
 
-/// Why runs with these options cannot be in lanes, or NULL when they can.
+/// The reason why runs with these options cannot use lanes; NULL: they can.
 const char *ct_batch_obstacle(const struct ct_run_options *o);
-/// What is taken over runs is taken from the last ntake results. Programs compiled for lanes, by
-/// the back end that the run uses. All in a; run must live as long, and from now on solves by
-/// matrices, so that what it does for one member does not depend on the members before.
+/// Creates the programs of all lanes, with the back end of the run. Functions over runs are
+/// those of the last ntake results. All in a; run must live as long, and from now on uses dense
+/// matrices, so that its results for a member do not depend on earlier members.
 struct ct_batch *ct_batch_create(struct ct_arena *a, const struct ct_equations *e,
                                  struct ct_run *run, size_t ntake);
 
-/// The run has just been started with the file's own values: closed forms get the order of their
-/// pivots there, whoever needs them, so that a member gets the same bits after any others. Without
-/// it closed systems cannot be in lanes.
+/// Called after the run was started with the file's own values: symbolic solvers find their
+/// order of pivots there, so that the results of a member do not depend on other members.
+/// Without it closed systems cannot use lanes.
 void ct_batch_begin(struct ct_batch *s);
 
-/// Put the run, which has just been started, into an idle lane; `o` with its end time and
+/// Put the run, which has just been started, into an idle lane; `o` has its end time and
 /// tolerances. False: it has to be run alone.
 bool ct_batch_load(struct ct_batch *s, int lane, const struct ct_run_options *o);
 enum ct_lane_state ct_batch_state(const struct ct_batch *s, int lane);
 /// Try one step in every running lane.
 void ct_batch_step(struct ct_batch *s);
-/// Results (nresult, out) of a lane that has arrived, as the last row of a run alone. False: it has
-/// to be run alone.
+/// Results (nresult, out) of a lane at its end time, as the last row of a run alone. False: it
+/// has to be run alone.
 bool ct_batch_results(struct ct_batch *s, int lane, double *out);
 /// Make the lane idle again.
 void ct_batch_free(struct ct_batch *s, int lane);

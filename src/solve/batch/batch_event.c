@@ -1,6 +1,6 @@
-// Events of one lane, by the functions of a run alone: see batch_internal.h. A step in which a root
-// function changes sign is taken again up to the place where its cubic vanishes, and then
-// corrected, as in integrate/driver.c, while the other lanes go on.
+// Events of one lane, by the functions of a run alone: see batch_internal.h. A step in which a
+// root function changes sign is repeated up to the estimated root, and then corrected, as in
+// integrate/driver.c, while the other lanes continue.
 #include "solve/batch/batch_internal.h"
 #include "solve/run/run_internal.h"
 
@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-// The cubic through both ends of the step finds a root less well than the method's own interpolant.
+// The cubic Hermite interpolant of the step is less accurate than the method's own, which would
+// be evaluated for all lanes; one of them is used.
 enum { MOST_TRIES = CT_EVENT_CORRECTIONS + 1 };
 
 // ---- root functions -----------------------------------------------------------------------------
@@ -164,8 +165,8 @@ double ct_lane_stop(const struct ct_lane *lane)
 
 // ---- the search ---------------------------------------------------------------------------------
 
-// The step that has just been tried is accepted.
-static enum ct_lane_found settle(struct ct_batch *s, int l, double h, bool is_event)
+// Accept the step that was tried.
+static enum ct_lane_found accept_step(struct ct_batch *s, int l, double h, bool is_event)
 {
     struct ct_lane_events *v = &s->lane[l].events;
     v->is_event = is_event;
@@ -178,7 +179,7 @@ static enum ct_lane_found settle(struct ct_batch *s, int l, double h, bool is_ev
 }
 
 // Is there an event in a step that was tried as planned?
-static enum ct_lane_found look(struct ct_batch *s, int l)
+static enum ct_lane_found search_step(struct ct_batch *s, int l)
 {
     struct ct_lane *lane = &s->lane[l];
     struct ct_lane_events *v = &lane->events;
@@ -193,12 +194,12 @@ static enum ct_lane_found look(struct ct_batch *s, int l)
     ct_lane_take(v->location.g0, s->g0, l, (size_t)s->nroot);
     if (ct_event_location_search(&v->location, &span, s->one_end, &theta) != CT_EVAL_OK)
         return CT_LANE_REFUSED;
-    if (theta == 0) { // a root has left its rest on zero
+    if (theta == 0) { // a root function has left zero
         ct_lane_give_up(s, l);
         return CT_LANE_REFUSED;
     }
     if (theta > 1 || (1 - theta) * span.h <= ct_event_location_resolution(span.t, span.h))
-        return settle(s, l, lane->h, theta <= 1);
+        return accept_step(s, l, lane->h, theta <= 1);
     v->whole = span.h;
     v->whole_end = lane->end;
     v->error = lane->error;
@@ -222,13 +223,13 @@ static enum ct_lane_found refine(struct ct_batch *s, int l)
         return CT_LANE_AGAIN;
     }
     lane->error = v->error; // step control uses the error of the whole step
-    return settle(s, l, lane->h, true);
+    return accept_step(s, l, lane->h, true);
 }
 
 enum ct_lane_found ct_lane_search(struct ct_batch *s, int l)
 {
     ct_lane_take(s->one_end, s->end, l, (size_t)s->ny);
-    return s->lane[l].events.whole > 0 ? refine(s, l) : look(s, l);
+    return s->lane[l].events.whole > 0 ? refine(s, l) : search_step(s, l);
 }
 
 void ct_lane_plan_again(struct ct_batch *s, int l)

@@ -1,5 +1,5 @@
-// Root functions in lanes: is there anything for the search of batch_event.c? Included by
-// batch_step.c.
+// Root functions in lanes: may one have changed sign, so that batch_event.c must search?
+// Included by batch_step.c.
 #ifndef CT_SOLVE_BATCH_BATCH_EVENT_LOCATION_H
 #define CT_SOLVE_BATCH_BATCH_EVENT_LOCATION_H
 

@@ -176,7 +176,7 @@ void ct_switches_of_time(struct ct_evaluator *m, double t)
     }
 }
 
-// Outcome of switch i at time t, the switches inside its g settled for that time.
+// Value of switch i at time t, with the switches inside its g evaluated for that time.
 static bool outcome(struct ct_evaluator *m, size_t i, double t, double *g)
 {
     ct_switches_of_time(m, t);

@@ -10,15 +10,15 @@
 #include <math.h>
 #include <string.h>
 
-// Displacement h of the states in the test (8.41) [m, rad, m/s, rad/s]. It must be so large that an
-// output also changes if its derivative is zero in this configuration, as at a dead centre or on
-// the straight line of Watt's linkage. If loops do not close there it is made shorter.
+// Displacement h of the states in the test (8.41) [m, rad, m/s, rad/s]. It is so large that an
+// output also changes where its derivative is zero, as at a dead centre or on the straight line
+// of Watt's linkage. It is reduced if loops cannot be closed there.
 // Chosen: outputs with zero derivatives against loops that do not close.
 static const double first_displacement = 0x1p-4, displacement_reduction = 0.25;
-// Derived: the last of them is 2^-4 2^-24 = 2^-28, half the digits: a change is above round-off.
+// Derived: the last displacement is 2^-4 2^-24 = 2^-28, about the root of the unit round-off.
 enum { TRIES = 13 };
-// An output counts as constrained only if errors of states change it by less than this part of its
-// tolerance. Chosen: an error that does not matter.
+// An output counts as constrained only if errors of states change it by less than this fraction
+// of its tolerance. Chosen: an error that is negligible.
 static const double negligible_part = 0.25;
 // Chosen: calls without a test, their time against an output that is no longer constrained.
 enum { MOST_BETWEEN = 7 };
@@ -26,14 +26,15 @@ enum { MOST_BETWEEN = 7 };
 struct ct_constrained_output {
     struct ct_controlled_outputs *outputs;
     size_t n, ny;
-    double *at, *along; // (n) g where loops are closed, and at a place along the constraints
-    double *y, *closed; // (ny) to spare; y where loops are closed
-    double *d;          // (nu) to spare
+    double *at, *along; // (n) g at `closed`, and at a state displaced along the constraints
+    double *y, *closed; // (ny) workspace; y with loops closed
+    double *d;          // (nu) workspace
     int *all;           // (nu) 0, 1, 2 ...
     unsigned *kinds;    // (n) of symbols of g
 };
 
-// Looks see one side of comparisons and one time: events and loads lead to others.
+// Can the set of constrained outputs change? A test uses one side of comparisons and one time;
+// events and time-dependent loads change them.
 static bool may_change(const struct ct_equations *e, enum ct_output_kind kind)
 {
     unsigned kinds = 0;
@@ -80,7 +81,7 @@ void ct_constrained_output_clear(const struct ct_constrained_output *p,
 {
     const unsigned others
         = 1u << CT_SYM_SWITCH
-        | (violates_velocity_constraints ? 1u << CT_SYM_U : 0); // what looks do not see
+        | (violates_velocity_constraints ? 1u << CT_SYM_U : 0); // not covered by the test
     r->skip = r->between = 0;
     for (size_t i = 0; i < r->n; i++) {
         r->is_found[i] = false;
@@ -88,75 +89,75 @@ void ct_constrained_output_clear(const struct ct_constrained_output *p,
     }
 }
 
-// p->y = p->closed, with coordinates and their speeds moved by `way`: those of `which` (n).
-static void move_states(struct ct_constrained_output *p, const int *which, size_t n, double way)
+// p->y = p->closed, with the coordinates and speeds `which` (n) displaced by `distance`.
+static void move_states(struct ct_constrained_output *p, const int *which, size_t n, double distance)
 {
     const struct ct_evaluator *m = p->outputs->s->m;
     memset(p->d, 0, m->nu * sizeof *p->d);
     ct_evaluator_copy(p->y, p->closed, p->ny);
     for (size_t i = 0; i < n; i++) {
         const size_t k = (size_t)which[i];
-        p->d[k] = way * ct_perturbation_part(k);
-        p->y[m->nq + k] += way * ct_perturbation_part(m->nu + k);
+        p->d[k] = distance * ct_perturbation_part(k);
+        p->y[m->nq + k] += distance * ct_perturbation_part(m->nu + k);
     }
     ct_evaluator_retract(m, p->y, p->d);
 }
 
-// p->y where loops are closed, as far from p->closed as they can be; the part it was moved by, 0 if
-// none.
-static double find_along(struct ct_constrained_output *p, double t)
+// p->y = state with closed loops, displaced from p->closed along the constraints as far as the
+// loops can be closed. Returns the displacement, 0 if there is none.
+static double displace_along_constraints(struct ct_constrained_output *p, double t)
 {
     struct ct_partition *s = p->outputs->s;
     const size_t nfree = s->m->nu - (size_t)s->rank;
-    double way = first_displacement;
-    for (int i = 0; i < TRIES; i++, way *= displacement_reduction) {
-        move_states(p, s->independent, nfree, way);
+    double distance = first_displacement;
+    for (int i = 0; i < TRIES; i++, distance *= displacement_reduction) {
+        move_states(p, s->independent, nfree, distance);
         if (ct_partition_close_loops(s, t, p->y))
-            return way;
+            return distance;
     }
     return 0;
 }
 
-// Where loops are closed so near to y and along the constraints that all can be compared; the part
-// between them, 0 if none.
-static double find_positions(struct ct_constrained_output *p, double t, const double *y)
+// Evaluate outputs at y with loops closed and at a displaced state. Returns the displacement, 0
+// if there is none.
+static double evaluate_both(struct ct_constrained_output *p, double t, const double *y)
 {
     ct_evaluator_copy(p->closed, y, p->ny);
     if (!ct_partition_close_loops(p->outputs->s, t, p->closed))
         return 0;
     memcpy(p->at, ct_controlled_outputs_at(p->outputs, t, p->closed), p->n * sizeof *p->at);
-    const double way = find_along(p, t);
-    if (way > 0)
+    const double distance = displace_along_constraints(p, t);
+    if (distance > 0)
         memcpy(p->along, ct_controlled_outputs_at(p->outputs, t, p->y),
                p->n * sizeof *p->along);
-    return way;
+    return distance;
 }
 
-// way: of states of this size.
-static bool is_constrained(double at, double along, double across, double way, double small)
+// distance: relative to the size of the states.
+static bool is_constrained(double at, double along, double across, double distance, double small)
 {
-    const double change = fabs(along - at), roundoff = DBL_EPSILON * fabs(across - at) / way;
+    const double change = fabs(along - at), roundoff = DBL_EPSILON * fabs(across - at) / distance;
     return change <= ct_output_error_least_size * roundoff
-        && change <= negligible_part * way * (fabs(at) + small);
+        && change <= negligible_part * distance * (fabs(at) + small);
 }
 
-static void look(struct ct_constrained_output *p, struct ct_constrained_output_record *r,
+static void test_outputs(struct ct_constrained_output *p, struct ct_constrained_output_record *r,
                  double t, const double *y, double small)
 {
     const size_t nstate = p->ny - 1;
-    const double way = find_positions(p, t, y), size = ct_vector_largest(p->closed, nstate);
+    const double distance = evaluate_both(p, t, y), size = ct_vector_largest(p->closed, nstate);
     bool any = false;
-    if (!(way > 0)) {
+    if (!(distance > 0)) {
         memset(r->is_found, 0, r->n * sizeof *r->is_found);
         r->between = MOST_BETWEEN;
         return;
     }
-    move_states(p, p->all, p->outputs->s->m->nu, way);
+    move_states(p, p->all, p->outputs->s->m->nu, distance);
     const double *across = ct_controlled_outputs_at(p->outputs, t, p->y);
     for (size_t i = 0; i < r->n; i++) {
         r->is_found[i] = !r->is_settled[i]
                       && is_constrained(p->at[i], p->along[i], across[i],
-                                        way / ct_larger(1, size + small), small);
+                                        distance / ct_larger(1, size + small), small);
         r->is_settled[i] = !r->is_found[i];
         any |= r->is_found[i];
     }
@@ -171,10 +172,10 @@ bool ct_constrained_output_find(struct ct_constrained_output *p,
     if (!p || !(tolerance->rtol > 0 && tolerance->atol > 0) || p->outputs->s->is_crossing
         || r->skip-- > 0)
         return false;
-    look(p, r, t, y, tolerance->atol / tolerance->rtol);
+    test_outputs(p, r, t, y, tolerance->atol / tolerance->rtol);
     if (p->outputs->kind == CT_OUTPUTS_OF_SOLUTIONS)
         ct_controlled_outputs_at(p->outputs, t,
-                                 y); // what solutions have measured is of here again
+                                 y); // restore the solution at y
     r->skip = r->between;
     return true;
 }

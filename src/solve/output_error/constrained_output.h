@@ -21,7 +21,7 @@
 struct ct_constrained_output_record {
     size_t n;
     bool *is_found;   // (n) determined by the constraints at the last test
-    bool *is_settled; // (n) not determined by them, and not tested again
+    bool *is_settled; // (n) not constrained, and not tested again
     int skip;         // calls left without a test
     int between;      // such calls planned at the last test
 };
@@ -34,9 +34,9 @@ ct_constrained_output_create(struct ct_arena *a, struct ct_controlled_outputs *o
                              const ct_ex *g);
 /// Of n outputs; all zero.
 struct ct_constrained_output_record ct_constrained_output_record(struct ct_arena *a, size_t n);
-/// A new run begins: nothing is known. p may be NULL: then no output is constrained.
-/// violates_velocity_constraints: as in struct ct_method, speeds may violate the constraints after
-/// a step, so their outputs do count.
+/// Reset before a run. p may be NULL: then no output is constrained.
+/// violates_velocity_constraints: as in struct ct_method, speeds may violate the constraints
+/// after a step, so their outputs are controlled.
 void ct_constrained_output_clear(const struct ct_constrained_output *p,
                                  struct ct_constrained_output_record *r,
                                  bool violates_velocity_constraints);

@@ -34,7 +34,7 @@ void ct_controlled_outputs_create(struct ct_arena *a, struct ct_partition *s,
     ct_evaluator_add_program(a, m, m->e->x, g, n, &o->program);
 }
 
-// u' and lam into the evaluator's input; NaN if they cannot be found.
+// u' and lam into the evaluator's input; NaN if the equations cannot be solved.
 static void solve(struct ct_controlled_outputs *o)
 {
     struct ct_evaluator *m = o->s->m;

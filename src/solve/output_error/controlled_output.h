@@ -14,8 +14,8 @@ enum ct_output_kind { CT_OUTPUTS_OF_STATES, CT_OUTPUTS_OF_SOLUTIONS, CT_OUTPUT_K
 /// Definition: of what docs/accuracy.md promises.
 #define CT_PROMISED_ERROR 10
 
-/// An output need not be more accurate than so many round-off errors. Derived: the difference of
-/// two values, which its error is, has the round-off of both.
+/// An output need not be more accurate than this many round-off errors. Derived: the difference
+/// of two values, which its error is, has the round-off of both.
 #define CT_FEWEST_ROUNDOFF_ERRORS 2
 
 /// The outputs of one kind.
@@ -25,7 +25,7 @@ struct ct_controlled_outputs {
     size_t n;                  // of them
     enum ct_output_kind kind;
     bool needs_lam;
-    long *evaluations; // those of the equations are counted here
+    long *evaluations; // counter of evaluations of the equations
 };
 
 /// Is an output a check of the run, the total energy or a residual of the constraints? Checks are

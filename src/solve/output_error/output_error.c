@@ -13,14 +13,15 @@
 // Default: time of estimates against errors in between. Test: output_error
 static const double negligible_ratio = 0.25;
 enum { STEPS_BETWEEN = 7 };
-// If the ratio changes by at most this part between two estimates, it is used for twice as many
-// steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
+// If the ratio changes by at most this fraction between two estimates, it is used for twice as
+// many steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
 // evaluations, and the ratio may change more. Default: time of estimates against errors in
-// between. Test: output_error
+// between.
+// Test: output_error
 static const double steady_change[CT_OUTPUT_KINDS] = {0.02, 0.5};
 enum { MOST_BETWEEN = 15 }; // Default: as above. Test: output_error
-// Steps without an estimate after one in which outputs err by at most `negligible_ratio` of their
-// tolerance.
+// Steps without an estimate after one with an error of outputs of at most `negligible_ratio` of
+// the tolerance.
 static const int fewest_between[CT_OUTPUT_KINDS] = {0, 3};
 // Estimates without a new measurement of round-off, after one in which it did not matter. An error
 // that would reject a step has it measured at once. Default: time of measurements against steps
@@ -29,8 +30,8 @@ enum { MEASUREMENTS_BETWEEN = 15 };
 // Errors of states below this, in tolerances, do not give a ratio: the step size is still growing.
 // Default: steps that are too short against accurate ones. Test: output_error
 static const double least_state_error = 0.02;
-// An output counts if it is larger than this many of its round-off errors, that is, has six digits;
-// its error need not be less than `fewest_roundoff_errors` of them.
+// An output is controlled if it is larger than this many of its round-off errors, that is, has
+// six correct digits; its error need not be below `fewest_roundoff_errors` of them.
 // Default: outputs that are only round-off against small ones; steps against the last digits.
 // Test: output_error
 const double ct_output_error_least_size = 1e6;
@@ -39,12 +40,12 @@ static const double fewest_roundoff_errors = 16;
 // Outputs of one kind.
 struct group {
     struct ct_controlled_outputs outputs;
-    struct ct_constrained_output *constrained_output; // NULL: constraints determine none
+    struct ct_constrained_output *constrained_output; // NULL: there is none
     struct ct_output_sensitivity *sensitivity;
-    int *result; // (n) of the equations
+    int *result; // (n) index among the results of the equations
     struct ct_output_error_record record;
-    double *at, *probed, *off; // (n) g there
-    double *expected;          // (n) as large they are expected to become
+    double *at, *probed, *off; // (n) g at y, at y changed slightly, and at y + e
+    double *expected;          // (n) expected largest values
     double *shown;             // (n) their largest values at samples
 };
 
@@ -52,7 +53,7 @@ struct ct_output_error {
     struct group group[CT_OUTPUT_KINDS];
     size_t n; // of groups that are not empty
     size_t ny;
-    double *y;           // (ny) to spare
+    double *y;           // (ny) workspace
     const double *shown; // of each result, its largest value at samples so far
 };
 
@@ -89,7 +90,7 @@ bool ct_output_error_find_requested(struct ct_arena *a, const struct ct_equation
     return true;
 }
 
-// Of this kind; false if there is none.
+// The outputs of this kind; false if there is none.
 static bool create_group(struct ct_arena *a, struct ct_partition *s, enum ct_output_kind kind,
                          long *evaluations, struct group *p)
 {
@@ -147,7 +148,7 @@ struct ct_constrained_output *ct_output_error_constrained(const struct ct_output
     return NULL;
 }
 
-// ---- what is known ------------------------------------------------------------------------------
+// ---- record of the outputs of a run -------------------------------------------------------------
 
 struct ct_output_error_record ct_output_error_record(struct ct_arena *a,
                                                      enum ct_output_kind kind, size_t n)
@@ -181,7 +182,7 @@ double ct_output_error_extrapolated(const struct ct_output_error_record *r, doub
     return r->ratio > negligible_ratio ? r->ratio * states : 0;
 }
 
-// After a look: how many steps the ratio of both errors is to hold for.
+// After an estimate: plan the number of steps that use the ratio of both errors.
 static void plan_checks(struct ct_output_error_record *r, double error, double states)
 {
     const double before = r->ratio, ratio = states >= least_state_error ? error / states : 0;
@@ -271,7 +272,7 @@ void ct_output_error_start(struct ct_output_error *p, const struct ct_method *me
     }
 }
 
-// Leaves in g->at what outputs are at y.
+// g->at = outputs at y.
 static void find_at(struct group *g, double t, const double *y)
 {
     memcpy(g->at, ct_controlled_outputs_at(&g->outputs, t, y), g->record.n * sizeof *g->at);
@@ -286,8 +287,8 @@ static const double *evaluate_perturbed(struct ct_output_error *p, struct group 
     return ct_controlled_outputs_at(&g->outputs, t, p->y);
 }
 
-// Leaves in g->probed what outputs are where states differ by little more than round-off.
-static void probe(struct ct_output_error *p, struct group *g, double t, const double *y)
+// g->probed = outputs at states that differ from y by little more than round-off.
+static void perturb_by_roundoff(struct ct_output_error *p, struct group *g, double t, const double *y)
 {
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + ct_output_error_perturbation((int)i) * y[i];
@@ -295,8 +296,7 @@ static void probe(struct ct_output_error *p, struct group *g, double t, const do
            g->record.n * sizeof *g->probed);
 }
 
-// g at y + e as well, after a look for those that constraints determine where such a one might
-// count.
+// g at y + e, after the test for constrained outputs if one might limit the step.
 static const double *find_error(struct ct_output_error *p, struct group *g, double t,
                                 const double *y, const double *e,
                                 const struct ct_tolerance *tolerance, double states)
@@ -316,7 +316,7 @@ static double check(struct ct_output_error *p, struct group *g, double t, const 
     const bool is_probed = r->without_measurement == 0;
     find_at(g, t, y);
     if (is_probed)
-        probe(p, g, t, y);
+        perturb_by_roundoff(p, g, t, y);
     else
         r->without_measurement--;
     const double *off = find_error(p, g, t, y, e, tolerance, states),
@@ -324,7 +324,7 @@ static double check(struct ct_output_error *p, struct group *g, double t, const 
     const double error = ct_output_error_evaluate(r, g->at, probed, off, tolerance, states);
     if (is_probed || error <= 1)
         return error;
-    r->skip = r->without_measurement = 0; // no step is refused for its round-off
+    r->skip = r->without_measurement = 0; // no step is rejected because of round-off
     return check(p, g, t, y, e, tolerance, states);
 }
 
@@ -354,7 +354,7 @@ static double change_of(struct ct_output_error *p, struct group *g, double t, co
 {
     double most = 0;
     find_at(g, t, y);
-    probe(p, g, t, y);
+    perturb_by_roundoff(p, g, t, y);
     const double *off = evaluate_perturbed(p, g, t, y, e);
     for (size_t i = 0; i < g->record.n; i++) {
         const double way = fabs(off[i] - g->at[i]),

@@ -18,21 +18,21 @@ struct ct_output_error;
 /// An output counts only if it is larger than this many of its round-off errors.
 extern const double ct_output_error_least_size;
 
-/// NULL if there is no output to control. Everything lives in a, the evaluator's arena. shown (of
-/// each result): its largest value at samples so far. Evaluations of the equations that outputs
-/// take are added to *evaluations. Both must live as long.
+/// NULL if there is no output to control. Everything lives in a, the evaluator's arena. shown
+/// (by result): its largest value at samples so far. Evaluations of the equations for outputs
+/// are added to *evaluations. Both must live as long.
 struct ct_output_error *ct_output_error_create(struct ct_arena *a, struct ct_partition *s,
                                                const double *shown, long *evaluations);
 /// Is output i the total energy, a check of the run?
 bool ct_output_error_is_check(const struct ct_equations *e, size_t i);
-/// Is output i made of more than time, states and the work put in?
+/// Does output i depend on more than time, states and work?
 bool ct_output_error_needs_accelerations(const struct ct_equations *e, size_t i);
 /// For each speed (nu, arena a): is it an output (speeds), is its coordinate one (places)? False,
 /// and all count, if an output contains accelerations or reactions, which depend on every
 /// vibration.
 bool ct_output_error_find_requested(struct ct_arena *a, const struct ct_equations *e,
                                     const bool **speeds, const bool **places);
-/// A new run begins, by this method: nothing is known of the sizes of outputs.
+/// Reset before a run with this method.
 void ct_output_error_start(struct ct_output_error *p, const struct ct_method *method);
 /// Root mean square of the errors of the outputs at y (ny) for errors e (ny) of the states, where 1
 /// is the tolerance; `states` is the same norm of the states. If outputs err much less than states,
@@ -47,7 +47,7 @@ double ct_output_error_of_step(struct ct_output_error *p, double t, const double
 /// expected size, and sensitive outputs are left out.
 double ct_output_error_of_change(struct ct_output_error *p, double t, const double *y,
                                  const double *e, double least);
-/// Set the expected size of outputs: `times` their change for a change way (ny) of y.
+/// Set the expected size of outputs: `times` their change for a change `way` (ny) of y.
 void ct_output_error_expect_size(struct ct_output_error *p, double t, const double *y,
                                  const double *way, double times);
 /// The last step whose error was computed is accepted.
@@ -61,9 +61,9 @@ double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const d
 bool ct_output_error_has_sensitive(struct ct_output_error *p, double t, const double *y,
                                    const struct ct_tolerance *tolerance);
 
-/// The controlled result with the fewest digits: one round-off of states changes it by *part (out)
-/// of its largest value so far. -1, and *part unchanged, if all results larger than `small` can be
-/// accurate to `wanted`.
+/// The controlled result with the lowest accuracy: one unit of round-off of states changes it
+/// by *part (out) of its largest value so far. -1, and *part unchanged, if all results larger
+/// than `small` can be accurate to `wanted`.
 int ct_output_error_roundoff_limit(struct ct_output_error *p, double t, const double *y,
                                    double wanted, double small, double *part);
 
@@ -77,27 +77,27 @@ const struct ct_controlled_outputs *ct_output_error_outputs(const struct ct_outp
 struct ct_constrained_output *ct_output_error_constrained(const struct ct_output_error *p,
                                                           enum ct_output_kind kind);
 
-/// What is known of the outputs of a run.
+/// Record of the outputs of a run.
 struct ct_output_error_record {
     size_t n;
     enum ct_output_kind kind;
     double *largest,
-        *last;     // (n) |g| over the steps that were accepted, at the last one looked at
-    bool has_last; // since the last acceptance
+        *last;     // (n) largest |g| over accepted steps; |g| at the last evaluation
+    bool has_last; // `last` is newer than the last accepted step
     int skip;      // steps left without an estimate
     int between;   // such steps planned at the last estimate
     int without_measurement; // estimates left without a measurement of round-off
     const struct ct_output_sensitivity
-        *sensitive; // sensitive outputs do not count; NULL: all do
+        *sensitive; // its sensitive outputs are not controlled; NULL: all are
     struct ct_constrained_output_record
-        constrained; // outputs determined by the constraints do not count, either
-    double ratio;    // error of outputs over that of states at the last estimate; 0: not known
+        constrained; // constrained outputs are not controlled
+    double ratio;    // error of outputs over that of states at the last estimate; 0: unknown
 };
 /// Of n outputs of this kind; all zero.
 struct ct_output_error_record ct_output_error_record(struct ct_arena *a,
                                                      enum ct_output_kind kind, size_t n);
 void ct_output_error_clear(struct ct_output_error_record *r);
-/// Is the error of this step to be computed?
+/// Must the error of outputs be estimated in this step?
 bool ct_output_error_is_due(struct ct_output_error_record *r);
 /// If not: the error of outputs extrapolated from that of the states, 0 if it does not matter.
 double ct_output_error_extrapolated(const struct ct_output_error_record *r, double states);

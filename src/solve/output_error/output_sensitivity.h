@@ -7,7 +7,7 @@
 // and d_i = w_i (rtol |y_i| + atol) for accelerations and reactions during steps.
 //
 // Implicit methods for stiff systems damp fast motions in each step. With them a stiff force is
-// accurate at the ends of steps if the steps are controlled for it, but not between.
+// accurate at the ends of steps if these are controlled for it, but not between.
 #ifndef CT_SOLVE_OUTPUT_ERROR_OUTPUT_SENSITIVITY_H
 #define CT_SOLVE_OUTPUT_ERROR_OUTPUT_SENSITIVITY_H
 
@@ -21,7 +21,7 @@ struct ct_output_sensitivity *
 ct_output_sensitivity_create(struct ct_arena *a, struct ct_controlled_outputs *outputs,
                              struct ct_constrained_output *constrained_output,
                              struct ct_constrained_output_record *record);
-/// A new run begins: nothing is known of the sizes of outputs.
+/// Reset before a run.
 void ct_output_sensitivity_start(struct ct_output_sensitivity *p);
 /// Root mean square of the errors of the sensitive outputs at y (ny) for errors e (ny) of the
 /// states. 1 is the tolerance, relative to the largest value so far or `largest` (n), and not less
