@@ -78,8 +78,8 @@ struct ct_linear *ct_configuration_start(struct ct_ctx *own, struct ct_system *s
     return NULL;
 }
 
-// Does a driver act the same way at all times? So does a constant rate of turning or sliding,
-// and a constant acceleration along a slide.
+// Is the motion of a driver steady? So are a constant rate of rotation or translation, and a
+// constant acceleration along a slide.
 static bool is_steady(const struct ct_equations *e, const struct ct_linear *l, size_t i)
 {
     const struct ct_driver *d = &e->driver[i];

@@ -112,7 +112,7 @@ static bool balance(struct large *g)
 }
 
 // Pseudorandom numbers in [-1, 1), the same in every run.
-static double chance(uint64_t *state)
+static double random_number(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
@@ -130,7 +130,7 @@ static bool is_symmetric(struct large *g, const struct ct_point *p)
         size[p->K[i].row] = fmax(size[p->K[i].row], fabs(p->K[i].value));
     for (size_t i = 0; i < g->nu; i++) {
         size[i] = size[i] > 0 ? sqrt(size[i]) : 1;
-        x[i] = chance(&state) / size[i];
+        x[i] = random_number(&state) / size[i];
     }
     ct_point_apply(Kx, p->K, p->nK, x, g->nu);
     for (size_t i = 0; i < p->nK; i++)
@@ -209,7 +209,7 @@ static struct pairs find_pairs(struct large *g, size_t count)
     double *start = CT_NEWN(g->a, double, g->nu), last = 0;
     for (size_t i = 0; i <= wanted + 1 && all.n < room; i++) {
         for (size_t k = 0; k < g->nu; k++)
-            start[k] = chance(&state);
+            start[k] = random_number(&state);
         struct ct_arena *meanwhile = ct_arena_create_under(g->a);
         const int n = ct_arpack_largest(meanwhile, &op, (int)g->nu, i ? MORE : (int)wanted,
                                         (int)(room - all.n), all.vector, (int)all.n, start,

@@ -267,7 +267,7 @@ long ct_plan_number(const struct ct_plan *s, long member)
 // ---- values --------------------------------------------------------------------------------
 
 // Random number k (from 0) of the sequence with this seed, in [0, 1).
-static double chance(uint64_t seed, uint64_t k)
+static double random_number(uint64_t seed, uint64_t k)
 {
     uint64_t z = seed + (k + 1) * 0x9e3779b97f4a7c15u;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -280,7 +280,7 @@ static double sampled(const struct ct_plan *s, long member, size_t i)
 {
     const struct ct_axis *axis = &s->axis[i];
     const uint64_t k = 2 * ((uint64_t)member * s->naxis + i);
-    const double u1 = chance(s->seed, k), u2 = chance(s->seed, k + 1);
+    const double u1 = random_number(s->seed, k), u2 = random_number(s->seed, k + 1);
     if (axis->kind == CT_AXIS_RANGE)
         return axis->from + u1 * (axis->to - axis->from);
     return axis->from + axis->to * sqrt(-2 * log(1 - u1)) * cos(2 * acos(-1) * u2);

@@ -90,7 +90,8 @@ void ct_constrained_output_clear(const struct ct_constrained_output *p,
 }
 
 // p->y = p->closed, with the coordinates and speeds `which` (n) displaced by `distance`.
-static void move_states(struct ct_constrained_output *p, const int *which, size_t n, double distance)
+static void move_states(struct ct_constrained_output *p, const int *which, size_t n,
+                        double distance)
 {
     const struct ct_evaluator *m = p->outputs->s->m;
     memset(p->d, 0, m->nu * sizeof *p->d);
@@ -134,15 +135,18 @@ static double evaluate_both(struct ct_constrained_output *p, double t, const dou
 }
 
 // distance: relative to the size of the states.
-static bool is_constrained(double at, double along, double across, double distance, double small)
+static bool is_constrained(double at, double along, double across, double distance,
+                           double small)
 {
-    const double change = fabs(along - at), roundoff = DBL_EPSILON * fabs(across - at) / distance;
+    const double change = fabs(along - at),
+                 roundoff = DBL_EPSILON * fabs(across - at) / distance;
     return change <= ct_output_error_least_size * roundoff
         && change <= negligible_part * distance * (fabs(at) + small);
 }
 
-static void test_outputs(struct ct_constrained_output *p, struct ct_constrained_output_record *r,
-                 double t, const double *y, double small)
+static void test_outputs(struct ct_constrained_output *p,
+                         struct ct_constrained_output_record *r, double t, const double *y,
+                         double small)
 {
     const size_t nstate = p->ny - 1;
     const double distance = evaluate_both(p, t, y), size = ct_vector_largest(p->closed, nstate);

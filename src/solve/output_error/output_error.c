@@ -288,7 +288,8 @@ static const double *evaluate_perturbed(struct ct_output_error *p, struct group 
 }
 
 // g->probed = outputs at states that differ from y by little more than round-off.
-static void perturb_by_roundoff(struct ct_output_error *p, struct group *g, double t, const double *y)
+static void perturb_by_roundoff(struct ct_output_error *p, struct group *g, double t,
+                                const double *y)
 {
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + ct_output_error_perturbation((int)i) * y[i];
@@ -357,14 +358,15 @@ static double change_of(struct ct_output_error *p, struct group *g, double t, co
     perturb_by_roundoff(p, g, t, y);
     const double *off = evaluate_perturbed(p, g, t, y, e);
     for (size_t i = 0; i < g->record.n; i++) {
-        const double way = fabs(off[i] - g->at[i]),
+        const double change = fabs(off[i] - g->at[i]),
                      size = ct_larger(fabs(g->at[i]), g->record.largest[i]),
                      to_come = least > 0 ? ct_larger(g->expected[i], least) : 0;
         if (g->record.constrained.is_found[i]
             || (least > 0 && ct_output_sensitivity_is_sensitive(g->sensitivity, i)))
             continue;
-        if (way > 0 && size >= ct_output_error_least_size * roundoff_of(g->at[i], g->probed[i]))
-            most = ct_larger(most, way / ct_larger(size, to_come));
+        if (change > 0
+            && size >= ct_output_error_least_size * roundoff_of(g->at[i], g->probed[i]))
+            most = ct_larger(most, change / ct_larger(size, to_come));
     }
     return most;
 }
@@ -379,12 +381,12 @@ double ct_output_error_of_change(struct ct_output_error *p, double t, const doub
 }
 
 void ct_output_error_expect_size(struct ct_output_error *p, double t, const double *y,
-                                 const double *way, double times)
+                                 const double *change, double times)
 {
     for (size_t k = 0; k < p->n; k++) {
         struct group *g = &p->group[k];
         find_at(g, t, y);
-        const double *off = evaluate_perturbed(p, g, t, y, way);
+        const double *off = evaluate_perturbed(p, g, t, y, change);
         for (size_t i = 0; i < g->record.n; i++)
             g->expected[i] = times * fabs(off[i] - g->at[i]);
     }

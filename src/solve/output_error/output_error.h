@@ -47,9 +47,9 @@ double ct_output_error_of_step(struct ct_output_error *p, double t, const double
 /// expected size, and sensitive outputs are left out.
 double ct_output_error_of_change(struct ct_output_error *p, double t, const double *y,
                                  const double *e, double least);
-/// Set the expected size of outputs: `times` their change for a change `way` (ny) of y.
+/// Set the expected size of outputs: `times` their change for the change `change` (ny) of y.
 void ct_output_error_expect_size(struct ct_output_error *p, double t, const double *y,
-                                 const double *way, double times);
+                                 const double *change, double times);
 /// The last step whose error was computed is accepted.
 void ct_output_error_accept(struct ct_output_error *p);
 
@@ -82,16 +82,15 @@ struct ct_output_error_record {
     size_t n;
     enum ct_output_kind kind;
     double *largest,
-        *last;     // (n) largest |g| over accepted steps; |g| at the last evaluation
-    bool has_last; // `last` is newer than the last accepted step
-    int skip;      // steps left without an estimate
-    int between;   // such steps planned at the last estimate
+        *last;               // (n) largest |g| over accepted steps; |g| at the last evaluation
+    bool has_last;           // `last` is newer than the last accepted step
+    int skip;                // steps left without an estimate
+    int between;             // such steps planned at the last estimate
     int without_measurement; // estimates left without a measurement of round-off
     const struct ct_output_sensitivity
         *sensitive; // its sensitive outputs are not controlled; NULL: all are
-    struct ct_constrained_output_record
-        constrained; // constrained outputs are not controlled
-    double ratio;    // error of outputs over that of states at the last estimate; 0: unknown
+    struct ct_constrained_output_record constrained; // constrained outputs are not controlled
+    double ratio; // error of outputs over that of states at the last estimate; 0: unknown
 };
 /// Of n outputs of this kind; all zero.
 struct ct_output_error_record ct_output_error_record(struct ct_arena *a,

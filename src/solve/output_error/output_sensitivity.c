@@ -21,14 +21,15 @@ struct ct_output_sensitivity {
     struct ct_constrained_output *constrained;
     struct ct_constrained_output_record *record;
     size_t n, ny;
-    double *at, *largest;       // (n) g; its largest absolute value so far
-    double *sensitivity;        // (n) |change of g| for a relative change 1 of all states
-    double *scaled_sensitivity; // (n) the same for changes |y_i| + atol/rtol, accelerations only
-    bool *is_sensitive;         // (n)
-    double *y;                  // (ny) workspace
-    double t_at, *y_at;         // time and state of `at`, (ny)
-    int skip;                   // calls left without a test
-    int between;                // states left at which the last sensitivities are used
+    double *at, *largest; // (n) g; its largest absolute value so far
+    double *sensitivity;  // (n) |change of g| for a relative change 1 of all states
+    // (n) the same for changes |y_i| + atol/rtol, of outputs of accelerations
+    double *scaled_sensitivity;
+    bool *is_sensitive; // (n)
+    double *y;          // (ny) workspace
+    double t_at, *y_at; // time and state of `at`, (ny)
+    int skip;           // calls left without a test
+    int between;        // states left at which the last sensitivities are used
 };
 
 struct ct_output_sensitivity *
@@ -47,7 +48,8 @@ ct_output_sensitivity_create(struct ct_arena *a, struct ct_controlled_outputs *o
     double **const vectors[] = {&p->at, &p->largest, &p->sensitivity};
     for (size_t i = 0; i < COUNT(vectors); i++)
         *vectors[i] = CT_NEWN(a, double, n);
-    p->scaled_sensitivity = outputs->kind == CT_OUTPUTS_OF_SOLUTIONS ? CT_NEWN(a, double, n) : p->sensitivity;
+    p->scaled_sensitivity
+        = outputs->kind == CT_OUTPUTS_OF_SOLUTIONS ? CT_NEWN(a, double, n) : p->sensitivity;
     p->is_sensitive = CT_NEWN(a, bool, n);
     p->y = CT_NEWN(a, double, p->ny);
     p->y_at = CT_NEWN(a, double, p->ny);
@@ -70,8 +72,8 @@ bool ct_output_sensitivity_is_sensitive(const struct ct_output_sensitivity *p, s
 
 // Change of the outputs over CT_PERTURBATION, for states changed by CT_PERTURBATION (|y_i| +
 // small), with different factors so that changes do not cancel.
-static void find_sensitivity(struct ct_output_sensitivity *p, double t, const double *y, double small,
-                     double *sensitivity)
+static void find_sensitivity(struct ct_output_sensitivity *p, double t, const double *y,
+                             double small, double *sensitivity)
 {
     for (size_t i = 0; i < p->ny; i++)
         p->y[i]
@@ -83,7 +85,7 @@ static void find_sensitivity(struct ct_output_sensitivity *p, double t, const do
 
 // Evaluate outputs and sensitivities at y.
 static void evaluate(struct ct_output_sensitivity *p, double t, const double *y,
-                 const struct ct_tolerance *tolerance)
+                     const struct ct_tolerance *tolerance)
 {
     const bool is_solved = p->outputs->kind == CT_OUTPUTS_OF_SOLUTIONS;
     memcpy(p->at, ct_controlled_outputs_at(p->outputs, t, y), p->n * sizeof *p->at);
@@ -102,7 +104,7 @@ static void evaluate(struct ct_output_sensitivity *p, double t, const double *y,
 // Select sensitive outputs that are not known to be constrained. is_new (out): some sensitive
 // output has not been tested for that.
 static bool select_sensitive(struct ct_output_sensitivity *p, const double *sensitivity,
-                       const struct ct_tolerance *tolerance, bool *is_new)
+                             const struct ct_tolerance *tolerance, bool *is_new)
 {
     bool any = *is_new = false;
     for (size_t i = 0; i < p->n; i++) {
@@ -116,8 +118,8 @@ static bool select_sensitive(struct ct_output_sensitivity *p, const double *sens
 }
 
 // Find the sensitive outputs at y, by one of the two sensitivities.
-static bool find_sensitive(struct ct_output_sensitivity *p, double t, const double *y, const double *sensitivity,
-                 const struct ct_tolerance *tolerance)
+static bool find_sensitive(struct ct_output_sensitivity *p, double t, const double *y,
+                           const double *sensitivity, const struct ct_tolerance *tolerance)
 {
     bool is_new;
     if (t != p->t_at || memcmp(y, p->y_at, p->ny * sizeof *y) != 0)

@@ -147,11 +147,11 @@ double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const doubl
     const double now = ct_rank_monitor_pivot(w, ct_time_just_before(t, a.pending), y);
     const double behind = ct_rank_monitor_pivot_after(w, &a, -s),
                  ahead = ct_rank_monitor_pivot_after(w, &a, s);
-    const double way = ct_vector_max_norm(w->d, w->m->nu);
+    const double distance = ct_vector_max_norm(w->d, w->m->nu);
     if (behind > now
         && behind > ahead) // the pivot rises again after the singular configuration
-        return now * way / (behind - now);
-    return ahead > now ? -now * way / (ahead - now) : now * way / (now - ahead);
+        return now * distance / (behind - now);
+    return ahead > now ? -now * distance / (ahead - now) : now * distance / (now - ahead);
 }
 
 // Predict the next singular configuration from a state with a decreasing pivot.
