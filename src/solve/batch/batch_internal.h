@@ -1,12 +1,13 @@
-// Data that the files of this folder share: values of all lanes, and the state of each lane. See
+// Data shared by the files of this folder: values of all lanes, and the state of each lane. See
 // batch.h.
 //
-//     batch.c        members come and go
-//     batch_step.c    a try in all lanes: stages, error, projection, step control
-//     batch_solver.h    of that, closed forms and the projection by them
-//     batch_take.h    what is taken over steps
-//     batch_event.c   events of one lane: where they are, what they change; batch_event_location.h: is there one in any?
-//     batch_single.c   one lane as a run alone: what is rare, by the run's own functions
+//   batch.c          creation; start and end of members
+//   batch_step.c     a try of a step in all lanes: stages, error, projection, step control
+//   batch_solver.h   accelerations and projection by symbolic solvers in lanes
+//   batch_take.h     functions over a run
+//   batch_event.c    location and handling of events of one lane
+//   batch_event_location.h   may a root function of some lane have changed sign?
+//   batch_single.c   one lane as a run alone, by the functions of a single run
 #ifndef CT_SOLVE_BATCH_BATCH_INTERNAL_H
 #define CT_SOLVE_BATCH_BATCH_INTERNAL_H
 
@@ -58,7 +59,7 @@ struct ct_lane_sum {
     double a[CT_MOST_DENSE_STAGES];
 };
 
-// Extreme values and other functions over a run; see integrate/take.h.
+// Functions over a run, such as extreme values; see integrate/take.h.
 struct ct_lane_takes {
     size_t n;                       // 0: nothing
     struct ct_lane_program program; // (n)
@@ -91,7 +92,7 @@ struct ct_lane_events {
     double *dy, *dend; // of the step in which a root is located (ny)
     double whole;      // its length; 0: no root is located
     double whole_end, error;
-    double h;      // of the next try
+    double h;      // length of the next try
     int tries;     // of it
     bool is_event; // a state event ends this step
 };
@@ -131,7 +132,7 @@ struct ct_batch {
     struct ct_arena *arena;
     int nq, nu, nrow, ny, rank;
     bool is_solved, has_power, needs_lam, has_quaternion, is_used; // needs_lam: the power does
-    int whose; // the lane whose parameters the run has; -1: not known
+    int whose; // the lane whose parameters the run has; -1: unknown
     struct ct_lane_program motion, power, memory; // motion: u', q' themselves if is_solved
     struct ct_lane_outputs output[CT_OUTPUT_KINDS];
     struct ct_lane_takes take;

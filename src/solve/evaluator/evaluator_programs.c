@@ -44,7 +44,7 @@ bool ct_evaluator_slot(const struct ct_evaluator *m, const struct ct_sym *s, siz
     case CT_SYM_WORK:
         *slot = m->at_work;
         return true;
-    case CT_SYM_SEED: // behind the input: of tangents alone
+    case CT_SYM_SEED: // after the input: of tangents alone
         *slot = m->ninput + s->index;
         return true;
     case CT_SYM_LOCAL:
@@ -63,7 +63,7 @@ void ct_evaluator_values(const struct ct_evaluator *m, const struct ct_exs *x, d
     }
 }
 
-// Every symbol of the store that a run gives a value, with its slot.
+// All symbols of the store with a value in a run, and their slots.
 static struct inputs list_inputs(struct ct_arena *a, const struct ct_evaluator *m,
                                  const struct ct_exs *x)
 {
@@ -225,7 +225,7 @@ static void compile_rest(struct ct_arena *a, struct ct_evaluator *m, const struc
     compile(a, m, in, mode_state.e, mode_state.n, &m->beam_mode_state);
     compile(a, m, in, energies, 2, &m->energy);
     compile(a, m, in, &e->power, ct_ex_is_zero(e->power) ? 0 : 1, &m->power);
-    // seldom run: not worth native code
+    // rarely run: no native code
     struct ct_program *const all[]
         = {&m->result,        &m->root,   &m->whole_turns, &m->momentum,    &m->driver,
            &m->assembly_sign, &m->energy, &m->validity,    &m->base_motion, &m->beam_mode_state,

@@ -8,8 +8,8 @@
 /// Compiles all programs of an evaluator whose input exists.
 void ct_programs_compile(struct ct_arena *a, struct ct_evaluator *m);
 
-/// Runs native code, or the tape if that is NULL. They use the work array differently; a tape is
-/// made only when it is run.
+/// Runs native code, or the tape if that is NULL. Their work arrays differ; a tape is made only
+/// when it is run.
 void ct_program_use(struct ct_arena *a, struct ct_program *p, struct ct_native *native);
 /// Selects native code if the evaluator asks for it; false if it is not available.
 bool ct_program_choose(struct ct_arena *a, struct ct_evaluator *m, struct ct_program *p);

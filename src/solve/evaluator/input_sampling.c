@@ -8,8 +8,8 @@
 // Times in a step near which methods have stages, those of order 2 the first one only: dop853,
 // dopri5 and radau5 leave no wider gaps.
 static const double stage_times[] = {1, 0.25, 0.65, 0.85};
-// Between these a polynomial of degree four is at most this times as far from its start as at them,
-// which is as far as methods follow; a pulse that they miss is farther.
+// Between these points a polynomial of degree four is at most this times as far from its
+// initial value as at them. Methods resolve that; a pulse that they miss is larger.
 // Derived: 2.36, the Lebesgue constant of these points and the start.
 static const double pulse_ratio = 2.4;
 
@@ -58,7 +58,7 @@ static double at(const double *value, double place)
     return v[0] + (place - k) * (v[1] - v[0]);
 }
 
-// Does a step between these places pass over a change? False if values are not finite.
+// Does a step between these positions pass over a change? False if values are not finite.
 static bool passes_over(const double *value, double from, double to, size_t nseen,
                         double negligible_change)
 {

@@ -15,7 +15,7 @@ struct ct_quad_program {
     ct_quad *value;             // (l->nvalue)
 };
 
-/// Tables are not offered: their values are NaN. Everything lives in a.
+/// Tables are not supported: their values are NaN. Everything lives in a.
 struct ct_quad_program ct_quad_load(struct ct_arena *a, const struct ct_program *p);
 /// out (nout) at an input in the evaluator's layout.
 void ct_quad_evaluate(const struct ct_quad_program *p, const ct_quad *input, ct_quad *out);

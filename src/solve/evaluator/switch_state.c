@@ -25,23 +25,23 @@ static void evaluate(struct ct_evaluator *m, double t, const double *y, const do
     memcpy(m->input + m->at_q, y, n * sizeof *y);
 }
 
-// Switches may occur in the g of others; so many levels are evaluated.
+// Switches may occur in the g of others; this number of levels is evaluated.
 // Limit: as docs/format.md says
 enum { MOST_LEVELS = 4 };
 
-// g is zero if it is below this part of its change in a second.
+// g is zero if it is below this fraction of its change in a second.
 // Derived: 4500 units of round-off.
 static const double zero = 1e-12;
 
-// A g at rest counts as zero up to this part of the largest state: round-off of a g that is zero by
-// symmetry.
-// Default: forces that round-off makes against small ones that are meant. Test: rest_at_zero.
+// A g that stays zero counts as zero up to this fraction of the largest state: round-off of a g
+// that is zero by symmetry.
+// Default: forces caused by round-off against small ones that are intended. Test: rest_at_zero.
 static const double roundoff = 64 * DBL_EPSILON;
 
 // How far to look ahead for the later side, [s].
 static double ahead_of(double t)
 {
-    // Derived: half the digits of t, and some more
+    // Derived: somewhat more than the root of the unit round-off of t
     return 1e-7 * fmax(1, fabs(t));
 }
 
@@ -232,7 +232,7 @@ static int ascending(const void *a, const void *b)
 
 bool ct_table_has_kinks(const struct ct_table *table, int order)
 {
-    // Derived: methods of this order see the error of a jump of the third derivative
+    // Derived: methods of this order are affected by a jump of the third derivative
     const int highest_order = 5;
     return !table->m || order > highest_order;
 }

@@ -1,13 +1,14 @@
-// Switches of a run: which side each comparison is on, when it changes.
+// Switches of a run: the side of each comparison and the times of its changes.
 #ifndef CT_SOLVE_EVALUATOR_SWITCH_STATE_H
 #define CT_SOLVE_EVALUATOR_SWITCH_STATE_H
 
 #include "solve/evaluator/evaluator.h"
 
-/// Sides at t, y. Where g is zero the later side counts, found by following g along the derivative
-/// dy (nq + nu; NULL: time alone moves). A g of the state that is zero and stays so along dy is at
-/// rest: the side is that of g = 0, as with sign(0) = 0, until g leaves zero (m->at_rest).
-/// crossed (nswitch, -1, 0 or 1; NULL: none): the sides of those that have just changed.
+/// Set the sides at t, y. Where g is zero it is the later side, found by following g along the
+/// derivative dy (nq + nu; NULL: only time changes). A g of the state that stays zero along dy
+/// is at rest: the side is that of g = 0, as with sign(0) = 0, until g leaves zero
+/// (m->at_rest). crossed (nswitch, -1, 0 or 1; NULL: none): the sides of those that have just
+/// changed.
 void ct_switches_start(struct ct_evaluator *m, double t, const double *y, const double *dy,
                        const signed char *crossed);
 
@@ -20,11 +21,12 @@ int ct_switches_side(const struct ct_evaluator *m, size_t i, double value);
 /// Sets t and the switches of time at t in the input.
 void ct_switches_of_time(struct ct_evaluator *m, double t);
 
-/// A switch of the state whose g is zero here and that the motion along dy leaves to the side that
-/// the switch is not on. Its index, or -1.
+/// A switch of the state whose g is zero here and whose side differs from that to which the
+/// motion along dy leads. Its index, or -1.
 int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double *y,
                                   const double *dy);
-/// Right after that: the switches with the same g as switch i to the side where the motion leads.
+/// Directly after that: set the switches with the same g as switch i to the side to which the
+/// motion leads.
 void ct_switches_follow(struct ct_evaluator *m, size_t i);
 
 /// Are the knots of a table kinks for methods of this order? Those of linear tables are, and of
@@ -36,8 +38,8 @@ bool ct_table_has_kinks(const struct ct_table *table, int order);
 size_t ct_time_events(struct ct_arena *a, struct ct_evaluator *m, int order, double t0,
                       double t1, double **time);
 
-/// t, or the last double before it if a time event is pending at t: up to and at an event the state
-/// before it counts, since slopes of linear tables are not held by switches.
+/// t, or the last double before it if a time event is pending at t: the state before an event
+/// holds up to and at it, since slopes of linear tables are no switches.
 double ct_time_just_before(double t, double pending);
 
 #endif

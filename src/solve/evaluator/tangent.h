@@ -10,8 +10,8 @@ enum { CT_TANGENT_LANES = 4 };
 
 struct ct_tangent_lanes;
 
-/// l: the derivatives `along` of f, which reads its seeds behind ninput numbers of an evaluator.
-/// Everything lives in a. Call `use` before all else.
+/// l: the derivatives `along` of f, which reads its seeds after ninput numbers of an evaluator.
+/// Everything lives in a. Call `use` first.
 struct ct_tangent_lanes *ct_tangent_lanes_create(struct ct_arena *a,
                                                  const struct ct_residual *f,
                                                  const struct ct_listing *l, size_t nu,
