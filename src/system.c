@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- trees that are asked for -------------------------------------------------------------------
+// ---- requested trees ----------------------------------------------------------------------------
 
 static bool read_branches(struct ct_ctx *ctx, const struct ct_node *node,
                           const char *const **name, const struct ct_mark **mark, size_t *n)
@@ -292,7 +292,7 @@ bool ct_system_assemble(struct ct_ctx *own, struct ct_system *sys,
         && ct_start_meets_demands(own, start);
 }
 
-// ---- what it is ---------------------------------------------------------------------------------
+// ---- properties ---------------------------------------------------------------------------------
 
 const char *ct_system_name(const struct ct_system *sys)
 {

@@ -215,7 +215,7 @@ struct ct_lumped_masses {
     struct ct_augmented_body *augmented_body;
     size_t naugmented_body, augmented_body_cap;
     struct ct_pairs of; // (anchor, cluster) -> number of the augmented body
-    int *child;         // child anchors of each augmented body, one list behind the other
+    int *child;         // child anchors of each augmented body, as concatenated lists
     ct_ex33 *inertia;   // by cluster: augmented inertia, local [kg m^2]
     ct_ex *mass;        // by anchor: total outboard mass [kg]
 };

@@ -257,7 +257,7 @@ struct ct_equations {
     // continuity: for `rate_jumps: continuous`, half the weighted sum of squares of the speeds
     // that a jump changes least; else 0
     ct_ex continuity;
-    struct ct_residual *residual; // NULL if not asked for
+    struct ct_residual *residual; // NULL if not requested
     bool is_planar;
     // bare_beam, bare_joint: beam whose first section has no inertia, and the joint at that
     // section; 0: none

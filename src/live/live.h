@@ -45,7 +45,7 @@ struct ct_data {
     double *M, *J;   // row by row
     double *value;   // outputs (nresult)
     double energy[5];
-    struct ct_program strain, frames; // compiled when first asked for
+    struct ct_program strain, frames; // compiled at the first request
     bool has_strain, has_frames;
 };
 

@@ -26,9 +26,7 @@
 // which the error often does not decrease enough, and a hundredth, which costs more and is not
 // better.
 static const double tolerance_reduction = 1. / 30;
-// If the tolerance can be tightened by less than this factor, the second run is looser by this
-// factor. Then it has the larger error.
-// Chosen: errors that differ by less are hard to tell apart by a difference.
+// Chosen: errors that differ by less cannot be distinguished by a difference.
 static const double least_tolerance_ratio = 5;
 // A second run may have a tolerance this much below the smallest one of an ordinary run. In
 // motions with many turns truncation errors decrease until there. An explicit step has

@@ -32,7 +32,7 @@ struct elimination {
     ct_ex *B;                    // (nu x nfree), with unit rows for independent speeds
     size_t *first;               // its entries by column: rows B_row[first[j] ...]
     int *B_row;
-    ct_ex *S;      // (nfree x nfree) L' D L of B' M B, lower triangle: D, and L beside it
+    ct_ex *S;      // (nfree x nfree) factors L' D L of B' M B: D on the diagonal, L below it
     size_t *order; // (nfree) of the pivots of S, the first one last
 };
 
