@@ -45,17 +45,21 @@ def free_bodies(n):
         "joints", (("j%d" % i, "type: free, from: ground, to: b%d" % i) for i in range(n)))
 
 
-def four_bars(n):
-    """n loops in a row: cranks 0 to n, couplers between them."""
+def four_bars(n, off=0):
+    """n loops in a row: cranks 0 to n, couplers between them, longer and shorter by a part `off`."""
     feet = ", ".join("g%d: [%d, 0, 0]" % (i, i) for i in range(n + 1))
     bodies = [("ground", "points: {%s}" % feet)]
     bodies += [bar(i, "[0, 0.5, 0]", "[0, 1, 0]") for i in range(n + 1)]
-    bodies += [bar(n + 1 + i) for i in range(n)]
+    bodies += [bar(n + 1 + i, tip="[%r, 0, 0]" % (1 + off * (-1) ** i)) for i in range(n)]
     joints = [hinge("foot%d" % i, "ground.g%d" % i, "b%d" % i) for i in range(n + 1)]
     for i in range(n):
         joints.append(hinge("in%d" % i, "b%d.tip" % i, "b%d" % (n + 1 + i)))
         joints.append(hinge("out%d" % i, "b%d.tip" % (n + 1 + i), "b%d.tip" % (i + 1)))
     return HEAD + section("bodies", bodies) + section("joints", joints)
+
+
+def four_bars_to_close(n):
+    return four_bars(n, 0.02)
 
 
 def four_bars_that_move(n):
@@ -107,6 +111,8 @@ def write_table(folder, n):
 ROWS = {
     "pendulums": ("check, pendulums side by side", pendulums, ["check"], (500, 1000, 2000)),
     "four_bars": ("check, four-bars in a row", four_bars, ["check"], (100, 300, 1000)),
+    "four_bars_to_close": ("check, four-bars in a row that start open by 2 %", four_bars_to_close,
+                           ["check"], (100, 300, 1000)),
     "four_bars_apart": ("check, four-bars side by side", four_bars_apart, ["check"], (100, 300, 1000)),
     "four_bars_equations": ("equations of four-bars in a row", four_bars, ["equations"], (100, 300, 1000)),
     "four_bars_simulate": ("simulate, four-bars in a row", four_bars_that_move,

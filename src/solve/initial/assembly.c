@@ -186,6 +186,12 @@ static double square_distance(const struct ct_assembler *s)
     return sum;
 }
 
+// The largest of these.
+static double farthest_guess(const struct ct_assembler *s)
+{
+    return ct_vector_largest(s->r + s->nhard, s->A.n - s->nhard);
+}
+
 // ---- iterations ---------------------------------------------------------------------------------
 
 // s->b = d that minimises |A d + r|^2 + damping^2 |d|^2 over the rows that must be met.
@@ -223,6 +229,17 @@ static double nearest_step(struct ct_assembler *s)
     return square_distance(s) - after;
 }
 
+// Does the step s->b reduce the sum of squares of what must be met, to first order, at a rate that
+// would meet it within the iterations allowed? Else it goes to a place where the sum is least.
+static bool is_promising(struct ct_assembler *s)
+{
+    const size_t n = s->nhard;
+    ct_sparse_rows_times(s->work, &s->A, n, s->b);
+    ct_vector_add(s->work, 1, s->r, n);
+    return ct_vector_dot(s->work, s->work, n)
+         < (1 - 1.0 / MOST_ITERATIONS) * ct_vector_dot(s->r, s->r, n);
+}
+
 // Close the loops from s->y by Levenberg-Marquardt steps; returns the largest residual.
 static double close_loops(struct ct_assembler *s)
 {
@@ -236,6 +253,8 @@ static double close_loops(struct ct_assembler *s)
             || (worst < ct_rank_tolerance && worst > before / 2))
             return worst;
         closing_step(s, fmax(fmin(1, worst), ct_assembly_least_damping));
+        if (worst > ct_rank_tolerance && !is_promising(s))
+            return worst;
         ct_evaluator_retract(s->m, s->y, s->b);
         before = worst;
     }
@@ -295,7 +314,7 @@ static double find_positions(struct ct_assembler *s)
         }
         before = size;
     }
-    return close_loops(s);
+    return worst < ct_rank_tolerance ? close_loops(s) : worst;
 }
 
 static double find_velocities(struct ct_assembler *s)
@@ -438,16 +457,17 @@ static void random_start(struct ct_assembler *s, int search, double reach)
     }
 }
 
-// Can a nearer position matter? A coordinate without a guess is always searched for.
-static bool may_be_nearer(const struct ct_assembler *s, double nearest)
+// Can a nearer position matter? A coordinate without a guess is always searched for. `nearest` is
+// the square of the distance, `farthest` its largest term.
+static bool may_be_nearer(const struct ct_assembler *s, double nearest, double farthest)
 {
     // Definition: docs/format.md. In 1800 random loops every nearer position that existed was
-    // nearer by 0.5 or more.
+    // nearer by 0.5 or more, of six joints at most: one of them is off by 0.2 or more.
     const double near = 0.1;
     for (size_t i = 0; i < s->e->ncoordinate; i++)
         if (is_without_guess(s, i))
             return nearest > ct_rank_tolerance * ct_rank_tolerance;
-    return nearest > near * near;
+    return farthest > near;
 }
 
 static bool is_closed(struct ct_assembler *s, double residual)
@@ -462,9 +482,10 @@ static bool is_closed(struct ct_assembler *s, double residual)
 // near positions the first is kept.
 static void search_nearer(struct ct_assembler *s)
 {
-    double nearest = square_distance(s);
+    double nearest = square_distance(s), farthest = farthest_guess(s);
     save(s, &s->best, false);
-    for (int search = 0; search < MOST_STARTS && may_be_nearer(s, nearest); search++) {
+    for (int search = 0; search < MOST_STARTS && may_be_nearer(s, nearest, farthest);
+         search++) {
         start_near_targets(s, 0);
         if (search > 0) { // every second one leaves guesses unchanged
             random_start(s, search, search % 2 ? 0 : sqrt(nearest));
@@ -474,15 +495,18 @@ static void search_nearer(struct ct_assembler *s)
             || !(sqrt(square_distance(s)) < sqrt(nearest) - ct_rank_tolerance))
             continue;
         nearest = square_distance(s);
+        farthest = farthest_guess(s);
         save(s, &s->best, false);
     }
     save(s, &s->best, true);
     position_rows(s);
 }
 
-// The same with rows filtered to the tolerance of the data, if that applies.
+// After try_exact: the same with rows filtered to the tolerance of the data, if that applies.
 static bool try_inexact(struct ct_assembler *s, int try, double *residual)
 {
+    if (!ct_loop_filter_may_hold(s))
+        return false;
     s->filter->is_on = true;
     start_near_targets(s, try);
     *residual = find_positions(s);
@@ -522,13 +546,16 @@ static bool is_met_with_guesses(struct ct_assembler *s, bool of_speeds)
     struct ct_target *target = of_speeds ? s->u : s->q;
     double residual;
     struct ct_target *kept = s->kept_targets;
+    bool is_any_given = false;
     memcpy(kept, target, n * sizeof *kept);
     for (size_t i = 0; i < n; i++) {
+        is_any_given |= target[i].is_given;
         target[i].wanted = target[i].is_given;
         target[i].is_given = false;
     }
     const bool is_met
-        = of_speeds ? find_velocities(s) < ct_rank_tolerance : try_positions(s, &residual);
+        = is_any_given
+       && (of_speeds ? find_velocities(s) < ct_rank_tolerance : try_positions(s, &residual));
     memcpy(target, kept, n * sizeof *kept);
     return is_met;
 }

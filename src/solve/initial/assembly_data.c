@@ -42,12 +42,11 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
 
 // ---- the projection -----------------------------------------------------------------------------
 
-// v (n) -= its projection on the first `rank` columns of Q, twice against round-off.
-static void orthogonalise(double *v, const double *Q, size_t rank, size_t n)
+// v (n) -= its projection on the columns first to last - 1 of Q.
+static void orthogonalise(double *v, const double *Q, size_t first, size_t last, size_t n)
 {
-    for (int again = 0; again < 2; again++)
-        for (size_t k = 0; k < rank; k++)
-            ct_vector_add(v, -ct_vector_dot(Q + n * k, v, n), Q + n * k, n);
+    for (size_t k = first; k < last; k++)
+        ct_vector_add(v, -ct_vector_dot(Q + n * k, v, n), Q + n * k, n);
 }
 
 // Q (n x nu, out) = orthonormal basis of the columns of B (n x nu, destroyed) by Gram-Schmidt
@@ -59,15 +58,18 @@ static size_t find_basis(double *Q, double *B, size_t n, size_t nu)
         size_t best = 0;
         double most = 0;
         for (size_t k = 0; k < nu; k++) {
-            orthogonalise(B + n * k, Q, rank, n);
+            orthogonalise(B + n * k, Q, rank - (rank > 0), rank, n);
             const double left = sqrt(ct_vector_dot(B + n * k, B + n * k, n));
             best = left > most ? k : best;
             most = fmax(most, left);
         }
         if (rank == nu || rank == n || !(most > ct_data_tolerance))
             return rank;
+        double *b = B + n * best;
+        orthogonalise(b, Q, 0, rank, n); // again, against round-off
+        most = sqrt(ct_vector_dot(b, b, n));
         for (size_t i = 0; i < n; i++)
-            Q[i + n * rank] = B[i + n * best] / most;
+            Q[i + n * rank] = b[i] / most;
     }
 }
 
@@ -162,6 +164,11 @@ static double largest_residual(struct ct_assembler *s)
 // Residuals and singular values below this have no effect.
 // Derived: with the damping d = 1e-8 a singular value s counts by s^2/(s^2 + d^2) = 1e-6.
 static const double negligible = 1e-11;
+
+bool ct_loop_filter_may_hold(struct ct_assembler *s)
+{
+    return largest_residual(s) <= ct_data_tolerance;
+}
 
 bool ct_loop_filter_is_due(struct ct_assembler *s)
 {

@@ -64,6 +64,10 @@ struct ct_loop_filter *ct_loop_filter_create(struct ct_arena *a, const struct ct
 /// Filter the first nhard rows of s->A and s->r: rows of the loops for which is_loop (nrow;
 /// NULL: all) holds, then demanded values.
 void ct_loop_filter_apply(struct ct_assembler *s, const bool *is_loop);
+/// May the loops close with the filter? Without it the iterations have ended at s->y, where the sum
+/// of squares of the residuals is least: above the tolerance of the data the filter cannot close
+/// them.
+bool ct_loop_filter_may_hold(struct ct_assembler *s);
 /// Do rows at s->y have residuals or singular values between round-off and the tolerance of the
 /// data?
 bool ct_loop_filter_is_due(struct ct_assembler *s);
