@@ -38,7 +38,7 @@ static bool report_demand_errors(struct ct_assembler *s, bool is_speed)
         return true;
     const struct ct_coordinate *c = s->e->coordinate;
     ct_error(s->ctx, initial_mark(s, worst, is_speed), CT_E_START,
-             "initial %s contradict each other: %s'%s' of joint '%s' is demand_error by %.3g "
+             "initial %s contradict each other: %s'%s' of joint '%s' is missed by %.3g "
              "(demanded %.6g, found %.6g); mark what need not hold with 'guess: true'",
              is_speed ? "speeds" : "values", is_speed ? "the rate of " : "", c[worst].name,
              s->e->build->topology->edge[c[worst].edge].self->name, most,
