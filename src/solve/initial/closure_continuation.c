@@ -264,10 +264,10 @@ static bool find_equilibrium_here(struct ct_static_residual *s, struct ct_arena 
     return ct_static_residual_iterate(s, a) && is_stable_equilibrium(s, a);
 }
 
-// Minimise the potential energy from s->y. The first step, of 1 m or rad in the softest
-// eigenvector, leaves a symmetric configuration. Newton's method is tried after each step that
-// was not limited.
-static bool minimise_energy(struct ct_static_residual *s, struct ct_arena *a)
+// Minimise the potential energy from s->y. The first step, of `side` = 1 or -1 m or rad in the
+// softest eigenvector, leaves a symmetric configuration. Newton's method is tried after each step
+// that was not limited.
+static bool minimise_energy(struct ct_static_residual *s, struct ct_arena *a, double side)
 {
     enum { MOST = 500 }; // Limit: of steps; Newton's method fails then, with a message
     double size = INFINITY;
@@ -283,7 +283,7 @@ static bool minimise_energy(struct ct_static_residual *s, struct ct_arena *a)
             double most = 0;
             for (size_t k = 0; k < s->n; k++)
                 most = fabs(l.shape[k]) > fabs(most) ? l.shape[k] : most;
-            step_by(s, l.shape, 1 / most);
+            step_by(s, l.shape, side / most);
         } else {
             size = descend(s, own, &l);
         }
@@ -298,7 +298,9 @@ static bool minimise_energy(struct ct_static_residual *s, struct ct_arena *a)
     return false;
 }
 
-bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a)
+// Reduce the offsets to zero. buckles (out): the energy was minimised, so `side` mattered.
+static bool close_gaps(struct ct_static_residual *s, struct ct_arena *a, double side,
+                       bool *buckles)
 {
     // Smallest fraction of the offsets that one step removes; below it the energy is minimised.
     // Chosen: small steps of continuation against the slower minimisation.
@@ -313,8 +315,10 @@ bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *
         bool ok = find_equilibrium_here(s, own);
         if (!ok)
             keep(s, &at, true);
-        if (!ok && step <= least)
-            ok = minimise_energy(s, own);
+        if (!ok && step <= least) {
+            *buckles = true;
+            ok = minimise_energy(s, own, side);
+        }
         ct_arena_destroy(own);
         if (!ok && step <= least)
             return false;
@@ -326,4 +330,46 @@ bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *
         keep(s, &at, false);
     }
     return true;
+}
+
+// Square of the distance of s->y to the guesses.
+static double square_distance(struct ct_static_residual *s,
+                              const struct ct_initial_state *start)
+{
+    double sum = 0;
+    ct_evaluator_set(s->m, 0, s->y);
+    ct_program_run(&s->m->result, s->m->input);
+    for (size_t i = 0; i < start->n; i++) {
+        const struct ct_target *t = &start->q_target[i];
+        const double away = t->weight * (s->m->result.out[2 * i] - t->value);
+        sum += t->is_guessed && !t->in_quaternion ? away * away : 0;
+    }
+    return sum;
+}
+
+bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a,
+                                 const struct ct_initial_state *start)
+{
+    double *memory = s->m->input + s->m->at_memory;
+    double *kept = CT_NEWN(a, double, 2 * s->e->nmemory + 1), *closed = kept + s->e->nmemory;
+    struct saved_state begin = saved_state(s, a), end = saved_state(s, a);
+    const size_t size = s->e->nmemory * sizeof *memory;
+    bool buckles = false;
+    keep(s, &begin, false);
+    memcpy(kept, memory, size);
+    const bool is_closed = close_gaps(s, a, 1, &buckles);
+    if (!buckles)
+        return is_closed;
+    // beams that buckle may do so to either side
+    const double distance = is_closed ? square_distance(s, start) : INFINITY;
+    keep(s, &end, false);
+    memcpy(closed, memory, size);
+    keep(s, &begin, true);
+    memcpy(memory, kept, size);
+    if (close_gaps(s, a, -1, &buckles)
+        && square_distance(s, start) < distance - ct_rank_tolerance)
+        return true;
+    keep(s, &end, true);
+    memcpy(memory, closed, size);
+    return is_closed;
 }

@@ -4,6 +4,7 @@
 #ifndef CT_SOLVE_INITIAL_CLOSURE_CONTINUATION_H
 #define CT_SOLVE_INITIAL_CLOSURE_CONTINUATION_H
 
+#include "solve/initial/assembly.h"
 #include "solve/initial/static_residual.h"
 
 /// Set the constraint offsets of s to the present residuals.
@@ -16,6 +17,7 @@ double ct_closure_continuation_remaining(struct ct_static_residual *s, size_t *r
 /// Reduce the offsets step by step to zero. The equilibrium of each step is found by Newton's
 /// method. Where that finds no stable equilibrium for a small step, the potential energy is
 /// minimised. False if both fail.
-bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a);
+bool ct_closure_continuation_run(struct ct_static_residual *s, struct ct_arena *a,
+                                 const struct ct_initial_state *start);
 
 #endif

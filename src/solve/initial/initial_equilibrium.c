@@ -215,7 +215,7 @@ bool ct_initial_equilibrium_solve(struct ct_ctx *ctx, struct ct_arena *a,
     }
     ct_static_residual_derive(&s, a);
     ct_closure_continuation_begin(&s);
-    if (start->is_open && !ct_closure_continuation_run(&s, a))
+    if (start->is_open && !ct_closure_continuation_run(&s, a, start))
         return report_open(ctx, model, &s);
     ct_closure_continuation_set(&s, 0);
     ct_static_residual_choose_rows(&s, a);
