@@ -24,8 +24,15 @@ bool ct_sim_choose_solver(struct ct_sim *sim, const char *name)
                         "there is no solver '%s'; there are auto, unrolled, one-system, "
                         "sparse, dense",
                         name);
-    if (i == 0)
+    if (i == 0) {
+        // Implicit methods solve for accelerations a few times per step, beside their own factors:
+        // making a symbolic solver takes longer than the sparse one, which is made at once.
+        struct ct_partition *s = ct_run_partition(sim->run);
+        if (sim->run_options.method->is_implicit
+            && s->m->nu + s->m->nrow >= CT_FEWEST_SPARSE_UNKNOWNS)
+            ct_partition_use_solver(s, &ct_solver_sparse);
         return true;
+    }
     sim->solver = solvers[i].name;
     ct_partition_use_solver(ct_run_partition(sim->run), solvers[i].kind);
     return true;
