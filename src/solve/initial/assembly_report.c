@@ -110,7 +110,7 @@ bool ct_assembler_report_speeds(struct ct_assembler *s)
     const int joint = s->e->row[row].joint;
     return ct_error(
         s->ctx, row_mark(s, row), CT_E_START,
-        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is demand_error "
+        "the drivers ask for speeds that the mechanism cannot have: '%s'%s%s%s is missed "
         "by %.3g; check the rates of the motions",
         s->e->row[row].name, joint < 0 ? "" : " of joint '",
         joint < 0 ? "" : s->e->build->model->joint[joint].name, joint < 0 ? "" : "'",
