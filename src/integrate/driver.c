@@ -167,8 +167,8 @@ static double first_step(struct ct_driver *r, double limit)
 // than that of the step.
 static bool has_moved(struct ct_driver *r)
 {
-    // A displacement up to this part of the tolerance is ignored. Chosen: evaluations against
-    // accuracy. Without it the errors of seven closed mechanisms and tops change by a few per cent.
+    // A displacement up to this part of the tolerance is ignored. Derived: with h |df/dy| < 1, as
+    // explicit steps are, the next step then errs by less than this part of what it may.
     const double negligible = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)
@@ -461,8 +461,7 @@ static enum ct_eval finish_step(struct ct_driver *r, struct ct_planned_step *s, 
 }
 
 // A run ends with the message that the mechanism locks when the time left to that configuration is
-// below this part of the duration. Chosen: steps spent near the lock against the time of the
-// message.
+// below this part of the duration. Derived: the message gives the time with six digits.
 static const double nearest_lock = 1e-6;
 
 static bool is_at_lock(const struct ct_driver *r)

@@ -21,7 +21,8 @@
 // order.
 static const double order_between = 3;
 // Round-off is measured after each of so many steps, too, since it may keep steps short without a
-// refusal. Chosen: at a cost of nu/1000 evaluations a step, nu the number of speeds.
+// refusal. Derived: a measurement takes nu + 8 evaluations for nu speeds, less than 1 % of those of
+// the steps for up to 50 speeds.
 enum { STEPS_BETWEEN = 1000 };
 
 // Sets the round-off error of damped speeds to zero, so that it is not subtracted: damping removes
@@ -32,7 +33,8 @@ enum { STEPS_BETWEEN = 1000 };
 static void exclude_damped_speeds(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
-    // 2 zeta. Chosen: with zeta = 0.01 half of the amplitude is left after 11 periods.
+    // 2 zeta. Derived: with zeta = 0.01 and steps of some 1/omega, errors fall by 1/e in a tenth of
+    // the steps between two measurements.
     const double damped = 0.02;
     ct_stepper_copy(r->point, r->y, p->ny);
     for (int i = p->nq; i < p->nq + p->nu; i++) {
@@ -59,7 +61,8 @@ static enum ct_eval perturb_positions(struct ct_driver *r, double part, int k, d
 // measurements counts, as a single one may be zero by chance.
 static void find_arithmetic_roundoff(struct ct_driver *r, double part)
 {
-    enum { MEASUREMENTS = 3 }; // Chosen: evaluations against a round-off missed by chance
+    // Default: evaluations against a round-off that is missed by chance. Test: far_from_origin
+    enum { MEASUREMENTS = 3 };
     const struct ct_problem *p = r->p;
     memset(r->arithmetic_roundoff, 0, (size_t)p->ny * sizeof *r->arithmetic_roundoff);
     for (int k = 0; k < MEASUREMENTS; k++) {

@@ -43,34 +43,18 @@ static bool give_projected_sample(struct ct_driver *r, double *y)
     return e == CT_EVAL_OK && give_sample(r, y);
 }
 
-// Relative change of the accelerations over the step.
-static double change_over_step(const struct ct_driver *r)
-{
-    const double *a = r->dy + r->p->nq, *a1 = r->dy1 + r->p->nq;
-    double size = 0, change = 0;
-    for (int i = 0; i < r->p->nu; i++) {
-        size = ct_larger(size, ct_larger(fabs(a[i]), fabs(a1[i])));
-        change = ct_larger(change, fabs(a1[i] - a[i]));
-    }
-    return size > 0 ? change / size : 0;
-}
-
-// Is there a mode that the step damps instead of resolving it, and that is much faster than the
-// motion itself? Not every step shows it, so the largest rate is remembered.
+// Is there a mode that the step damps instead of resolving it? Not every step shows it, so the
+// largest rate is remembered.
 static bool is_unresolved(struct ct_driver *r, const struct ct_planned_step *s)
 {
     // Part of the largest rate that is kept from step to step.
     // Default: comparisons of interpolants against a fast mode that is missed. Test: integrate.
     const double kept = 0.95;
-    // The least ratio of its rate times h to the relative change of the accelerations.
-    // Chosen: comparisons of interpolants against a fast mode that is not seen.
-    const double much_faster = 3;
     if (!r->sample_work || s->work != r->work)
         return false;
     const double seen = r->method->stiffness_estimate(r->p, s->h, r->y, r->y1, s->work) / s->h;
     r->fastest = ct_larger(seen, kept * r->fastest);
-    const double fast = r->fastest * s->h;
-    return fast > r->method->resolved_limit && fast > much_faster * change_over_step(r);
+    return r->fastest * s->h > r->method->resolved_limit;
 }
 
 bool ct_driver_has_sample(const struct ct_driver *r, const struct ct_planned_step *s)

@@ -21,10 +21,6 @@ static const double start_margin = 1.3, repeated_start_margin = 1.02;
 // Predicted times that differ by more than this factor belong to two configurations.
 // Default: predictions err, and configurations follow each other. Test: crossing.
 static const double other_configuration = 2;
-// A run whose end lies before the configuration, by less than this part of the length of the
-// approach, ends with a crossing, of which only the part up to the end is used.
-// Chosen: short steps near the configuration against a crossing.
-static const double most_overshoot = 0.5;
 
 double ct_driver_step_limit(const struct ct_driver *r)
 {
@@ -132,7 +128,7 @@ void ct_driver_plan_step(struct ct_driver *r, double stop, bool is_time,
     // the run may end shortly before the singular configuration; one that starts within its reach
     // must come to it
     if (has_crossing(r) && reach > 0
-        && (isinf(r->crossing_begin) || r->singular_in - most_overshoot * reach < rest)) {
+        && (isinf(r->crossing_begin) || r->singular_in - reach < rest)) {
         if (r->singular_in
             <= (r->failed_crossings ? repeated_start_margin : start_margin) * reach) {
             plan_crossing(r, stop, is_time, s);

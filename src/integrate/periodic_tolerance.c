@@ -3,11 +3,8 @@
 
 #include <math.h>
 
-// Steps between updates. They begin early, because errors of the first steps act on all periods.
-// Chosen: the work of updates against steps made with the tolerance before.
-enum { STEPS_BETWEEN = 16 };
-// Up to this number of periods the tolerance of steps is that of the run.
-// Chosen: evaluations against accuracy over long runs.
+// Up to this number of periods the tolerance of steps is that of the run. Default: evaluations
+// against accuracy over long runs. Test: periodic_tolerance
 static const double unscaled_periods = 20;
 
 // The smallest factor on the tolerance. Derived: that of a hundred times as many periods, as it
@@ -41,12 +38,9 @@ bool ct_periodic_tolerance_add(struct ct_periodic_tolerance *r, double t, double
     r->path_u += sqrt(du);
     r->range_q = q > r->range_q ? q : r->range_q;
     r->range_u = u > r->range_u ? u : r->range_u;
-    if (++r->steps < STEPS_BETWEEN)
-        return false;
     const double before = r->factor;
     const double periods = periods_so_far(r) * (r->t1 - r->t0) / (t - r->t0);
     const double ratio = fmin(1, unscaled_periods / periods);
-    r->steps = 0;
     r->factor = fmax(ratio * ratio, least_factor);
     return r->factor != before;
 }

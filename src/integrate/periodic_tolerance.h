@@ -19,7 +19,6 @@ struct ct_periodic_tolerance {
         // of coordinates: path length, square of the largest distance from the start
         range_q;
     double path_u, range_u; // of speeds: sum of their changes, square of the largest
-    int steps;              // since the last update
     double factor;          // factor on the tolerance of a step
 };
 

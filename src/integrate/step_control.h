@@ -35,14 +35,13 @@ static inline double ct_step_control_fit(double rest, double wanted)
         return rest;
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
-/// Is h, which does not end on a stop, too small against the round-off of t? run: the duration [s].
+/// Is h, which does not end on a stop, too small against the round-off of times up to t or up to the
+/// duration `run` [s]?
 static inline bool ct_step_control_is_below_roundoff(double h, double t, double run)
 {
     // Derived: the stage times of DOPRI5, at least h/16 apart, then differ by a round-off of t.
     const double least_step = 16 * DBL_EPSILON;
-    // Chosen: near t = 0, shortest steps against the message that steps have become too short.
-    const double least_scale = 1e-6, scale = least_scale * run;
-    return h <= least_step * (fabs(t) > scale ? fabs(t) : scale);
+    return h <= least_step * (fabs(t) > run ? fabs(t) : run);
 }
 /// A step of size h was accepted, its error 1 at the tolerance.
 void ct_step_control_accept(struct ct_step_control *c, const struct ct_method *m, double h,

@@ -612,6 +612,98 @@ static void rates_that_change_by_more_than_twice_do_not_last(void **unused)
     }
 }
 
+// A motion whose acceleration grows at the rate `growth`, with a vibration at rest.
+static enum ct_eval forced(void *user, double t, const double *y, double *dy)
+{
+    (void)user;
+    dy[0] = y[1];
+    dy[1] = exp(growth * (t - 3)) - 1e4 * y[0];
+    return CT_EVAL_OK;
+}
+
+// After three tests in steps of 1/100, the rate of the vibration.
+static struct ct_stiffness *watch_forced(struct ct_arena *a, const struct ct_problem *p,
+                                         const struct ct_integrate_stats *stats, double rate,
+                                         double speed)
+{
+    const double y[] = {speed > 0 ? 1 : 0, speed};
+    struct ct_stiffness *s = ct_stiffness_create(a, p, stats, 1e-6, 1, 2);
+    growth = rate;
+    for (int k = 1; k <= 300; k++)
+        ct_stiffness_detect(s, 0.01 * k, y, 1e9);
+    return s;
+}
+
+// Vibrations four times as fast as the motion must be resolved by any method; thirty times as fast,
+// in steps near the limit of stability, are stiff.
+static void vibrations_far_above_the_motion_are_stiff(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {.evaluations = 1};
+    const struct ct_problem p = {.ny = 2, .nq = 1, .nu = 1, .rhs = forced};
+    assert_int_equal(watch_forced(a, &p, &stats, 25, 0)->in_a_row, 0);
+    assert_int_equal(watch_forced(a, &p, &stats, 3, 0)->in_a_row, 3);
+    ct_arena_destroy(a);
+}
+
+// Where no output depends on speeds, vibrations some thousand times as fast as positions change
+// need not be resolved; those three hundred times as fast do.
+static void vibrations_without_outputs_are_far_above_the_motion(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {.evaluations = 1};
+    const bool requested[] = {false};
+    const struct ct_problem p
+        = {.ny = 2, .nq = 1, .nu = 1, .rhs = forced, .requested_speeds = requested};
+    assert_false(watch_forced(a, &p, &stats, 1, 0.3)->is_far);
+    assert_true(watch_forced(a, &p, &stats, 1, 0.03)->is_far);
+    ct_arena_destroy(a);
+}
+
+// A trial is made where three hundred steps to come would not pay it and three thousand would, and
+// again when the steps since then took ten times its work.
+static void trials_take_a_small_part_of_the_work(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    const struct ct_integrate_stats stats = {.evaluations = 1};
+    const struct ct_problem p = {.ny = 2, .nq = 1, .nu = 1, .rhs = forced};
+    for (int k = 0; k < 2; k++) {
+        struct ct_stiffness *s = watch_forced(a, &p, &stats, 3, 0);
+        const double y[] = {0, 0}, end = 4 + 0.01 * (k ? 3000 : 300);
+        bool is_due = false;
+        for (int i = 301; i <= 400; i++)
+            is_due = ct_stiffness_detect(s, 0.01 * i, y, end);
+        assert_true(is_due == (k == 1));
+        s->evaluations = 6;
+        ct_stiffness_postpone(s, 4, 6 * 200, &(struct ct_cost){.evaluation = 1});
+        assert_in_range(s->next_trial - s->count, 1000, 4000);
+    }
+    ct_arena_destroy(a);
+}
+
+// Steps of a trial that grow eightfold up to 1e5 times the first one, every fourth with new
+// derivatives: it measures the time per work of the long ones, in thirty steps at most.
+static void trials_measure_steps_that_have_grown(void **unused)
+{
+    (void)unused;
+    struct ct_integrate_stats stats = {0};
+    struct ct_trial r
+        = {.cost = {.residual = 1, .tangent = 6}, .stats = &stats, .end = INFINITY};
+    double t = 0, h = 1;
+    int n = 0;
+    do {
+        t += h;
+        h = fmin(8 * h, 1e5);
+        stats.evaluations += 12;
+        stats.jacobians += n++ % 4 == 0;
+    } while (ct_trial_step(&r, t));
+    assert_in_range(n, 10, 30);
+    check_close("time per work", ct_trial_time_per_work(&r), 1e5 / 13.5, 0.02 * 1e5 / 13.5);
+}
+
 // y'' = -2 d y' - rate^2 y for two masses, {rate, d} of each.
 static double dying[2][2];
 
@@ -851,6 +943,10 @@ int main(void)
         cmocka_unit_test(stable_steps_make_nothing_larger),
         cmocka_unit_test(the_rate_from_rest_is_that_of_the_start),
         cmocka_unit_test(rates_that_change_by_more_than_twice_do_not_last),
+        cmocka_unit_test(vibrations_far_above_the_motion_are_stiff),
+        cmocka_unit_test(vibrations_without_outputs_are_far_above_the_motion),
+        cmocka_unit_test(trials_take_a_small_part_of_the_work),
+        cmocka_unit_test(trials_measure_steps_that_have_grown),
         cmocka_unit_test(the_rate_at_which_the_fastest_motion_dies_is_found),
         cmocka_unit_test(several_fastest_motions_are_not_taken_to_die),
         cmocka_unit_test(what_dies_at_the_pace_of_the_motion_is_not_dead),

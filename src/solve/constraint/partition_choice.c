@@ -22,11 +22,12 @@ static int order_rows(struct ct_partition *s)
 // inertia and are not compared. Speeds preferred as independent have a small weight.
 static void find_column_weights(struct ct_partition *s, double *w)
 {
-    // inertia_ratio: ratio of the largest to the smallest inertia above which weights are used.
-    // The round-off of the largest is then 1e6 eps = 2e-10 of the smallest. preferred_weight:
-    // weight of preferred speeds; entries of B may become 1/preferred_weight = 33 times larger.
-    // Chosen: preferences against the conditioning of J_d.
-    const double inertia_ratio = 1e6, preferred_weight = 0.03;
+    // Weights are used where the largest inertia is more than this many times the smallest. Derived:
+    // the square of ct_kappa_largest; round-off of the heavy equations is 1e6 eps = 2e-10 of the
+    // light ones, which then have ten digits.
+    const double inertia_ratio = 1e6;
+    // Derived: entries of B may become 33 times larger, the root of ct_kappa_largest.
+    const double preferred_weight = 0.03;
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
@@ -228,8 +229,8 @@ static size_t first_section_speed(const struct ct_partition *s)
 }
 
 // A pivot of M or B' M B of at most this fraction of its terms is round-off: the motion has no
-// inertia.
-// Chosen: round-off of a sum of several terms against small inertias that are intended.
+// inertia. Default: round-off of a sum of several terms against small inertias that are intended.
+// Test: massless_beams
 static const double roundoff_pivot = 16 * DBL_EPSILON;
 
 // The elastic coordinate that moves the same masses as speed k, if there is one; else k. A
@@ -243,8 +244,8 @@ static size_t equivalent_elastic_speed(const struct ct_partition *s, size_t k)
     ct_evaluator_dynamics(s->m);
     for (size_t i = 0; i < n && !s->m->e->u[k].beam; i++) {
         const double both = M[i + n * k] * M[i + n * k], each = M[i + n * i] * M[k + n * k];
-        // Chosen: motions that agree to 1e-6, the root, count as one; only a message depends on it
-        if (s->m->e->u[i].beam > 0 && each > 0 && both > (1 - 1e-12) * each)
+        // the cosine of both motions is one to half of its digits
+        if (s->m->e->u[i].beam > 0 && each > 0 && both > (1 - CT_HALF_DIGITS) * each)
             return i;
     }
     return k;
@@ -556,8 +557,8 @@ static bool choose_at_present_state(struct ct_partition *s)
 // present one: this avoids a second choice, which costs more than many steps.
 static bool choose_with_preview(struct ct_partition *s)
 {
-    // Chosen: conditioning now against a choice that lasts.
-    const double nearly_as_good = 0.5;
+    // a factor of two in the conditioning does not matter, as in ct_small_pivot
+    const double nearly_as_good = ct_small_pivot;
     if (!choose_at_present_state(s) || ct_partition_is_large(s) || s->rank == (int)s->m->nu
         || s->m->e->solution)
         return true;

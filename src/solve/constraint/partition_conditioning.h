@@ -58,14 +58,14 @@ static const double ct_same_strength = 1.25;
 // A further condition for omitting it: the correction of coordinates per residual, in a
 // projection, is at most this multiple of that at the last check. Near a singular J_d kappa can
 // rise from 1 to 50 within the eight steps between two checks, while no pivot of the solver
-// changes as much.
-// Chosen: as above.
+// changes as much. Derived: the root of ct_kappa_growth, so that a check comes before kappa has
+// grown by that factor.
 static const double ct_correction_growth = 3;
 // Residual of the equations relative to their largest terms above which the solution is refined.
 // Derived: 450 units of round-off, as ct_position_tolerance.
 static const double ct_refinement_residual = 1e-13;
 // The same, and backward error of a sparse solution, above which dense matrices are used.
-// Chosen: accuracy of accelerations against the time of dense matrices.
+// Derived: accelerations then err by less than a tenth of the tolerance 1e-10.
 static const double ct_largest_residual = 1e-11;
 
 static inline bool ct_is_within(double ratio, double factor)

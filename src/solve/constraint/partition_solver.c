@@ -5,13 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-// After this number of consecutive failed checks a new order of pivots is found.
-// Chosen: single failures against evaluations by dense matrices meanwhile.
-enum { MOST_FAILED_CHECKS = 3 };
-// If the residual was at most this fraction of the limit, the next UNCHECKED_PROJECTIONS are
-// not checked while the strength of the pivots is unchanged.
-// Chosen: the time of checks against pivots that become small.
-static const double small_residual_ratio = 0.1;
+// If no refinement was needed, the next projections, up to this number, are not checked while the
+// strength of the pivots is unchanged. Derived: a check takes the time of some two evaluations, a
+// step at least six, so that checks take at most a twentieth of the time.
 enum { UNCHECKED_PROJECTIONS = 7 };
 
 static struct ct_partition_sets partition(const struct ct_partition *s)
@@ -196,15 +192,13 @@ static void check_solver(struct ct_partition *s)
     s->correction_checked = s->correction > 0 ? s->correction : s->correction_checked;
     ct_solver_check(f, s->m);
     s->needs_refinement = f->remainder > ct_refinement_residual;
-    s->nunchecked = f->remainder <= small_residual_ratio * ct_refinement_residual
-                      ? UNCHECKED_PROJECTIONS
-                      : 0;
+    s->nunchecked = s->needs_refinement ? 0 : UNCHECKED_PROJECTIONS;
     s->checked_at = s->strength.now;
     if (s->strength.now > ct_solver_least_strength
         && f->refined_remainder <= ct_largest_residual) {
         s->kappa = isnan(f->kappa) ? s->kappa : f->kappa;
         s->nweak = 0;
-    } else if (++s->nweak >= MOST_FAILED_CHECKS * checks_before_retry(s)) {
+    } else if (++s->nweak >= checks_before_retry(s)) {
         make_solver(s);
         forget_strength(s);
     }

@@ -6,8 +6,8 @@
 #include <float.h>
 #include <string.h>
 
-// Time events are sought for so many calls ahead, as a search evaluates thousands of times.
-// Chosen: time of a search against a finer search of a shorter interval.
+// Time events are sought for so many calls ahead. Derived: a search evaluates thousands of times,
+// that is a few times a call.
 static const double steps_ahead = 1024;
 
 struct ct_advance {

@@ -197,7 +197,7 @@ struct cancellation {
 // changes cancel: a sum with weights 1, 1 and -2 has root 6 times one error.
 static void find_cancellation(struct ct_run *r, double t, struct cancellation *g)
 {
-    enum { SAMPLES = 8 }; // Chosen: samples of a mean; its accuracy against their time
+    enum { SAMPLES = 8 }; // Derived: the root of a mean of eight squares errs by a quarter
     const size_t nu = r->m->nu, n = 2 * nu + r->m->nq, pivots = nu + r->m->nq;
     double *here = CT_NEWN(r->arena, double, n), *ahead = CT_NEWN(r->arena, double, n *SAMPLES),
            *behind = CT_NEWN(r->arena, double, n);
@@ -238,8 +238,6 @@ static double decay_time(struct ct_run *r, double t, size_t k)
 static void find_phase_error(struct ct_run *r, double t, const double *at, double wanted,
                              struct ct_roundoff_limit *b)
 {
-    const double largest_cancellation
-        = 100 * DBL_EPSILON; // Chosen: two digits, which any long sum may lose
     const size_t nu = r->m->nu;
     struct cancellation g = {.part = CT_NEWN(r->arena, double, nu + 1)};
     double *u = CT_NEWN(r->arena, double, nu + 1),
@@ -249,7 +247,7 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
     memcpy(r->scratch, r->dy + r->m->nq, nu * sizeof *r->scratch);
     find_cancellation(r, t, &g);
     const size_t k = g.worst;
-    if (!(g.part[k] > largest_cancellation && g.part[k] < 1) || g.noise[k] == 0)
+    if (!(g.part[k] > 0 && g.part[k] < 1) || g.noise[k] == 0)
         return;
     const double error = g.part[k] * fabs(r->scratch[k]) * decay_time(r, t, k) / 2;
     for (size_t i = 0; i < nu; i++)
@@ -261,8 +259,7 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
     b->sum = b->output < 0 ? NAN : most;
 }
 
-struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double held,
-                                                    double wanted)
+struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double wanted)
 {
     const double time = r->report->stats.last_time, t = ct_run_time_before_event(r, time);
     const size_t nu = r->m->nu, n = r->e->nresult;
@@ -271,9 +268,9 @@ struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double hel
     double *at = CT_NEWN(r->arena, double, n + 1),
            *output_change = CT_NEWN(r->arena, double, n + 1);
     struct ct_roundoff_limit b
-        = {.output = -1, .one = held / CT_FEWEST_ROUNDOFF_ERRORS, .sum = NAN};
+        = {.output = -1, .one = wanted / CT_FEWEST_ROUNDOFF_ERRORS, .sum = NAN};
     if (r->output_error)
-        b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, held,
+        b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, wanted,
                                                   small_output(r), &b.one);
     if (!find_roundoff(r, time, &e) || ct_run_results(r, t, r->y, at) != CT_EVAL_OK
         || !evaluate_change(r, t, NULL, e.speed, at, output_change))

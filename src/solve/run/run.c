@@ -184,14 +184,13 @@ static void note_given(struct ct_run *r, const struct ct_initial_state *start)
             r->is_given[r->e->coordinate[i].u] = start->is_given[i];
 }
 
-// Loops of mechanisms whose largest length [m] is less are closed more accurately, in proportion.
-// Chosen: accuracy of small mechanisms against iterations on round-off.  (6.3c)
-static const double small_length = 0.01;
-
-// Unit of the residuals of rows: 1, or the largest length of a body over small_length if it is
-// less.
+// Unit of the residuals of rows: 1, or the largest length of a body over small_length if that is
+// less. So loops of small mechanisms are closed more accurately, in proportion to their lengths.
+// (6.3c)
 static double find_scale(const struct ct_model *model)
 {
+    // Derived: the tolerance of projections is then at most ct_largest_residual of the lengths.  [m]
+    const double small_length = ct_position_tolerance / ct_largest_residual;
     double largest = 0;
     for (size_t i = 0; i < model->nframe; i++)
         for (int k = 0; k < 3; k++)
@@ -604,14 +603,6 @@ static void find_requested(struct ct_run *r, struct ct_problem *p)
     }
 }
 
-// The tightest tolerance for which cancellation of inertias is judged.
-// Chosen: below it round-off of double precision is near.
-static const double tightest_tolerance = 1e-10;
-
-// A round-off error of states counts if it changes an output by this part of the wanted tolerance.
-// Chosen: truncation errors have the rest.
-static const double roundoff_tolerance_part = 0.1;
-
 static double input_limited_step(void *user, double t, double h)
 {
     const struct ct_run *r = user;
@@ -726,7 +717,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     ct_rank_monitor_start(r->singular);
     r->singular->output_rtol = o->step == 0 ? o->output_rtol : 0;
     r->s->least_cancellation
-        = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, tightest_tolerance) : 0;
+        = o->step == 0 ? DBL_EPSILON / fmax(o->output_rtol, ct_position_tolerance) : 0;
     r->s->smallest_cancellation = INFINITY;
     if (r->output_error)
         ct_output_error_start(r->output_error, o->method);
@@ -786,8 +777,7 @@ bool ct_run_simulate(struct ct_run *r, const struct ct_run_options *o,
     report->singular = r->singular;
     report->y = r->y;
     if (ok) {
-        const struct ct_roundoff_limit b = ct_run_find_roundoff_limit(
-            r, roundoff_tolerance_part * o->output_rtol, o->output_rtol);
+        const struct ct_roundoff_limit b = ct_run_find_roundoff_limit(r, o->output_rtol);
         report->roundoff_limited = b.output;
         report->roundoff = b.one;
         report->roundoff_sum = b.sum;

@@ -40,8 +40,9 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// Time offset to a state shortly after or before, relative to the duration.
-// Chosen: far enough for a contradiction of drivers to be more than round-off.
+// Times up to this part of the duration apart are close to each other, and speeds below this part of
+// the largest are rest. Derived: the motion in that time, about a thousandth of that of the run, is
+// far above the round-off of constraints and far below the lengths of the mechanism.
 static const double small_part = 1e-3;
 
 // If steps ended as the constraints could not be closed: name the row that is open most a little
@@ -137,11 +138,9 @@ const char *ct_run_singular_joints(const struct ct_run *r)
 // possible motions, and none of them was taken.
 static void name_singular_start(struct ct_run *r)
 {
-    // Distance from the start [rad or m]; a run that ends farther on has another cause.
-    // Chosen: as ct_singular_start_test.
-    const double near = 0.1;
+    // a run that has moved by more than a unit, 1 rad or 1 m, has another cause
     const double way = r->stats.last_time * ct_vector_max_norm(r->y + r->m->nq, r->m->nu);
-    if (r->singular_joints && way < near)
+    if (r->singular_joints && way < 1)
         ct_note(r->ctx, (struct ct_mark){0},
                 "the run began in a singular configuration, where constraints of %s are "
                 "dependent and several motions are possible: start near it, with a joint off "
@@ -204,8 +203,6 @@ static const char *const let_pass
 // Have drivers come to rest, compared with the largest speed of the run?
 static bool is_driven_to_rest(const struct ct_run *r)
 {
-    const double rest_speed_ratio
-        = 0.01; // Chosen: part of the largest speed that counts as rest
     bool is_driven = false;
     for (size_t i = 0; i < r->model->njoint; i++) {
         const struct ct_instance *joint = &r->model->joint[i];
@@ -213,7 +210,7 @@ static bool is_driven_to_rest(const struct ct_run *r)
     }
     return is_driven
         && ct_vector_largest(r->y + r->m->nq, r->m->nu)
-               < rest_speed_ratio * r->singular->largest_speed;
+               < small_part * r->singular->largest_speed;
 }
 
 // Advice for a run that ended near a singular configuration. If round-off ended it, that is a
@@ -225,8 +222,9 @@ static const char *advise_there(struct ct_run *r)
                "before or after it";
     if (is_driven_to_rest(r))
         return let_pass;
-    // Chosen: a tolerance above `most` is no advice
-    const double part = r->singular->closest, enough = DBL_EPSILON / (part * part), most = 1e-2;
+    // Definition: the largest tolerance that 'accuracy' compares, docs/cli.md; no advice above it
+    const double most = 1e-2;
+    const double part = r->singular->closest, enough = DBL_EPSILON / (part * part);
     if (enough > r->o->output_rtol && enough < most)
         return ct_arena_printf(r->arena,
                                "; round-off has an effect there of %.0e: with a tolerance of "

@@ -13,6 +13,7 @@
 #define CT_SOLVE_RUN_RUN_INTERNAL_H
 
 #include "integrate/stiffness.h"
+#include "numeric/roundoff.h"
 #include "solve/evaluator/input_sampling.h"
 #include "solve/output_error/output_error.h"
 #include "solve/evaluator/switch_state.h"
@@ -31,8 +32,9 @@ struct ct_run {
     size_t ny;
     double *assembled; // state at the start  (ny)
     double *y, *dy, *stage, *scratch, *value, *next;
-    double *largest; // of each result, over the samples
-    double *event;   // times
+    struct ct_tangent_basis *basis[2]; // of kinematic analysis, at both ends of a step
+    double *largest;                   // of each result, over the samples
+    double *event;                     // times
     size_t nevent;
     int *root_of; // switches of the state, in order (nroot)
     int nroot;
@@ -170,10 +172,9 @@ struct ct_roundoff_limit {
     double one, sum;
 };
 /// At the end of a run: the result with the fewest digits. It is reported if, relative to its
-/// largest value at samples, one round-off of states is more than half of `held`, or the sum over
-/// all steps is more than `wanted`. `value` of the run may change.
-struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double held,
-                                                    double wanted);
+/// largest value at samples, one round-off of states is more than half of `wanted`, or the sum of
+/// round-off over all steps is more. `value` of the run may change.
+struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double wanted);
 /// After the error of a run that ended early: notes on the cause.
 void ct_run_explain_end(struct ct_run *r);
 /// Integrate from start to end, and change the method when that pays.
