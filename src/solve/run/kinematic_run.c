@@ -3,6 +3,8 @@
 // run.h.
 #include "solve/run/run_internal.h"
 
+#include "integrate/crossing.h"
+
 #include <string.h>
 
 static bool check_driven(struct ct_run *r)
@@ -30,14 +32,34 @@ static bool check_driven(struct ct_run *r)
                     (int)r->m->nu - r->s->rank, u->q >= 0 ? r->e->q[u->q].name : u->name);
 }
 
+// The tangent basis at y.
+static void find_basis(struct ct_run *r, double t, const double *y, struct ct_tangent_basis *v)
+{
+    ct_evaluator_set(r->m, ct_run_time_before_event(r, t), y);
+    ct_evaluator_constraint(r->m);
+    ct_partition_pivot(r->s);
+    ct_tangent_basis_find(r->s, v);
+}
+
+// Has a step of this length [rad or m] led to another way of assembly? Between two of them the test
+// function of singular configurations changes its sign. Steps that are shorter than a mechanism
+// needs to pass a singular configuration, and not to lead through it, cross it.
+static bool has_jumped(struct ct_run *r, double t1, const double *y1, double length)
+{
+    find_basis(r, t1, y1, r->basis[1]);
+    return ct_singularity_test_sign_changed(r->s, r->basis[0], r->basis[1])
+        && length > sqrt(ct_crossing_mismatch_limit);
+}
+
 // One step of kinematic analysis, from y at t to t1: extrapolation to second order, then projection
-// onto the constraints. False if the step is too long or the correction too large.
+// onto the constraints. False if the step is too long, the correction too large, or the end belongs
+// to another way of assembly.
 static bool advance_step(struct ct_run *r, double t, double t1, const double *y, double *out)
 {
-    // Largest change of a coordinate [rad or m].
-    // Chosen: steps against a jump to another way of assembly.
+    // Largest change of a coordinate [rad or m]. Default: steps against a jump to another way of
+    // assembly. Test: kinematic_steps
     const double longest = 0.3;
-    // Part of the step that the projection may correct. Chosen: as above.
+    // Part of the step that the projection may correct. Default: as above. Test: rate_jumps
     const double part = 0.25;
     const size_t nq = r->m->nq, nu = r->m->nu;
     const double h = t1 - t;
@@ -60,8 +82,8 @@ static bool advance_step(struct ct_run *r, double t, double t1, const double *y,
         return false;
     for (size_t i = 0; i < nq; i++)
         worst = fmax(worst, fabs(out[i] - r->stage[i]));
-    // Chosen: corrections of round-off, where nothing moves
-    return worst <= part * most + 1e-9;
+    // corrections of round-off where nothing moves
+    return worst <= part * most + CT_HALF_DIGITS && !has_jumped(r, t1, out, most);
 }
 
 static bool advance_to(struct ct_run *r, double t, double t1, double *y)
@@ -69,6 +91,7 @@ static bool advance_to(struct ct_run *r, double t, double t1, double *y)
     const double least = 1e-9; // Limit: part of the interval; shorter steps are an error
     double h = t1 - t, *next = r->next;
     ct_run_store_angle_rate(r, t, y);
+    find_basis(r, t, y, r->basis[0]);
     while (t < t1) {
         h = fmin(h, ct_run_longest_step(r));
         const double end = h >= t1 - t ? t1 : t + h;
@@ -85,6 +108,9 @@ static bool advance_to(struct ct_run *r, double t, double t1, double *y)
                 "the motions or the lengths",
                 t);
         }
+        struct ct_tangent_basis *before = r->basis[0];
+        r->basis[0] = r->basis[1];
+        r->basis[1] = before;
         memcpy(y, next, r->ny * sizeof *y);
         ct_evaluator_set(r->m, ct_run_time_before_event(r, end), y);
         ct_memory_update(r->m);
@@ -163,6 +189,10 @@ static bool run_kinematic(struct ct_run *r, const struct ct_run_options *o,
     r->o = o;
     r->report = report;
     r->next = CT_NEWN(r->arena, double, r->ny);
+    for (size_t i = 0; i < COUNT(r->basis); i++) {
+        r->basis[i] = ct_tangent_basis_create(r->arena);
+        ct_tangent_basis_reserve(r->s, r->basis[i]);
+    }
     r->nevent = ct_time_events(r->arena, r->m, 0, 0, o->duration, &r->event);
     r->pending = ct_run_next_event(r, 0);
     if (!ct_run_tables_reach(r, 0))
