@@ -160,8 +160,8 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
     name_forces(a, b, f, p, out);
 }
 
-// Limits of what is collected and printed: coordinates (two elements in space); operators and
-// operands of all parts.
+// Limit: of the time to collect, and of what is printed: coordinates (two elements in space);
+// operators and operands of all parts.
 enum { MOST_COORDINATES = 12, MOST_SPEEDS = 1000, LONGEST = 40000 };
 
 // Sums over integration points of varying sections are too long to print.

@@ -55,7 +55,8 @@ static size_t words_width(const char *s)
 
 // ---- equations -----------------------------------------------------------------------------
 
-// Indents of first and continued lines (\quad each), and the margin for errors of the estimate.
+// Layout: indents of first and continued lines (\quad each), and the margin for errors of the
+// estimate.
 enum { LINE = CT_LATEX_LINE, QUAD = 10, SLACK = 12, EQUALS = 14 };
 
 // Before a factor, or a relation.
@@ -91,7 +92,7 @@ struct line {
     size_t *nline;       // of the environment
 };
 
-// Largest number of lines of an environment, which TeX keeps in memory. It ends between
+// Layout: largest number of lines of an environment, which TeX keeps in memory. It ends between
 // equations; within an equation it may have more.
 enum { MOST_LINES = 60, MOST_LINES_WITHIN = 200 };
 

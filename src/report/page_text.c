@@ -160,7 +160,7 @@ static void put_equation(FILE *out, const struct ct_page_equation *e, size_t lab
         fputs("\n", out);
 }
 
-// Left sides up to this width are padded to one width, so that equal signs are aligned.
+// Layout: left sides up to this width are padded to one width, so that equal signs are aligned.
 enum { ALIGNED = 20 };
 
 static void put_equations(FILE *out, const struct ct_page_block *b)
