@@ -569,8 +569,8 @@ void ct_mathml_inline(FILE *out, const char *latex)
 
 // ---- terms ---------------------------------------------------------------------------------
 
-// Layout: widths in LaTeX at 10 pt [pt]: 10 are 1 em. A phone is 390 px wide, 22 em within margins of 1
-// em. A term wider than an indented line there may be broken; a piece may end before a factor
+// Layout: widths in LaTeX at 10 pt [pt]: 10 are 1 em. A phone is 390 px wide, 22 em within margins
+// of 1 em. A term wider than an indented line there may be broken; a piece may end before a factor
 // when it has half that width.
 enum { PHONE_LINE = 180, LONG_PIECE = PHONE_LINE / 2 };
 
