@@ -92,6 +92,13 @@ static struct ct_repetition best_repeat(const struct ct_repetitions *p, uint32_t
             c = p->again[c];
             continue;
         }
+        // the last of the fewest instructions that must be the same for a gain
+        const uint32_t rest = (CT_LEAST_ROWS - 1) * period - 1,
+                       end = rest > saved ? rest : saved;
+        if (c + end >= p->n || p->sign[i + end] != p->sign[c + end]) {
+            c = p->again[c];
+            continue;
+        }
         while (c + same < p->n && p->sign[i + same] == p->sign[c + same])
             same++;
         const uint32_t count = same / period + 1;
