@@ -10,12 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { alignment = 16 }; // Definition: of all allocations
+
 struct chunk {
     struct chunk *next;
     size_t size, used;  // bytes of payload
     size_t zeroed_from; // offset in the payload from which bytes are unused and still zero
     size_t ready;       // of pages: offset up to which they are populated
     bool is_pages;      // from pages.h; else from malloc
+    bool is_array;      // one array that grows; of pages
     _Alignas(16) unsigned char data[];
 };
 
@@ -39,6 +42,11 @@ static const size_t first_chunk = 1 << 12, largest_chunk = 1 << 22;
 // Limit: chunks of at least this size are mapped pages, which the system zeroes; smaller ones come
 // from malloc and are zeroed when memory is allocated.
 static const size_t least_page_chunk = 1 << 18;
+
+static size_t round_up(size_t n, size_t to)
+{
+    return (n + to - 1) & ~(to - 1);
+}
 
 // size: with its header.
 static struct chunk *chunk_create(size_t size)
@@ -183,7 +191,7 @@ static size_t padding(const struct chunk *c, size_t size)
 
 static bool has_room(const struct chunk *c, size_t size)
 {
-    return c && c->size - c->used >= size + padding(c, size);
+    return c && !c->is_array && c->size - c->used >= size + padding(c, size);
 }
 
 // Make a chunk with room for this size the current one: a spare chunk, else a new one of twice the
@@ -216,7 +224,7 @@ void *ct_arena_alloc(struct ct_arena *a, size_t size)
 {
     if (size > SIZE_MAX / 2)
         ct_guard_raise();
-    size = (size + 15) & ~(size_t)15;
+    size = round_up(size, alignment);
     struct chunk *c = a->head;
     if (!has_room(c, size))
         c = next_chunk(a, size);
@@ -305,25 +313,86 @@ char *ct_arena_printf(struct ct_arena *a, const char *fmt, ...)
     return p;
 }
 
-// Capacities double; arrays of half a megabyte or more grow eightfold, into a block of their own
-// whose pages are populated when touched. The array left behind wastes memory; capacity never used
-// does not.
-static size_t next_cap(size_t cap, size_t size)
+// ---- arrays that grow ---------------------------------------------------------------------------
+
+// An array with a block of its own, behind the current chunk, which keeps its free room.
+static void *array_create(struct ct_arena *a, size_t size)
+{
+    struct chunk **spare = &a->spare;
+    while (*spare && !((*spare)->is_array && (*spare)->size >= size))
+        spare = &(*spare)->next;
+    struct chunk *c = *spare;
+    if (c)
+        *spare = c->next;
+    else
+        c = chunk_create(sizeof *c + size);
+    if (!c)
+        ct_guard_raise();
+    c->is_array = true;
+    struct chunk **second = a->head ? &a->head->next : &a->head;
+    c->next = *second;
+    *second = c;
+    a->total += size;
+    return chunk_take(c, size);
+}
+
+// Free the block of the array of this size, if it has one.
+static void array_destroy(struct ct_arena *a, const void *array, size_t size)
+{
+    for (struct chunk **at = &a->head; *at; at = &(*at)->next)
+        if ((*at)->is_array && (*at)->data == array && (*at)->used == size) {
+            struct chunk *c = *at;
+            *at = c->next;
+            a->total -= size;
+            chunk_destroy(c);
+            return;
+        }
+}
+
+// Tests must notice uses of an array that has moved: with assertions it is overwritten.
+static void overwrite(struct ct_arena *a, void *array, size_t size)
+{
+#ifndef NDEBUG
+    for (const struct chunk *c = a->head; c; c = c->next)
+        if ((unsigned char *)array >= c->data && (unsigned char *)array < c->data + c->used)
+            memset(array, 0xa5, size);
+#endif
+    (void)a;
+    (void)array;
+    (void)size;
+}
+
+void *ct_arena_resize(struct ct_arena *a, void *array, size_t n, size_t cap, size_t more,
+                      size_t size)
+{
+    if (more > SIZE_MAX / 2 / size)
+        ct_guard_raise();
+    const size_t old = round_up(cap * size, alignment), want = round_up(more * size, alignment);
+    void *p = want < least_page_chunk ? ct_arena_alloc(a, want) : array_create(a, want);
+    if (n)
+        memcpy(p, array, n * size);
+    overwrite(a, array, cap * size);
+    if (old >= least_page_chunk)
+        array_destroy(a, array, old);
+    return p;
+}
+
+// Capacities double; arrays of half a megabyte or more grow eightfold, as pages of a large block are
+// populated when they are touched.
+static size_t next_cap(size_t n, size_t size)
 {
     const size_t least = 8; // Limit: of memory
-    return !cap ? least : cap < largest_chunk / 8 / size ? 2 * cap : 8 * cap;
+    return 2 * n < least ? least : n < largest_chunk / 8 / size ? 2 * n : 8 * n;
 }
 
 void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size)
 {
     if (n < *cap)
         return array;
-    const size_t more = next_cap(*cap, size);
-    void *p = ct_arena_calloc(a, more, size);
-    if (n)
-        memcpy(p, array, n * size);
+    const size_t more = next_cap(n, size);
+    array = ct_arena_resize(a, array, n, *cap, more, size);
     *cap = more;
-    return p;
+    return array;
 }
 
 size_t ct_arena_used(const struct ct_arena *a)

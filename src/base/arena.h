@@ -8,8 +8,8 @@
 //                                      ^ next free byte
 //
 // What always holds: memory is zeroed, aligned to 16 bytes, and does not move until the arena is
-// released. Allocation never returns NULL: when the system has no memory left it jumps to the guard
-// of the public entry point (guard.h), which reports E001.
+// released, except for arrays that grow. Allocation never returns NULL: when the system has no
+// memory left it jumps to the guard of the public entry point (guard.h), which reports E001.
 #ifndef CT_BASE_ARENA_H
 #define CT_BASE_ARENA_H
 
@@ -60,8 +60,14 @@ size_t ct_arena_used(const struct ct_arena *a);
 #define CT_NEW(a, T) ((T *)ct_arena_alloc((a), sizeof(T)))
 #define CT_NEWN(a, T, n) ((T *)ct_arena_calloc((a), (size_t)(n), sizeof(T)))
 
-/// Make room for one more element in a growable array. Returns the array, which moves if it had to
-/// grow. n: elements in use; *cap: capacity. Use it through CT_PUSH.
+/// An array of capacity `cap`, of which n elements are in use, gets capacity `more`, zeroed from n on.
+/// It moves and must not be used at its old place, where a large one is freed; cap = 0: the array is
+/// shared with others, which keep it.
+void *ct_arena_resize(struct ct_arena *a, void *array, size_t n, size_t cap, size_t more,
+                      size_t size);
+
+/// Make room for one more element in a growable array. Returns the array, which moves as above if it
+/// had to grow. n: elements in use; *cap: capacity. Use it through CT_PUSH.
 void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size);
 
 /// Append v to array (an lvalue pointer) with counters n and cap (lvalues, size_t).

@@ -12,13 +12,11 @@ static void reserve_walk(struct ct_exs *x)
 {
     if (x->walk_cap >= x->nnode)
         return;
-    const size_t cap = x->node_cap;
-    uint32_t *stamp = CT_NEWN(x->arena, uint32_t, cap);
-    if (x->walk_cap)
-        memcpy(stamp, x->stamp, x->walk_cap * sizeof *stamp);
-    x->stamp = stamp;
-    x->memo = CT_NEWN(x->arena, ct_ex, cap);
-    x->stack = CT_NEWN(x->arena, uint32_t, 2 * cap);
+    struct ct_arena *a = x->arena;
+    const size_t old = x->walk_cap, cap = x->node_cap ? x->node_cap : x->nnode;
+    x->stamp = ct_arena_resize(a, x->stamp, old, old, cap, sizeof *x->stamp);
+    x->memo = ct_arena_resize(a, x->memo, 0, old, cap, sizeof *x->memo);
+    x->stack = ct_arena_resize(a, x->stack, 0, old, cap, 2 * sizeof *x->stack);
     x->walk_cap = cap;
 }
 

@@ -13,8 +13,6 @@ const struct ct_op_info ct_op_info[CT_OP_COUNT] = {
 
 // ---- the store ------------------------------------------------------------------------------
 
-// Limit: initial memory of an empty store, and of a copy, which is made in order to grow.
-enum { LEAST_NODES = 256 };
 // Limit: length of the list of nodes with one newest operand, which bounds the time to search it.
 // Further nodes go to the hash table, of this initial size.
 enum { MOST_LISTED = 8, LEAST_TABLE = 256 };
@@ -51,7 +49,6 @@ static void rehash(struct ct_exs *x)
     for (size_t i = 0; i < nold; i++)
         if (old[i])
             *slot_of(x, &x->node[old[i] - 1]) = old[i];
-    x->shares_hash = false;
 }
 
 static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
@@ -67,42 +64,26 @@ static unsigned kinds_of(const struct ct_exs *x, const struct ct_exnode *n)
     return k;
 }
 
-// The arrays node, kinds and link grow together.
-static void reserve_nodes(struct ct_exs *x, size_t cap)
+// Make room for one more node. The arrays node, kinds and link grow together. While node_cap is 0
+// they, and the table, are shared with the store that this one was cloned from.
+static void reserve_node(struct ct_exs *x)
 {
     struct ct_arena *a = x->arena;
-    const struct ct_exnode *node = x->node;
-    const uint16_t *kinds = x->kinds;
-    const struct ct_exlink *link = x->link;
-    x->node = CT_NEWN(a, struct ct_exnode, cap);
-    x->kinds = CT_NEWN(a, uint16_t, cap);
-    x->link = CT_NEWN(a, struct ct_exlink, cap);
-    x->node_cap = cap;
-    if (!x->nnode)
-        return;
-    memcpy(x->node, node, x->nnode * sizeof *node);
-    memcpy(x->kinds, kinds, x->nnode * sizeof *kinds);
-    memcpy(x->link, link, x->nnode * sizeof *link);
-    if (x->shares_hash) {
+    const size_t n = x->nnode, cap = x->node_cap;
+    if (!cap && n) {
         const uint32_t *hash = x->hash;
         x->hash = CT_NEWN(a, uint32_t, x->hash_size);
         memcpy(x->hash, hash, x->hash_size * sizeof *hash);
-        x->shares_hash = false;
     }
-}
-
-// Large stores grow eightfold. Arrays left behind cost memory, but reserved pages that are never
-// touched do not (arena.c).
-static size_t next_cap(size_t cap)
-{
-    const size_t large = (size_t)1 << 15; // Limit: of memory, half a megabyte
-    return !cap ? LEAST_NODES : cap < large ? 2 * cap : 8 * cap;
+    x->node = ct_arena_grow(a, x->node, n, &x->node_cap, sizeof *x->node);
+    x->kinds = ct_arena_resize(a, x->kinds, n, cap, x->node_cap, sizeof *x->kinds);
+    x->link = ct_arena_resize(a, x->link, n, cap, x->node_cap, sizeof *x->link);
 }
 
 static ct_ex append(struct ct_exs *x, const struct ct_exnode *n)
 {
-    if (x->nnode == x->node_cap)
-        reserve_nodes(x, next_cap(x->node_cap));
+    if (x->nnode >= x->node_cap)
+        reserve_node(x);
     x->node[x->nnode] = *n;
     x->kinds[x->nnode] = (uint16_t)kinds_of(x, n);
     return (ct_ex){(uint32_t)x->nnode++};
@@ -155,9 +136,7 @@ struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from)
     struct ct_exs *x = CT_NEW(a, struct ct_exs);
     *x = *from;
     x->arena = a;
-    x->node_cap = x->nnode; // the first new node, or symbol, copies
-    x->sym_cap = x->nsym;
-    x->shares_hash = true;
+    x->node_cap = x->sym_cap = 0; // the first new node, or symbol, copies
     x->label = NULL;
     x->label_cap = x->walk_cap = 0;
     x->generation = 0;

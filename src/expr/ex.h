@@ -115,7 +115,6 @@ struct ct_exs {
     // constants, and nodes in no list; open addressing: 0 free, else id + 1
     uint32_t *hash;
     size_t hash_size, nhash;
-    bool shares_hash;   // with the store that it was cloned from
     const char **label; // optional name by node id, for printing; NULL where none
     size_t label_cap;
     unsigned char

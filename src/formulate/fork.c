@@ -25,7 +25,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 static struct ct_exs *fork_store(struct ct_arena *a, const struct ct_exs *from)
 {
     struct ct_exs *x = ct_exs_clone(a, from);
-    x->table_cap = x->ntable; // a new entry reallocates the list
+    x->table_cap = 0; // a new entry copies the list
     x->label = from->label;
     x->label_cap = from->label_cap;
     if (x->label)
@@ -65,9 +65,9 @@ static struct ct_build *fork_build(struct ct_ctx *ctx, struct ct_arena *a,
     for (size_t i = 0; i < b->nflexible; i++)
         fork_flexible(a, &b->flexible[i]);
     COPY(a, b->dynamics.masses.augmented_body, b->dynamics.masses.naugmented_body);
-    b->dynamics.masses.augmented_body_cap = b->dynamics.masses.naugmented_body;
+    b->dynamics.masses.augmented_body_cap = 0;
     b->dynamics.masses.of = (struct ct_pairs){0}; // rebuilt when a pair is added
-    b->dynamics.speed_axis_cap = b->dynamics.nspeed_axis;
+    b->dynamics.speed_axis_cap = 0;
     if (b->signals.quaternion)
         COPY(a, b->signals.quaternion, b->topology->nnode);
     // workspace
@@ -94,21 +94,21 @@ void ct_equations_fork(struct ct_ctx *ctx, struct ct_arena *a, const struct ct_m
     COPY(a, to->result, to->nresult);
     if (to->residual)
         COPY(a, to->residual, 1);
-    // a new entry reallocates the list
-    to->q_cap = to->nq;
-    to->u_cap = to->nu;
-    to->M_cap = to->nM;
-    to->J_cap = to->nJ;
-    to->row_cap = to->nrow;
-    to->switch_cap = to->nswitch;
-    to->time_function_cap = to->ntime_function;
-    to->memory_cap = to->nmemory;
-    to->offset_cap = to->noffset;
-    to->driver_cap = to->ndriver;
-    to->result_cap = to->nresult;
-    to->validity_cap = to->nvalidity;
-    to->bent_beam_cap = to->nbent_beam;
-    to->left_out_cap = to->nleft_out;
+    // a new entry copies the list
+    to->q_cap = 0;
+    to->u_cap = 0;
+    to->M_cap = 0;
+    to->J_cap = 0;
+    to->row_cap = 0;
+    to->switch_cap = 0;
+    to->time_function_cap = 0;
+    to->memory_cap = 0;
+    to->offset_cap = 0;
+    to->driver_cap = 0;
+    to->result_cap = 0;
+    to->validity_cap = 0;
+    to->bent_beam_cap = 0;
+    to->left_out_cap = 0;
     to->build = fork_build(ctx, a, from->build);
     to->build->model = model;
     to->build->x = to->x;
@@ -120,7 +120,7 @@ struct ct_model *ct_model_fork(struct ct_arena *a, const struct ct_model *from)
     struct ct_model *m = copy(a, from, 1, sizeof *m);
     m->x = fork_store(a, from->x);
     COPY(a, m->parameter, m->nparameter);
-    m->parameter_cap = m->nparameter;
+    m->parameter_cap = 0;
     COPY(a, m->value, m->nparameter + 1);
     return m;
 }

@@ -105,6 +105,43 @@ static void a_pushed_array_keeps_its_elements(void **state)
         assert_int_equal(v[i], 3 * i);
 }
 
+// Blocks of arrays that have moved are freed: only those below 256 KiB stay, in ordinary chunks.
+static void a_large_pushed_array_leaves_little_behind(void **state)
+{
+    enum { N = 1 << 18, LEFT = 1 << 18 };
+    struct ct_arena *a = *state;
+    for (int round = 0; round < 3; round++) {
+        int *v = NULL;
+        size_t n = 0, cap = 0;
+        for (int i = 0; i < N; i++)
+            CT_PUSH(a, v, n, cap, 3 * i);
+        assert_in_range(ct_arena_used(a), cap * sizeof *v, cap * sizeof *v + LEFT);
+        for (int i = 0; i < N; i++)
+            assert_int_equal(v[i], 3 * i);
+        for (size_t i = n; i < cap; i++)
+            assert_int_equal(v[i], 0);
+        ct_arena_clear(a);
+    }
+}
+
+static void a_shared_array_is_copied(void **state)
+{
+    for (size_t n = 1; n <= (size_t)1 << 17; n <<= 17) {
+        struct ct_arena *a = *state;
+        int *v = NULL;
+        size_t nv = 0, cap = 0;
+        while (nv < n)
+            CT_PUSH(a, v, nv, cap, 1);
+        int *copy = v;
+        size_t ncopy = nv, copy_cap = 0;
+        CT_PUSH(a, copy, ncopy, copy_cap, 2);
+        assert_ptr_not_equal(copy, v);
+        assert_true(copy_cap >= ncopy && copy[n] == 2);
+        for (size_t i = 0; i < n; i++)
+            assert_true(v[i] == 1 && copy[i] == 1);
+    }
+}
+
 static void count(void *n)
 {
     ++*(int *)n;
@@ -321,6 +358,8 @@ int main(void)
         CASE(many_megabytes_are_zeroed_and_stay),
         CASE(strings_are_copied_whole),
         CASE(a_pushed_array_keeps_its_elements),
+        CASE(a_large_pushed_array_leaves_little_behind),
+        CASE(a_shared_array_is_copied),
         CASE(merged_arenas_end_together),
         CASE(a_cleared_arena_gives_zeros_at_the_same_places),
         CASE(a_cleared_arena_gives_zeros_to_other_requests),

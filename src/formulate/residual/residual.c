@@ -179,7 +179,7 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
     for (size_t i = 0; i < e->nq; i++) // q' = Z(q) u
         add_seed(b, &seeds, e->q[i].symbol, 0,
                  ct_ex_subst(b->x, e->q[i].rate, speed, along->seed, nu));
-    struct seeds places = seeds;
+    const size_t nplace = seeds.n;
     for (size_t k = 0; k < nu; k++) {
         add_seed(b, &seeds, e->u[k].symbol, 0, along->seed[nu + k]);
         add_seed(b, &seeds, e->u[k].derivative, 0, along->seed[2 * nu + k]);
@@ -191,8 +191,9 @@ static struct ct_directional *derive_along(struct ct_build *b, const struct slop
                                      seeds.e, seeds.n, &d);
     for (size_t i = 0; i < nr; i++)
         along->rate[d[i].row] = d[i].value;
+    seeds.n = nplace;
     for (size_t i = 0; i < e->nrow; i++)
-        along->rate[s->nr + i] = derivative_along(b, s->v[i], &places);
+        along->rate[s->nr + i] = derivative_along(b, s->v[i], &seeds);
     return along;
 }
 
