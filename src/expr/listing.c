@@ -130,7 +130,7 @@ struct ct_tape_counts ct_ex_count(struct ct_arena *scratch, const struct ct_exs 
 // ---- values -----------------------------------------------------------------------------------
 
 struct lister {
-    struct ct_arena *arena;
+    struct ct_arena *arena, *scratch;
     const struct ct_exs *x;
     struct ct_listing *l;
     uint32_t nid;
@@ -141,8 +141,8 @@ static void number_values(struct lister *s, const ct_ex *out, size_t nout)
 {
     struct ct_listing *l = s->l;
     unsigned char *live;
-    s->nid = mark_live(&live, s->arena, s->x, out, nout);
-    s->value = CT_NEWN(s->arena, uint32_t, s->nid);
+    s->nid = mark_live(&live, s->scratch, s->x, out, nout);
+    s->value = CT_NEWN(s->scratch, uint32_t, s->nid);
     for (uint32_t id = 0; id < s->nid; id++)
         s->value[id] = live[id] ? (uint32_t)l->nvalue++ : none;
     l->node = CT_NEWN(s->arena, uint32_t, l->nvalue);
@@ -209,7 +209,7 @@ static void make_instructions(struct lister *s)
 {
     struct ct_listing *l = s->l;
     uint32_t *turned
-        = CT_NEWN(s->arena, uint32_t, l->nvalue); // 1 + first sin or cos of a value
+        = CT_NEWN(s->scratch, uint32_t, l->nvalue); // 1 + first sin or cos of a value
     l->ins = CT_NEWN(s->arena, struct ct_instruction, l->nvalue);
     for (uint32_t v = 0; v < l->nvalue; v++) {
         const struct ct_exnode *n = &s->x->node[l->node[v]];
@@ -246,8 +246,8 @@ static void fuse(struct ct_instruction *i, struct ct_instruction *product, uint3
 static void fuse_products(struct lister *s)
 {
     struct ct_listing *l = s->l;
-    uint32_t *nuse = CT_NEWN(s->arena, uint32_t, l->nvalue);
-    uint32_t *made = CT_NEWN(s->arena, uint32_t, l->nvalue); // 1 + instruction
+    uint32_t *nuse = CT_NEWN(s->scratch, uint32_t, l->nvalue);
+    uint32_t *made = CT_NEWN(s->scratch, uint32_t, l->nvalue); // 1 + instruction
     for (size_t i = l->nprologue; i < l->nins; i++) {
         for (uint32_t k = 0; k < l->ins[i].narg; k++)
             nuse[l->ins[i].arg[k]]++;
@@ -286,7 +286,7 @@ static void put_prologue_first(struct lister *s)
         n += l->rate[l->ins[i].res[0]] != CT_RATE_CALL;
     if (n == 0)
         return;
-    struct ct_instruction *body = CT_NEWN(s->arena, struct ct_instruction, l->nins - n + 1);
+    struct ct_instruction *body = CT_NEWN(s->scratch, struct ct_instruction, l->nins - n + 1);
     l->nprologue = n;
     n = 0;
     for (size_t i = 0; i < l->nins; i++)
@@ -303,10 +303,11 @@ static const size_t several_angles = 3;
 
 // Sines whose argument depends on another sine of the body are found here. They remain single
 // calls, because back ends read all angles of a SIMD call before they write its results.
-static bool *find_separate_angles(struct ct_arena *a, const struct ct_listing *l, size_t *n)
+static bool *find_separate_angles(struct ct_arena *scratch, const struct ct_listing *l,
+                                  size_t *n)
 {
-    bool *is_wave = CT_NEWN(a, bool, l->nvalue + 1); // by value: a sine or a cosine
-    bool *is_separate = CT_NEWN(a, bool, l->nins + 1);
+    bool *is_wave = CT_NEWN(scratch, bool, l->nvalue + 1); // by value: a sine or a cosine
+    bool *is_separate = CT_NEWN(scratch, bool, l->nins + 1);
     for (size_t i = l->nprologue; i < l->nins; i++) {
         const struct ct_instruction *ins = &l->ins[i];
         if (ins->op != CT_OP_SIN && ins->op != CT_OP_COS && ins->op != CT_OP_SINCOS
@@ -320,10 +321,10 @@ static bool *find_separate_angles(struct ct_arena *a, const struct ct_listing *l
     return is_separate;
 }
 
-static void name_angles(struct ct_arena *a, struct ct_listing *l, size_t several)
+static void name_angles(struct ct_arena *scratch, struct ct_listing *l, size_t several)
 {
     size_t n = 0;
-    const bool *is_separate = find_separate_angles(a, l, &n);
+    const bool *is_separate = find_separate_angles(scratch, l, &n);
     for (size_t i = l->nprologue; i < l->nins && n >= several; i++) {
         unsigned char *op = &l->ins[i].op;
         if (is_separate[i])
@@ -340,7 +341,9 @@ const struct ct_listing *ct_listing_for_lanes(struct ct_arena *a, const struct c
     *copy = *l;
     copy->ins = CT_NEWN(a, struct ct_instruction, l->nins + 1);
     memcpy(copy->ins, l->ins, l->nins * sizeof *l->ins);
-    name_angles(a, copy, 1);
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    name_angles(scratch, copy, 1);
+    ct_arena_destroy(scratch);
     return copy;
 }
 
@@ -357,7 +360,8 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
                                            const size_t *slot, size_t nin, enum ct_fuse fuse)
 {
     struct ct_listing *l = CT_NEW(a, struct ct_listing);
-    struct lister s = {.arena = a, .x = x, .l = l};
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    struct lister s = {.arena = a, .scratch = scratch, .x = x, .l = l};
     l->x = x;
     l->fuse = fuse;
     number_values(&s, out, nout);
@@ -370,7 +374,8 @@ const struct ct_listing *ct_listing_create(struct ct_arena *a, const struct ct_e
     if (fuse == CT_FUSE_YES)
         fuse_products(&s);
     put_prologue_first(&s);
-    name_angles(a, l, several_angles);
+    name_angles(scratch, l, several_angles);
+    ct_arena_destroy(scratch);
     for (size_t i = l->nprologue; i < l->nins; i++)
         count_op(&l->counts, l->ins[i].op);
     // the points of a table never move in memory; the list of tables may, so it is copied
@@ -389,7 +394,9 @@ const struct ct_listing *ct_listing_fuse(struct ct_arena *a, const struct ct_lis
     fused->ins = CT_NEWN(a, struct ct_instruction, l->nins);
     if (l->nins)
         memcpy(fused->ins, l->ins, l->nins * sizeof *l->ins);
-    fuse_products(&(struct lister){.arena = a, .x = l->x, .l = fused});
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    fuse_products(&(struct lister){.scratch = scratch, .l = fused});
+    ct_arena_destroy(scratch);
     return fused;
 }
 

@@ -167,7 +167,7 @@ struct queue {
 };
 
 struct compiler {
-    struct ct_arena *arena;
+    struct ct_arena *arena, *scratch;
     const struct ct_listing *l;
     struct ct_uses uses;
     uint32_t *waits; // by instruction: arguments not yet computed
@@ -252,7 +252,7 @@ static void give_up_slot(struct compiler *c, uint32_t v)
 static void mark_kept(struct compiler *c)
 {
     const struct ct_listing *l = c->l;
-    c->keep = CT_NEWN(c->arena, unsigned char, l->nvalue);
+    c->keep = CT_NEWN(c->scratch, unsigned char, l->nvalue);
     for (size_t k = 0; k < l->nout; k++)
         c->keep[l->out[k]] = 1;
     for (size_t v = 0; v < l->nvalue; v++)
@@ -264,7 +264,10 @@ static void mark_kept(struct compiler *c)
 
 static void take_constants(struct compiler *c, struct ct_tape *t)
 {
-    t->constant = CT_NEWN(c->arena, double, c->l->nvalue);
+    size_t n = 0;
+    for (size_t v = 0; v < c->l->nvalue; v++)
+        n += c->l->rate[v] == CT_RATE_NEVER;
+    t->constant = CT_NEWN(c->arena, double, n);
     for (uint32_t v = 0; v < c->l->nvalue; v++)
         if (c->l->rate[v] == CT_RATE_NEVER) {
             give_slot(c, v);
@@ -274,7 +277,10 @@ static void take_constants(struct compiler *c, struct ct_tape *t)
 
 static struct copy *take_inputs(struct compiler *c, enum ct_rate rate, size_t *n)
 {
-    struct copy *copy = CT_NEWN(c->arena, struct copy, c->l->nvalue);
+    size_t ninput = 0;
+    for (size_t v = 0; v < c->l->nvalue; v++)
+        ninput += c->l->input[v] != none && c->l->rate[v] == rate;
+    struct copy *copy = CT_NEWN(c->arena, struct copy, ninput);
     for (uint32_t v = 0; v < c->l->nvalue; v++) {
         if (c->l->input[v] == none || c->l->rate[v] != rate)
             continue;
@@ -302,9 +308,9 @@ static void give_slots(struct compiler *c, size_t from, size_t to)
 static void allocate_slots(struct compiler *c, struct ct_tape *t)
 {
     const size_t nvalue = c->l->nvalue;
-    c->slot = CT_NEWN(c->arena, uint32_t, nvalue);
-    c->free = CT_NEWN(c->arena, uint32_t, nvalue);
-    c->nuse = CT_NEWN(c->arena, uint32_t, nvalue);
+    c->slot = CT_NEWN(c->scratch, uint32_t, nvalue);
+    c->free = CT_NEWN(c->scratch, uint32_t, nvalue);
+    c->nuse = CT_NEWN(c->scratch, uint32_t, nvalue);
     for (size_t v = 0; v < nvalue; v++) {
         c->slot[v] = none;
         c->nuse[v] = c->uses.start[v + 1] - c->uses.start[v];
@@ -371,11 +377,13 @@ static struct code write_code(const struct compiler *c, size_t from, size_t to)
 struct ct_tape *ct_tape_create(struct ct_arena *a, const struct ct_listing *l)
 {
     struct ct_tape *t = CT_NEW(a, struct ct_tape);
-    struct compiler c = {.arena = a, .l = l, .uses = ct_listing_uses(a, l)};
+    struct ct_arena *scratch = ct_arena_create_under(a);
+    struct compiler c
+        = {.arena = a, .scratch = scratch, .l = l, .uses = ct_listing_uses(scratch, l)};
 
-    c.order = CT_NEWN(a, uint32_t, l->nins);
-    c.waits = CT_NEWN(a, uint32_t, l->nins);
-    c.next = CT_NEWN(a, uint32_t, l->nins);
+    c.order = CT_NEWN(scratch, uint32_t, l->nins);
+    c.waits = CT_NEWN(scratch, uint32_t, l->nins);
+    c.next = CT_NEWN(scratch, uint32_t, l->nins);
     schedule(&c, 0, l->nprologue, CT_RATE_PARAM);
     schedule(&c, l->nprologue, l->nins, CT_RATE_CALL);
     assert(c.norder == l->nins);
@@ -390,6 +398,7 @@ struct ct_tape *ct_tape_create(struct ct_arena *a, const struct ct_listing *l)
     t->out = CT_NEWN(a, uint32_t, l->nout);
     for (size_t k = 0; k < l->nout; k++)
         t->out[k] = c.slot[l->out[k]];
+    ct_arena_destroy(scratch);
     return t;
 }
 
