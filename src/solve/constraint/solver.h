@@ -95,9 +95,9 @@ extern const double ct_solver_least_strength;
 /// The programs of a symbolic solver.
 ///
 ///     solved    u' (nu), q' (nq), pivots of B' M B (nfree, positive) and of J_d (npivot); sizes of
-///             the latter times `scale` are strengths; the power, if has_power
+///               the latter times `scale` are strengths; the power, if has_power
 ///     checked   refined u' (nu) and lam (rank), residuals before and after (nu + rank each), Q,
-///             gam (rank), B (nB)
+///               gam (rank), B (nB)
 ///     closing   Phi, v (nrow each), corrections dq, du (nu each), shift (nshift), pivots of J_d
 struct ct_solver_code {
     const struct ct_listing *listing; // NULL: the solver is not symbolic

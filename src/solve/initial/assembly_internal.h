@@ -1,3 +1,4 @@
+// What the files of the assembly share.
 //
 //     assembly.c           iterations, from targets to initial conditions
 //     assembly_targets.c   targets: demanded and guessed values of coordinates and speeds
