@@ -31,11 +31,13 @@ enum { MEASUREMENTS_BETWEEN = 15 };
 // Default: steps that are too short against accurate ones. Test: output_error
 static const double least_state_error = 0.02;
 // An output is controlled if it is larger than this many of its round-off errors, that is, has
-// six correct digits; its error need not be below `fewest_roundoff_errors` of them.
+// six correct digits; its error in a step need not be below `step_roundoff_errors` of them. These
+// are more than the CT_FEWEST_ROUNDOFF_ERRORS of an output, since the estimate of a step contains
+// the round-off of all its stages.
 // Default: outputs that are only round-off against small ones; steps against the last digits.
 // Test: output_error
 const double ct_output_error_least_size = 1e6;
-static const double fewest_roundoff_errors = 16;
+static const double step_roundoff_errors = 16;
 
 // Outputs of one kind.
 struct group {
@@ -220,12 +222,12 @@ double ct_output_error_evaluate(struct ct_output_error_record *r, const double *
         const double size = ct_larger(r->last[i], r->largest[i]);
         const double wanted = tolerance->rtol * size + tolerance->atol;
         is_roundoff_significant |= !(size >= ct_output_error_least_size * roundoff)
-                                || !(wanted >= fewest_roundoff_errors * roundoff);
+                                || !(wanted >= step_roundoff_errors * roundoff);
         if (!(size >= ct_output_error_least_size * roundoff)
             || (r->sensitive && ct_output_sensitivity_is_sensitive(r->sensitive, i)))
             continue;
         const double part
-            = (off[i] - at[i]) / ct_larger(fewest_roundoff_errors * roundoff, wanted);
+            = (off[i] - at[i]) / ct_larger(step_roundoff_errors * roundoff, wanted);
         sum += part * part;
         n++;
     }
