@@ -12,9 +12,9 @@
 #include "report/progress.h"
 #include "sim/sim.h"
 
-/// The reference is good enough with this part of the wanted error; otherwise more runs are made for
-/// it, and then a warning. Derived: the error of a run that is near the wanted one is then known to
-/// a tenth of itself.
+/// The reference is good enough with this part of the wanted error; otherwise more runs are made
+/// for it, and then a warning. Derived: the error of a run that is near the wanted one is then
+/// known to a tenth of itself.
 #define CT_REFERENCE_MARGIN 0.1
 
 struct ct_accuracy {

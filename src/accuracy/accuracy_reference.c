@@ -101,8 +101,8 @@ static bool is_in_time(void *user)
 }
 
 // Two runs in quadruple precision with different steps. The first becomes the reference if they
-// agree better than the runs in double precision do, and if it is the same motion: as close to those
-// as the wanted error, or as those are to each other.
+// agree better than the runs in double precision do, and if it is the same motion: as close to
+// those as the wanted error, or as those are to each other.
 static void run_quad(struct ct_accuracy *a)
 {
     // Derived: the error of double precision is above 1e-16; both are far below it, and four digits

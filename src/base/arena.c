@@ -377,8 +377,8 @@ void *ct_arena_resize(struct ct_arena *a, void *array, size_t n, size_t cap, siz
     return p;
 }
 
-// Capacities double; arrays of half a megabyte or more grow eightfold, as pages of a large block are
-// populated when they are touched.
+// Capacities double; arrays of half a megabyte or more grow eightfold, as pages of a large block
+// are populated when they are touched.
 static size_t next_cap(size_t n, size_t size)
 {
     const size_t least = 8; // Limit: of memory

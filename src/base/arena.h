@@ -60,14 +60,14 @@ size_t ct_arena_used(const struct ct_arena *a);
 #define CT_NEW(a, T) ((T *)ct_arena_alloc((a), sizeof(T)))
 #define CT_NEWN(a, T, n) ((T *)ct_arena_calloc((a), (size_t)(n), sizeof(T)))
 
-/// An array of capacity `cap`, of which n elements are in use, gets capacity `more`, zeroed from n on.
-/// It moves and must not be used at its old place, where a large one is freed; cap = 0: the array is
-/// shared with others, which keep it.
+/// An array of capacity `cap`, of which n elements are in use, gets capacity `more`, zeroed from n
+/// on. It moves and must not be used at its old place, where a large one is freed; cap = 0: the
+/// array is shared with others, which keep it.
 void *ct_arena_resize(struct ct_arena *a, void *array, size_t n, size_t cap, size_t more,
                       size_t size);
 
-/// Make room for one more element in a growable array. Returns the array, which moves as above if it
-/// had to grow. n: elements in use; *cap: capacity. Use it through CT_PUSH.
+/// Make room for one more element in a growable array. Returns the array, which moves as above if
+/// it had to grow. n: elements in use; *cap: capacity. Use it through CT_PUSH.
 void *ct_arena_grow(struct ct_arena *a, void *array, size_t n, size_t *cap, size_t size);
 
 /// Append v to array (an lvalue pointer) with counters n and cap (lvalues, size_t).

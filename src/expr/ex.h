@@ -128,8 +128,8 @@ struct ct_exs {
 };
 
 void ct_exs_init(struct ct_exs *x, struct ct_arena *arena);
-/// A copy of the store in a; it can grow, and ids are the same. Labels are not copied. Until it has a
-/// node of its own it shares the nodes of `from`, which must live as long and get none before.
+/// A copy of the store in a; it can grow, and ids are the same. Labels are not copied. Until it has
+/// a node of its own it shares the nodes of `from`, which must live as long and get none before.
 struct ct_exs *ct_exs_clone(struct ct_arena *a, const struct ct_exs *from);
 
 // ---- leaves ---------------------------------------------------------------------------------

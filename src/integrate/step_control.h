@@ -35,8 +35,8 @@ static inline double ct_step_control_fit(double rest, double wanted)
         return rest;
     return rest < 2 * wanted ? rest / 2 : wanted;
 }
-/// Is h, which does not end on a stop, too small against the round-off of times up to t or up to the
-/// duration `run` [s]?
+/// Is h, which does not end on a stop, too small against the round-off of times up to t or up to
+/// the duration `run` [s]?
 static inline bool ct_step_control_is_below_roundoff(double h, double t, double run)
 {
     // Derived: the stage times of DOPRI5, at least h/16 apart, then differ by a round-off of t.

@@ -23,9 +23,9 @@ static const double least_limited_step = 0.5;
 // errors at the limit of stability, and `slow` is not known.
 // Derived: a vibration needs two points in a period, a step of pi/omega.
 static const double unresolved_step = 3;
-// The least fast/slow of a stiff problem: an implicit step takes the work of some ten explicit ones,
-// so with modes that are closer it gains nothing. Default: trials in vain against stiffness not
-// seen. Test: integrate.
+// The least fast/slow of a stiff problem: an implicit step takes the work of some ten explicit
+// ones, so with modes that are closer it gains nothing. Default: trials in vain against stiffness
+// not seen. Test: integrate.
 static const double least_separation = 10;
 // The part of J^2 x outside the plane of x and J x up to which x counts as a single mode. Otherwise
 // the decay rate is not known. Default: the error of the decay rate against modes without one.
@@ -112,10 +112,10 @@ static double dot(const struct ct_stiffness *s, const double *a, const double *b
     return s->fast * s->fast * places + speeds;
 }
 
-// The decay rate of the fastest mode: J^2 x = -2 decay J x - rate^2 x for a vibration, J x = -decay x
-// for a mode that does not oscillate, by least squares. J x = gain s->Jx, and s->v is the vector
-// after both applications of J. Negative where the mode grows, zero where x is not a single mode.
-// (8.32)
+// The decay rate of the fastest mode, by least squares: J^2 x = -2 decay J x - rate^2 x for a
+// vibration, J x = -decay x for a mode that does not oscillate. J x = gain s->Jx, and s->v is the
+// vector after both applications of J. Negative where the mode grows, zero where x is not a single
+// mode. (8.32)
 static double find_decay(const struct ct_stiffness *s, const double *x, double gain)
 {
     const double *Jx = s->Jx, *JJx = s->v, size = s->fast * s->fast;

@@ -11,9 +11,9 @@
 // damping do not contribute to x, as in the solution of minimum norm. A singular value of round-off
 // size eps amplifies the component of b along it by eps / damping^2.
 //
-// Further rows W x = c, whose diagonal is 1 in place of the damping, add |W x - c|^2 to |A x - b|^2 /
-// damping + damping |x|^2: with little damping A x = b is met first, and W x = c as far as it leaves
-// x free.
+// Further rows W x = c, whose diagonal is 1 in place of the damping, add |W x - c|^2 to
+// |A x - b|^2/damping + damping |x|^2: with little damping A x = b is met first, and W x = c as far
+// as it leaves x free.
 //
 // Source: the augmented system and its scaling, Bjorck (1996), section 2.7, key bjorck1996.
 #ifndef CT_NUMERIC_DAMPED_H

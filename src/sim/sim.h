@@ -118,9 +118,9 @@ const char *ct_sim_results_path(const struct ct_sim *sim, bool is_partial);
 /// guard.
 void ct_sim_verify(struct ct_sim *sim);
 /// Sets `relative` of n outputs from scale and absolute. An output is zero up to round-off if it is
-/// that small relative to the largest one, or if the two runs agree in no digit of it and the errors
-/// of the other outputs are as large. Examples: a sum of energies that cancel, a momentum that stays
-/// zero.
+/// that small relative to the largest one, or if the two runs agree in no digit of it and the
+/// errors of the other outputs are as large. Examples: a sum of energies that cancel, a momentum
+/// that stays zero.
 void ct_output_errors_relate(struct ct_output_error_estimate *o, size_t n);
 
 /// Warns of joints that start more than a right angle or half the natural length from their

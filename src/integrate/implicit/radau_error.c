@@ -54,8 +54,8 @@ static const double separation = 2;
 static const double kept_part = 0.9;
 
 // Steps between estimates of fast modes where leaving them out did not help, and between estimates
-// of dissipation. Derived: an estimate takes about the work of a step with new factors, so estimates
-// take at most a fifteenth of the work.
+// of dissipation. Derived: an estimate takes about the work of a step with new factors, so
+// estimates take at most a fifteenth of the work.
 enum { STEPS_BETWEEN = 15 };
 
 // The filtered error of the embedded formula at the start y, whose rates are u and u_dot.

@@ -22,9 +22,9 @@ static int order_rows(struct ct_partition *s)
 // inertia and are not compared. Speeds preferred as independent have a small weight.
 static void find_column_weights(struct ct_partition *s, double *w)
 {
-    // Weights are used where the largest inertia is more than this many times the smallest. Derived:
-    // the square of ct_kappa_largest; round-off of the heavy equations is 1e6 eps = 2e-10 of the
-    // light ones, which then have ten digits.
+    // Weights are used where the largest inertia is more than this many times the smallest.
+    // Derived: the square of ct_kappa_largest; round-off of the heavy equations is 1e6 eps = 2e-10
+    // of the light ones, which then have ten digits.
     const double inertia_ratio = 1e6;
     // Derived: entries of B may become 33 times larger, the root of ct_kappa_largest.
     const double preferred_weight = 0.03;

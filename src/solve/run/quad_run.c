@@ -142,8 +142,8 @@ static void advance_to(struct run *r, quad t)
             memory[i] = r->out[i];
 }
 
-// True: y has gone on by h. *factor: what the next step should be, over h. A step that needs at most
-// half of the columns is doubled, one that all of them do not make accurate is halved.
+// True: y has gone on by h. *factor: what the next step should be, over h. A step that needs at
+// most half of the columns is doubled, one that all of them do not make accurate is halved.
 static bool step(struct run *r, quad t, quad h, double tolerance, double *factor)
 {
     rhs(r, t, r->y, r->dy);

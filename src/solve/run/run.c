@@ -189,7 +189,7 @@ static void note_given(struct ct_run *r, const struct ct_initial_state *start)
 // (6.3c)
 static double find_scale(const struct ct_model *model)
 {
-    // Derived: the tolerance of projections is then at most ct_largest_residual of the lengths.  [m]
+    // Derived: the tolerance of projections is then at most ct_largest_residual of lengths [m]
     const double small_length = ct_position_tolerance / ct_largest_residual;
     double largest = 0;
     for (size_t i = 0; i < model->nframe; i++)

@@ -40,9 +40,9 @@ static void name_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// Times up to this part of the duration apart are close to each other, and speeds below this part of
-// the largest are rest. Derived: the motion in that time, about a thousandth of that of the run, is
-// far above the round-off of constraints and far below the lengths of the mechanism.
+// Times up to this part of the duration apart are close to each other, and speeds below this part
+// of the largest are rest. Derived: the motion in that time, about a thousandth of that of the run,
+// is far above the round-off of constraints and far below the lengths of the mechanism.
 static const double small_part = 1e-3;
 
 // If steps ended as the constraints could not be closed: name the row that is open most a little
