@@ -167,8 +167,9 @@ static double first_step(struct ct_driver *r, double limit)
 // than that of the step.
 static bool has_moved(struct ct_driver *r)
 {
-    // A displacement up to this part of the tolerance is ignored. Derived: with h |df/dy| < 1, as
-    // explicit steps are, the next step then errs by less than this part of what it may.
+    // A displacement up to this part of the tolerance is ignored. With h |df/dy| < 1, as explicit
+    // steps are, the next step then errs by less than this part of what it may. Chosen: evaluations
+    // against accuracy.
     const double negligible = 0.01;
     const struct ct_problem *p = r->p;
     if (r->o->step > 0)

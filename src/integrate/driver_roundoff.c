@@ -21,7 +21,7 @@
 // order.
 static const double order_between = 3;
 // Round-off is measured after each of so many steps, too, since it may keep steps short without a
-// refusal. Derived: a measurement takes nu + 8 evaluations for nu speeds, less than 1 % of those of
+// refusal. Chosen: a measurement takes nu + 8 evaluations for nu speeds, less than 1 % of those of
 // the steps for up to 50 speeds.
 enum { STEPS_BETWEEN = 1000 };
 
@@ -33,7 +33,7 @@ enum { STEPS_BETWEEN = 1000 };
 static void exclude_damped_speeds(struct ct_driver *r, double du)
 {
     const struct ct_problem *p = r->p;
-    // 2 zeta. Derived: with zeta = 0.01 and steps of some 1/omega, errors fall by 1/e in a tenth of
+    // 2 zeta. Chosen: with zeta = 0.01 and steps of some 1/omega, errors fall by 1/e in a tenth of
     // the steps between two measurements.
     const double damped = 0.02;
     ct_stepper_copy(r->point, r->y, p->ny);

@@ -54,7 +54,7 @@ static const double separation = 2;
 static const double kept_part = 0.9;
 
 // Steps between estimates of fast modes where leaving them out did not help, and between estimates
-// of dissipation. Derived: an estimate takes about the work of a step with new factors, so
+// of dissipation. Chosen: an estimate takes about the work of a step with new factors, so
 // estimates take at most a fifteenth of the work.
 enum { STEPS_BETWEEN = 15 };
 

@@ -26,7 +26,7 @@ static void find_column_weights(struct ct_partition *s, double *w)
     // Derived: the square of ct_kappa_largest; round-off of the heavy equations is 1e6 eps = 2e-10
     // of the light ones, which then have ten digits.
     const double inertia_ratio = 1e6;
-    // Derived: entries of B may become 33 times larger, the root of ct_kappa_largest.
+    // Chosen: entries of B may become 33 times larger, the root of ct_kappa_largest.
     const double preferred_weight = 0.03;
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
@@ -557,8 +557,8 @@ static bool choose_at_present_state(struct ct_partition *s)
 // present one: this avoids a second choice, which costs more than many steps.
 static bool choose_with_preview(struct ct_partition *s)
 {
-    // a factor of two in the conditioning does not matter, as in ct_small_pivot
-    const double nearly_as_good = ct_small_pivot;
+    // Chosen: conditioning now against a choice that lasts.
+    const double nearly_as_good = 0.5;
     if (!choose_at_present_state(s) || ct_partition_is_large(s) || s->rank == (int)s->m->nu
         || s->m->e->solution)
         return true;

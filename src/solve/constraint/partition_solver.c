@@ -6,7 +6,7 @@
 #include <string.h>
 
 // If no refinement was needed, the next projections, up to this number, are not checked while the
-// strength of the pivots is unchanged. Derived: a check takes the time of some two evaluations, a
+// strength of the pivots is unchanged. Chosen: a check takes the time of some two evaluations, a
 // step at least six, so that checks take at most a twentieth of the time.
 enum { UNCHECKED_PROJECTIONS = 7 };
 

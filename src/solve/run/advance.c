@@ -6,7 +6,7 @@
 #include <float.h>
 #include <string.h>
 
-// Time events are sought for so many calls ahead. Derived: a search evaluates thousands of times,
+// Time events are sought for so many calls ahead. Chosen: a search evaluates thousands of times,
 // that is a few times a call.
 static const double steps_ahead = 1024;
 

@@ -261,6 +261,9 @@ static void find_phase_error(struct ct_run *r, double t, const double *at, doubl
 
 struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double wanted)
 {
+    // What one round-off of states may change. Derived: those of a hundred steps, of random sign,
+    // then add up to what is wanted. For explicit steps the sum is found as well.
+    const double allowed = wanted / 10;
     const double time = r->report->stats.last_time, t = ct_run_time_before_event(r, time);
     const size_t nu = r->m->nu, n = r->e->nresult;
     struct roundoff e = {CT_NEWN(r->arena, double, nu + 1), CT_NEWN(r->arena, double, nu + 1),
@@ -268,9 +271,9 @@ struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double wan
     double *at = CT_NEWN(r->arena, double, n + 1),
            *output_change = CT_NEWN(r->arena, double, n + 1);
     struct ct_roundoff_limit b
-        = {.output = -1, .one = wanted / CT_FEWEST_ROUNDOFF_ERRORS, .sum = NAN};
+        = {.output = -1, .one = allowed / CT_FEWEST_ROUNDOFF_ERRORS, .sum = NAN};
     if (r->output_error)
-        b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, wanted,
+        b.output = ct_output_error_roundoff_limit(r->output_error, t, r->y, allowed,
                                                   small_output(r), &b.one);
     if (!find_roundoff(r, time, &e) || ct_run_results(r, t, r->y, at) != CT_EVAL_OK
         || !evaluate_change(r, t, NULL, e.speed, at, output_change))

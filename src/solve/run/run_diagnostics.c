@@ -41,7 +41,7 @@ static void name_singular(struct ct_run *r, const char *advice)
 }
 
 // Times up to this part of the duration apart are close to each other, and speeds below this part
-// of the largest are rest. Derived: the motion in that time, about a thousandth of that of the run,
+// of the largest are rest. Chosen: the motion in that time, about a thousandth of that of the run,
 // is far above the round-off of constraints and far below the lengths of the mechanism.
 static const double small_part = 1e-3;
 

@@ -172,8 +172,8 @@ struct ct_roundoff_limit {
     double one, sum;
 };
 /// At the end of a run: the result with the fewest digits. It is reported if, relative to its
-/// largest value at samples, one round-off of states is more than half of `wanted`, or the sum of
-/// round-off over all steps is more. `value` of the run may change.
+/// largest value at samples, one round-off of states is more than a twentieth of `wanted`, or the
+/// sum of round-off over all steps is more than `wanted`. `value` of the run may change.
 struct ct_roundoff_limit ct_run_find_roundoff_limit(struct ct_run *r, double wanted);
 /// After the error of a run that ended early: notes on the cause.
 void ct_run_explain_end(struct ct_run *r);
