@@ -54,19 +54,16 @@ embed|embed_side|embed_view:coordinate partition
 striding:crossing
 ct_flexible_felt:ct_flexible_effective_base
 march:follow the path
-felt|unfelt:output error
+felt|unfelt:negligible, error of outputs
 toss|tosses|tossed:pseudo-random number
 hopeless:failed, cannot succeed
-swiftest:fastest
 worth_it:what the limit is of
 settles|settled|settling:static equilibrium; converged
 least_norm_step|shortest_vector:minimum-norm step
 half_turned_joint:antiparallel
 look_around:tangent stiffness
 may_gape|gapes:open loop
-unfelt:negligible, or the share of the error that it may take
 swiftest|furthest:largest speed, largest position
-toss:pseudo-random number
 take_bearings:reinitialize
 warming_steps:steps before counting
 leaves_speeds:violates_velocity_constraints
