@@ -4,7 +4,7 @@
 #include "formulate/build.h"
 #include "graph/print.h"
 #include "io/yaml.h"
-#include "report/equations.h"
+#include "report/equations_print.h"
 #include "report/tree_pairs.h"
 #include "solve/initial/initial_equilibrium.h"
 

@@ -5,7 +5,7 @@
 #include "report/stage_beam.h"
 
 #include "formulate/build.h"
-#include "report/equations.h"
+#include "report/equations_print.h"
 #include "report/json.h"
 #include "report/provenance.h"
 

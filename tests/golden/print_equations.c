@@ -1,7 +1,7 @@
 // print_equations MODEL STAGES FORMAT [absolute]: the derivation of a model on standard output, for
 // golden files.
 #include "formulate/formulate.h"
-#include "report/equations.h"
+#include "report/equations_print.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
 #include "formulate/formulate.h"
 #include "report/beam_blocks.h"
 #include "report/derivation.h"
-#include "report/equations.h"
+#include "report/equations_print.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,5 +1,5 @@
-// The derivation, stage by stage; see equations.h.
-#include "report/equations.h"
+// The derivation, stage by stage; see equations_print.h.
+#include "report/equations_print.h"
 
 #include "formulate/formulate.h"
 #include "report/derivation.h"

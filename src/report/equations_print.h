@@ -13,8 +13,8 @@
 //
 // What always holds: the same model, trees and format give the same bytes. The printed
 // expressions equal those of struct ct_equations up to round-off.
-#ifndef CT_REPORT_EQUATIONS_H
-#define CT_REPORT_EQUATIONS_H
+#ifndef CT_REPORT_EQUATIONS_PRINT_H
+#define CT_REPORT_EQUATIONS_PRINT_H
 
 #include "formulate/equations.h"
 
