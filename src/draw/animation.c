@@ -142,12 +142,12 @@ static void quaternion_of(const double *R, const double before[4], double q[4])
 }
 
 // out = R' (point - origin)
-static void to_axes(const double *R, const double origin[3], const double place[3],
+static void to_axes(const double *R, const double origin[3], const double position[3],
                     double out[3])
 {
     double d[3];
     for (int i = 0; i < 3; i++)
-        d[i] = place[i] - origin[i];
+        d[i] = position[i] - origin[i];
     for (int i = 0; i < 3; i++)
         out[i] = ct_dot3(R + 3 * (size_t)i, d);
 }
@@ -157,7 +157,7 @@ static void keep_poses(struct ct_animation *m, const double *value, const double
 {
     for (size_t p = 1; p < m->npose; p++) {
         const size_t at = ct_animation_pose_column(m, p);
-        memcpy(row + at, ct_scene_place(value, m->frame[p]), 3 * sizeof *row);
+        memcpy(row + at, ct_scene_position(value, m->frame[p]), 3 * sizeof *row);
         quaternion_of(ct_scene_rotation(value, m->frame[p]), before ? before + at + 3 : NULL,
                       row + at + 3);
     }
@@ -170,7 +170,7 @@ static void keep_beams(struct ct_animation *m, const double *value, double *row)
         const int frame = m->scene.model->body[beam->body].frame;
         double *out = row + ct_animation_beam_column(m, i);
         for (size_t k = 0; k < (size_t)beam->npoint; k++)
-            to_axes(ct_scene_rotation(value, frame), ct_scene_place(value, frame),
+            to_axes(ct_scene_rotation(value, frame), ct_scene_position(value, frame),
                     value + beam->first + 3 * k, out + 3 * k);
     }
 }
@@ -180,8 +180,8 @@ static void find_local(struct ct_animation *m, const double *value)
 {
     for (size_t f = 0; f < m->scene.model->nframe; f++) {
         const int carrier = m->frame[m->pose_of[f]];
-        to_axes(ct_scene_rotation(value, carrier), ct_scene_place(value, carrier),
-                ct_scene_place(value, (int)f), m->local[f]);
+        to_axes(ct_scene_rotation(value, carrier), ct_scene_position(value, carrier),
+                ct_scene_position(value, (int)f), m->local[f]);
         for (int k = 0; k < 3; k++)
             to_axes(ct_scene_rotation(value, carrier), (double[3]){0},
                     ct_scene_rotation(value, (int)f) + 3 * (size_t)k,

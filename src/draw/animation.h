@@ -21,7 +21,7 @@
 #include "report/json.h"
 
 // CT_ANIMATION_FORCES includes positions
-enum ct_animation_content { CT_ANIMATION_PLACES, CT_ANIMATION_FORCES };
+enum ct_animation_content { CT_ANIMATION_POSITIONS, CT_ANIMATION_FORCES };
 
 struct ct_animation {
     struct ct_scene scene;

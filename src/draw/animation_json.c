@@ -1,6 +1,6 @@
 // See animation.h: what the page of a report reads.
 //
-//     view     "z": the one that draw takes; views: {NAME: {right, up}}
+//     view     "z": the view that `draw` chooses; views: {NAME: {right, up}}
 //     normal   of the plane of a planar mechanism, or null
 //     bodies   [{name, color, com, held: [[pose, x, y, z]], solids, beam: {column, points, length}}]; number i moves with pose i
 //     joints   [{name, symbol, from, to: {body, at: [pose, x, y, z]}, axes, spring, damper, reaction: column}]
@@ -40,7 +40,7 @@ static void write3(const struct work *w, const char *key, ct_ex3 v)
 }
 
 // Writes [pose, x, y, z]; a coordinate that is round-off of the others is 0.
-static void write_place(const struct work *w, const char *key, int pose, const double at[3])
+static void write_position(const struct work *w, const char *key, int pose, const double at[3])
 {
     const double size = fabs(at[0]) + fabs(at[1]) + fabs(at[2]);
     double v[4] = {pose};
@@ -51,7 +51,7 @@ static void write_place(const struct work *w, const char *key, int pose, const d
 
 static void write_frame(const struct work *w, const char *key, int frame)
 {
-    write_place(w, key, w->m->pose_of[frame], w->m->local[frame]);
+    write_position(w, key, w->m->pose_of[frame], w->m->local[frame]);
 }
 
 // ---- views ---------------------------------------------------------------------------------
@@ -272,13 +272,13 @@ static double *find_resolution(const struct work *w)
     const struct ct_animation *m = w->m;
     const size_t beams = ct_animation_beam_column(m, 0),
                  loads = ct_animation_beam_column(m, m->scene.nbeam);
-    const double place = smallest * size_of(m),
+    const double position = smallest * size_of(m),
                  force = smallest_force * extent(m, loads, 1, m->ncolumn - loads);
     double *resolution = CT_NEWN(w->a, double, m->ncolumn + 1);
     for (size_t c = 0; c < m->ncolumn; c++)
         resolution[c] = c >= loads ? force
-                      : c >= beams ? place / enlarged
-                      : c % 7 < 3  ? place
+                      : c >= beams ? position / enlarged
+                      : c % 7 < 3  ? position
                                    : smallest;
     return resolution;
 }

@@ -1,4 +1,4 @@
-// A picture in SVG, with a map of its occupied cells, so that labels find free places.
+// A picture in SVG, with a map of its occupied cells, so that labels find free areas.
 //
 // Positions are in pixels from the upper left corner. The file contains whole tenths of a
 // pixel, so that its text does not depend on the locale. What always holds: text from a model

@@ -43,21 +43,21 @@ static const char *unit_of_coordinate(const struct ct_build *b, int joint, const
     static const char *const of_length[] = {"m", "m/s", "m/s\xc2\xb2", "N"};
     static const char *const of_angle[] = {"rad", "rad/s", "rad/s\xc2\xb2", "N\xc2\xb7m"};
     const size_t letters = strcspn(property, "0123456789");
-    size_t k = 0, place = 0;
+    size_t k = 0, position = 0;
     while (k < COUNT(kinds)
            && (strlen(kinds[k]) != letters || strncmp(property, kinds[k], letters) != 0))
         k++;
     if (k == COUNT(kinds) || b->topology->edge_of_joint[joint] < 0)
         return NULL;
-    for (const char *p = property + letters; *p && place < 100; p++)
-        place = 10 * place + (size_t)(*p - '0');
-    place -= place > 0;
+    for (const char *p = property + letters; *p && position < 100; p++)
+        position = 10 * position + (size_t)(*p - '0');
+    position -= position > 0;
     const struct ct_motion *m = b->topology->edge[b->topology->edge_of_joint[joint]].trial;
-    if (m->quaternion >= 0 && place >= (size_t)m->quaternion)
+    if (m->quaternion >= 0 && position >= (size_t)m->quaternion)
         return k == 0 ? "" : of_angle[k];
-    if (place >= (size_t)m->nmeasure)
+    if (position >= (size_t)m->nmeasure)
         return NULL;
-    return m->measure[place].kind == CT_MEASURE_LENGTH ? of_length[k] : of_angle[k];
+    return m->measure[position].kind == CT_MEASURE_LENGTH ? of_length[k] : of_angle[k];
 }
 
 // OWNER.PROPERTY or OWNER.PROPERTY.x, optionally with " in AXES"; an owner may contain a dot.

@@ -16,7 +16,7 @@ struct drawing {
     struct ct_program program;
     double *value; // at the drawn state
     double *path;  // 3 x npath x nsample
-    size_t npath, nplace, nsample;
+    size_t npath, nposition, nsample;
     struct source { // of a path
         int body;
         size_t at; // index of its position among the values
@@ -51,12 +51,12 @@ static void find_paths(struct drawing *d)
     }
 }
 
-static void keep_places(struct drawing *d, const double *value)
+static void keep_positions(struct drawing *d, const double *value)
 {
-    for (size_t i = 0; i < d->npath && d->nplace < d->nsample; i++)
-        memcpy(d->path + 3 * (d->npath * d->nplace + i), value + d->source[i].at,
+    for (size_t i = 0; i < d->npath && d->nposition < d->nsample; i++)
+        memcpy(d->path + 3 * (d->npath * d->nposition + i), value + d->source[i].at,
                3 * sizeof *value);
-    d->nplace += d->nplace < d->nsample;
+    d->nposition += d->nposition < d->nsample;
 }
 
 // ---- steps, each with a guard --------------------------------------------------------------
@@ -99,7 +99,7 @@ static bool at_row(void *user, double t, const double *value, size_t n)
     (void)n;
     ct_program_run(&d->program, ct_run_evaluator(d->sim->run)->input);
     if (d->options->trace)
-        keep_places(d, d->program.out);
+        keep_positions(d, d->program.out);
     else
         memcpy(d->value, d->program.out, d->scene.nvalue * sizeof *d->value);
     return true;
@@ -121,7 +121,7 @@ static bool write(void *task)
            .caption = o->time > 0 ? ct_arena_printf(a, "t = %.6g s", o->time) : NULL,
            .path = d->path,
            .npath = d->npath,
-           .nplace = d->nplace,
+           .nposition = d->nposition,
            .path_body = path_body};
     const bool ok = ct_picture_write(d->ctx, a, &picture, o->path);
     ct_own_next_stage(&d->system->own);

@@ -9,7 +9,7 @@
 // Layout: of the picture
 enum { ROUND = 48 }; // corners of round shapes
 
-// ---- places --------------------------------------------------------------------------------
+// ---- positions -----------------------------------------------------------------------------
 
 static double number(const struct ct_model *m, ct_ex e)
 {
@@ -26,8 +26,8 @@ static void turn(const double n[3], double angle, double v[3])
         v[i] = c * v[i] + s * w[i] + along * n[i];
 }
 
-void ct_solid_place(const struct ct_scene *s, const double *value, int body,
-                    const struct ct_solid *solid, const double local[3], double out[3])
+void ct_solid_position(const struct ct_scene *s, const double *value, int body,
+                       const struct ct_solid *solid, const double local[3], double out[3])
 {
     const struct ct_model *m = s->model;
     double v[3] = {local[0], local[1], local[2]};
@@ -131,7 +131,7 @@ struct work {
     const struct ct_solid *solid;
     int body;
     const char *color;
-    double (*place)[3]; // of the corners
+    double (*position)[3]; // of the corners
 };
 
 static void find_normal(const double a[3], const double b[3], const double c[3], double n[3])
@@ -165,9 +165,9 @@ static struct ct_facet *add(struct work *w, const int *corner, size_t n, const b
                            .body = w->body,
                            .color = w->color};
     for (size_t k = 0; k < n; k++) {
-        const double *place = w->place[corner ? corner[k] : (int)k];
-        one.p[k] = ct_view_spot(f->view, place);
-        one.depth += ct_view_depth(f->view, place) / (double)n;
+        const double *position = w->position[corner ? corner[k] : (int)k];
+        one.p[k] = ct_view_spot(f->view, position);
+        one.depth += ct_view_depth(f->view, position) / (double)n;
     }
     CT_PUSH(f->arena, f->facet, f->n, f->cap, one);
     return &f->facet[f->n - 1];
@@ -177,7 +177,7 @@ static struct ct_facet *add(struct work *w, const int *corner, size_t n, const b
 static void add_outside(struct work *w, const int *corner, size_t n, const bool *is_edge)
 {
     double normal[3];
-    find_normal(w->place[corner[0]], w->place[corner[1]], w->place[corner[2]], normal);
+    find_normal(w->position[corner[0]], w->position[corner[1]], w->position[corner[2]], normal);
     if (ct_dot3(normal, w->f->view->toward) > 0)
         add(w, corner, n, is_edge)->light = light_on(w->f->view, normal);
 }
@@ -198,11 +198,11 @@ static void add_box(struct work *w)
         add_outside(w, side[k], 4, edge);
 }
 
-static bool looks_here(const struct work *w, int k)
+static bool faces_viewer(const struct work *w, int k)
 {
     double normal[3];
     const int next = (k + 1) % ROUND;
-    find_normal(w->place[k], w->place[next], w->place[ROUND + next], normal);
+    find_normal(w->position[k], w->position[next], w->position[ROUND + next], normal);
     return ct_dot3(normal, w->f->view->toward) > 0;
 }
 
@@ -215,8 +215,8 @@ static void add_cylinder(struct work *w)
         const int corner[4] = {k, next, ROUND + next, ROUND + k};
         bool *lines = CT_NEWN(w->f->arena, bool, 4);
         lines[0] = lines[2] = true;
-        lines[1] = !looks_here(w, next);
-        lines[3] = !looks_here(w, (k + ROUND - 1) % ROUND);
+        lines[1] = !faces_viewer(w, next);
+        lines[3] = !faces_viewer(w, (k + ROUND - 1) % ROUND);
         add_outside(w, corner, 4, lines);
     }
     for (int k = 0; k < ROUND; k++)
@@ -242,7 +242,7 @@ static void add_sphere(struct work *w, const double centre[3])
                     + r
                           * (cos(2 * CT_PI * k / FINE) * v->right[i]
                              + sin(2 * CT_PI * k / FINE) * v->up[i]);
-    w->place = p;
+    w->position = p;
     add(w, NULL, FINE, all_edges(w->f->arena, FINE))->light = lit;
 }
 
@@ -255,7 +255,7 @@ struct side {
     int k;
 };
 
-static int compare_places(const float *a, const float *b)
+static int compare_positions(const float *a, const float *b)
 {
     for (int i = 0; i < 3; i++)
         if (a[i] != b[i])
@@ -266,8 +266,8 @@ static int compare_places(const float *a, const float *b)
 static int compare_sides(const void *p, const void *q)
 {
     const struct side *s = p, *t = q;
-    int order = compare_places(s->a, t->a);
-    order = order ? order : compare_places(s->b, t->b);
+    int order = compare_positions(s->a, t->a);
+    order = order ? order : compare_positions(s->b, t->b);
     if (order)
         return order;
     return s->triangle != t->triangle ? (s->triangle < t->triangle ? -1 : 1) : s->k - t->k;
@@ -295,18 +295,19 @@ static void add_triangles(struct work *w)
     bool(*edge)[3] = ct_arena_calloc(a, n, sizeof *edge);
     bool is_closed = true;
     for (size_t i = 0; i < n; i++) {
-        find_normal(w->place[3 * i], w->place[3 * i + 1], w->place[3 * i + 2], normal[i]);
+        find_normal(w->position[3 * i], w->position[3 * i + 1], w->position[3 * i + 2],
+                    normal[i]);
         for (int k = 0; k < 3; k++) {
             const float *p = w->solid->triangle + 9 * i + 3 * k,
                         *q = w->solid->triangle + 9 * i + 3 * ((k + 1) % 3);
-            const bool in_order = compare_places(p, q) <= 0;
+            const bool in_order = compare_positions(p, q) <= 0;
             side[3 * i + (size_t)k] = (struct side){in_order ? p : q, in_order ? q : p, i, k};
         }
     }
     qsort(side, 3 * n, sizeof *side, compare_sides);
     for (size_t i = 0, end; i < 3 * n; i = end) {
-        for (end = i + 1; end < 3 * n && !compare_places(side[i].a, side[end].a)
-                          && !compare_places(side[i].b, side[end].b);)
+        for (end = i + 1; end < 3 * n && !compare_positions(side[i].a, side[end].a)
+                          && !compare_positions(side[i].b, side[end].b);)
             end++;
         is_closed &= end - i == 2;
         const bool line = is_line((const double(*)[3])normal, side + i, end - i, w->f->view);
@@ -331,11 +332,11 @@ static void add_solid(struct work *w)
     struct ct_facets *f = w->f;
     double(*local)[3];
     const size_t n = ct_solid_corners(f->arena, f->scene->model, w->solid, &local);
-    w->place = ct_arena_calloc(f->arena, n + 1, sizeof *w->place);
+    w->position = ct_arena_calloc(f->arena, n + 1, sizeof *w->position);
     for (size_t k = 0; k < n; k++)
-        ct_solid_place(f->scene, f->value, w->body, w->solid, local[k], w->place[k]);
+        ct_solid_position(f->scene, f->value, w->body, w->solid, local[k], w->position[k]);
     double centre[3];
-    ct_solid_place(f->scene, f->value, w->body, w->solid, (double[3]){0}, centre);
+    ct_solid_position(f->scene, f->value, w->body, w->solid, (double[3]){0}, centre);
     switch (w->solid->kind) {
     case CT_SOLID_BOX:
         add_box(w);

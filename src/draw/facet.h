@@ -29,8 +29,8 @@ void ct_facets_add_body(struct ct_facets *f, int body, const char *color);
 void ct_facets_sort(struct ct_facets *f);
 
 /// Position in ground axes of a point of a shape [m].
-void ct_solid_place(const struct ct_scene *s, const double *value, int body,
-                    const struct ct_solid *solid, const double local[3], double out[3]);
+void ct_solid_position(const struct ct_scene *s, const double *value, int body,
+                       const struct ct_solid *solid, const double local[3], double out[3]);
 /// Corners of the outline of a shape in its axes [m], sufficient for its extent. Returns their
 /// number.
 size_t ct_solid_corners(struct ct_arena *a, const struct ct_model *m,

@@ -7,7 +7,7 @@
 // ---- names ---------------------------------------------------------------------------------
 
 static void add_label(struct ct_sketch *d, const char *name, const char *attributes,
-                      double font, double away, const struct ct_spot *place, size_t n)
+                      double font, double away, const struct ct_spot *position, size_t n)
 {
     struct ct_label l = {.text = name,
                          .component = name,
@@ -16,8 +16,8 @@ static void add_label(struct ct_sketch *d, const char *name, const char *attribu
                          .away = away,
                          .n = n};
     struct ct_spot *copy = CT_NEWN(d->a, struct ct_spot, n);
-    memcpy(copy, place, n * sizeof *place);
-    l.place = copy;
+    memcpy(copy, position, n * sizeof *position);
+    l.position = copy;
     CT_PUSH(d->a, d->label, d->nlabel, d->label_cap, l);
 }
 
@@ -27,28 +27,28 @@ static void label_body(struct ct_sketch *d, int body)
     const struct ct_outline *o = &d->outline[body];
     const struct ct_body *m = &d->s->model->body[body];
     const int beam = d->s->body[body].beam;
-    struct ct_spot place[COUNT(share)];
+    struct ct_spot position[COUNT(share)];
     size_t n = 0;
     double away = ct_sketch_body_width(d) / 2 + 3;
     if (ct_sketch_has_shape(d, body)) {
         for (; n < COUNT(d->edge[body]); n++)
-            place[n] = d->edge[body][n];
+            position[n] = d->edge[body][n];
     } else if (beam >= 0) {
         const struct ct_scene_beam *b = &d->s->beam[beam];
         for (; n < COUNT(share); n++)
-            place[n] = ct_sketch_spot(d, d->value + b->first
-                                             + 3 * (size_t)(share[n] * (b->npoint - 1)));
+            position[n] = ct_sketch_spot(d, d->value + b->first
+                                                + 3 * (size_t)(share[n] * (b->npoint - 1)));
     } else if (o->n > 1) {
         for (; n < COUNT(share); n++)
-            place[n] = ct_sketch_between(o->p[0], o->p[1], share[n]);
+            position[n] = ct_sketch_between(o->p[0], o->p[1], share[n]);
     } else {
-        place[n++] = ct_sketch_frame_spot(d, m->frame);
+        position[n++] = ct_sketch_frame_spot(d, m->frame);
         away = 2 * d->pen.size;
     }
     const char *attributes
         = ct_arena_printf(d->a, "class=\"name\" fill=\"%s\" font-size=\"%d\"",
                           ct_sketch_color_of(body), 10 * CT_FONT);
-    add_label(d, m->instance.name, attributes, CT_FONT, away, place, n);
+    add_label(d, m->instance.name, attributes, CT_FONT, away, position, n);
 }
 
 // Names: bodies first, then joints, springs and loads.

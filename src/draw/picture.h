@@ -11,9 +11,9 @@ struct ct_picture {
     const char *title;
     struct ct_view view; // as ct_view_choose gives it
     const char *caption; // "t = 1.5 s"; NULL: none
-    // paths of points over the run: place k of path i is at path[3 (npath k + i)]
+    // paths of points over the run: position k of path i is at path[3 (npath k + i)]
     const double *path;
-    size_t npath, nplace;
+    size_t npath, nposition;
     const int *path_body; // by path: body of the point, for its colour
 };
 

@@ -33,7 +33,7 @@ static bool find_box(const struct ct_canvas *c, const struct ct_label *l, struct
             for (int d = 0; d < NDIRECTION; d++) {
                 const double angle = 2 * CT_PI * order[d] / NDIRECTION;
                 const double away = l->away + 5.0 * k;
-                *found = box_at(l, l->place[i], angle, away, width);
+                *found = box_at(l, l->position[i], angle, away, width);
                 if (ct_canvas_count_taken(c, found->low, found->high) == 0)
                     return true;
             }

@@ -12,7 +12,7 @@ struct ct_label {
     double font; // [px]
     double away; // [px] from the anchor points to the nearest edge of the text
     size_t n;
-    const struct ct_spot *place; // anchor points, best first
+    const struct ct_spot *position; // anchor points, best first
 };
 
 /// Writes the labels in their order and marks their areas as occupied. Cost: labels x anchor

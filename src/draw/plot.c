@@ -144,7 +144,7 @@ static struct axis choose_axis(double low, double high, int count, bool is_whole
     return a;
 }
 
-static double place(const struct axis *a, double v)
+static double position(const struct axis *a, double v)
 {
     return a->from + (v - a->low) / (a->high - a->low) * (a->to - a->from);
 }
@@ -257,7 +257,7 @@ static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
     const double roundoff = 1e-9;
     for (double n = ceil(x->low / x->step - roundoff);
          n * x->step <= x->high + roundoff * x->step; n++) {
-        const double at = place(x, n * x->step);
+        const double at = position(x, n * x->step);
         ct_canvas_line(&w->canvas, (struct ct_spot){at, y->from}, (struct ct_spot){at, y->to},
                        grid, 0);
         if (is_last)
@@ -266,7 +266,7 @@ static void draw_ticks(struct work *w, const struct panel *panel, bool is_last)
     }
     for (double n = ceil(y->low / y->step - roundoff);
          n * y->step <= y->high + roundoff * y->step; n++) {
-        const double at = place(y, n * y->step);
+        const double at = position(y, n * y->step);
         ct_canvas_line(&w->canvas, (struct ct_spot){x->from, at}, (struct ct_spot){x->to, at},
                        grid, 0);
         ct_canvas_text(&w->canvas, (struct ct_spot){x->from - 7, at + 4}, "end", "",
@@ -312,8 +312,8 @@ static void draw_line(struct work *w, const struct panel *panel, size_t k)
     struct ct_spot *p = CT_NEWN(w->a, struct ct_spot, w->nsample);
     char style[128];
     for (size_t s = 0; s < w->nsample; s++)
-        p[s] = (struct ct_spot){place(&w->x, w->p->row[s * w->width]),
-                                place(&panel->y, value_at(w, s, column))};
+        p[s] = (struct ct_spot){position(&w->x, w->p->row[s * w->width]),
+                                position(&panel->y, value_at(w, s, column))};
     const size_t n = ct_spots_thin(w->a, p, w->nsample, invisible);
     const double y = panel->y.to + LINE * ((double)k + 0.5), x = w->x.to + 14;
     line_style(style, sizeof style, k);

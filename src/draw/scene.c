@@ -77,13 +77,13 @@ static void create_joint(struct ct_build *b, size_t i, struct ct_scene_joint *j)
 
 // ---- bodies --------------------------------------------------------------------------------
 
-static void hold(bool *held, int frame)
+static void mark_attached(bool *held, int frame)
 {
     if (frame >= 0)
         held[frame] = true;
 }
 
-// The frames held by joints, springs and forces, body by body in one list.
+// The frames to which joints, springs and forces are attached, body by body in one list.
 static void list_held(struct ct_arena *a, struct ct_scene *s, const bool *held)
 {
     const struct ct_model *m = s->model;
@@ -107,12 +107,12 @@ static void create_bodies(struct ct_arena *a, struct ct_scene *s)
     const struct ct_model *m = s->model;
     bool *held = CT_NEWN(a, bool, m->nframe);
     for (size_t i = 0; i < m->njoint; i++) {
-        hold(held, s->joint[i].from);
-        hold(held, s->joint[i].to);
+        mark_attached(held, s->joint[i].from);
+        mark_attached(held, s->joint[i].to);
     }
     for (size_t i = 0; i < m->nforce; i++) {
-        hold(held, s->force[i].from);
-        hold(held, s->force[i].to);
+        mark_attached(held, s->force[i].from);
+        mark_attached(held, s->force[i].to);
     }
     s->body = CT_NEWN(a, struct ct_scene_body, m->nbody);
     for (size_t i = 0; i < m->nbody; i++) {
@@ -246,7 +246,7 @@ void ct_scene_direction(const double *value, int frame, const double local[3], d
 
 void ct_scene_point(const double *value, int frame, const double local[3], double out[3])
 {
-    const double *r = ct_scene_place(value, frame);
+    const double *r = ct_scene_position(value, frame);
     ct_scene_direction(value, frame, local, out);
     for (int i = 0; i < 3; i++)
         out[i] += r[i];

@@ -4,7 +4,7 @@
 //
 //     scene (made once)                        values at a state (scene.nvalue numbers)
 //       frame[f]  name, body                     position (3) and rotation to ground (3 x 3)
-//       body[i]   frames held, shapes            --
+//       body[i]   attached frames, shapes        --
 //       joint[j]  symbol, ends, axes             --
 //       force[k]  spring, force, torque, ends    force and torque (3 + 3) of external loads
 //       beam[i]   body, points of its axis       points (3 x npoint)
@@ -60,7 +60,7 @@ struct ct_scene_body {
     double com[3]; // axes of the body [m]
     bool has_mass;
     int beam;  // -1: none
-    int nheld; // number of frames that joints, springs and forces hold
+    int nheld; // number of frames to which joints, springs and forces are attached
     int *held;
 };
 
@@ -87,7 +87,7 @@ void ct_scene_compile(struct ct_arena *a, const struct ct_scene *s, struct ct_ev
                       struct ct_program *p);
 
 /// Position (3) and rotation (3 x 3, column-major, frame axes -> ground) of a frame.
-static inline const double *ct_scene_place(const double *value, int frame)
+static inline const double *ct_scene_position(const double *value, int frame)
 {
     return value + (size_t)12 * (size_t)frame;
 }

@@ -20,72 +20,72 @@ enum {
 
 // ---- how large it is -----------------------------------------------------------------------
 
-struct reach {
+struct extent {
     double low[3], high[3]; // along right, up; depth
 };
 
-static void reach_out(struct reach *r, const struct ct_view *v, const double place[3])
+static void extend_to(struct extent *r, const struct ct_view *v, const double position[3])
 {
     const double at[3]
-        = {ct_dot3(v->right, place), ct_dot3(v->up, place), ct_dot3(v->toward, place)};
+        = {ct_dot3(v->right, position), ct_dot3(v->up, position), ct_dot3(v->toward, position)};
     for (int i = 0; i < 3; i++) {
         r->low[i] = fmin(r->low[i], at[i]);
         r->high[i] = fmax(r->high[i], at[i]);
     }
 }
 
-// Centres of mass are shown for bodies with fewer than two held positions.
-static bool shows_centre(const struct ct_sketch *d, int body)
+// Does the body have mass and a centre of mass away from the origin of its frame?
+static bool has_offset_centre(const struct ct_sketch *d, int body)
 {
     const double *c = d->s->body[body].com;
     return d->s->body[body].has_mass && ct_dot3(c, c) > 0;
 }
 
-static void reach_body(const struct ct_sketch *d, int body, struct reach *r)
+static void extend_to_body(const struct ct_sketch *d, int body, struct extent *r)
 {
     const struct ct_scene_body *b = &d->s->body[body];
     const struct ct_body *m = &d->s->model->body[body];
-    double place[3];
+    double position[3];
     for (int i = 0; i < b->nheld; i++)
-        reach_out(r, &d->view, ct_scene_place(d->value, b->held[i]));
+        extend_to(r, &d->view, ct_scene_position(d->value, b->held[i]));
     if (body > 0)
-        reach_out(r, &d->view, ct_scene_place(d->value, m->frame));
-    if (shows_centre(d, body) && b->nheld < 3) {
-        ct_scene_point(d->value, m->frame, b->com, place);
-        reach_out(r, &d->view, place);
+        extend_to(r, &d->view, ct_scene_position(d->value, m->frame));
+    if (has_offset_centre(d, body) && b->nheld < 3) {
+        ct_scene_point(d->value, m->frame, b->com, position);
+        extend_to(r, &d->view, position);
     }
     for (size_t i = 0; i < m->nsolid; i++) {
         double(*corner)[3];
         const struct ct_solid *solid = &m->solid[i];
         const size_t n = ct_solid_corners(d->a, d->s->model, solid, &corner);
         for (size_t k = 0; k < n; k++) {
-            ct_solid_place(d->s, d->value, body, solid, corner[k], place);
-            reach_out(r, &d->view, place);
+            ct_solid_position(d->s, d->value, body, solid, corner[k], position);
+            extend_to(r, &d->view, position);
         }
     }
 }
 
-static struct reach find_reach(const struct ct_sketch *d)
+static struct extent find_extent(const struct ct_sketch *d)
 {
-    struct reach r = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    struct extent r = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     const struct ct_picture *p = d->picture;
     for (size_t i = 0; i < d->s->model->nbody; i++)
-        reach_body(d, (int)i, &r);
+        extend_to_body(d, (int)i, &r);
     for (size_t i = 0; i < d->s->nbeam; i++)
         for (int k = 0; k < d->s->beam[i].npoint; k++)
-            reach_out(&r, &d->view, d->value + d->s->beam[i].first + (size_t)3 * (size_t)k);
-    for (size_t k = 0; k < p->npath * p->nplace; k++)
-        reach_out(&r, &d->view, p->path + 3 * k);
+            extend_to(&r, &d->view, d->value + d->s->beam[i].first + (size_t)3 * (size_t)k);
+    for (size_t k = 0; k < p->npath * p->nposition; k++)
+        extend_to(&r, &d->view, p->path + 3 * k);
     for (int i = 0; i < 3; i++)
         if (!(r.low[i] <= r.high[i]))
             r.low[i] = r.high[i] = 0;
     return r;
 }
 
-// Scale and place of the view; width and height of the picture.
+// Scale and position of the view; width and height of the picture.
 void ct_sketch_fit(struct ct_sketch *d, double *width, double *height)
 {
-    const struct reach r = find_reach(d);
+    const struct extent r = find_extent(d);
     const double w = r.high[0] - r.low[0], h = r.high[1] - r.low[1];
     d->size = fmax(fmax(w, h), r.high[2] - r.low[2]);
     const double nothing = CT_DATA_ROUNDOFF * d->size;
@@ -182,20 +182,20 @@ void ct_sketch_find_blocks(struct ct_sketch *d)
 
 // ---- what bodies are drawn as --------------------------------------------------------------
 
-static bool add_place(const struct ct_sketch *d, struct ct_outline *o, const double place[3],
-                      const double **known, size_t *n)
+static bool add_position(const struct ct_sketch *d, struct ct_outline *o,
+                         const double position[3], const double **known, size_t *n)
 {
     const double same = CT_SKETCH_RESOLUTION * d->size; // [m]
     for (size_t i = 0; i < *n; i++) {
         double across[3];
         for (int k = 0; k < 3; k++)
-            across[k] = place[k] - known[i][k];
+            across[k] = position[k] - known[i][k];
         if (sqrt(ct_dot3(across, across)) <= same)
             return false;
     }
-    known[(*n)++] = place;
-    o->p[o->n++] = ct_sketch_spot(d, place);
-    o->depth += ct_view_depth(&d->view, place);
+    known[(*n)++] = position;
+    o->p[o->n++] = ct_sketch_spot(d, position);
+    o->depth += ct_view_depth(&d->view, position);
     return true;
 }
 
@@ -256,17 +256,18 @@ static void find_outline(struct ct_sketch *d, int body)
     size_t n = 0;
     o->p = CT_NEWN(d->a, struct ct_spot, b->nheld + 2);
     for (int i = 0; i < b->nheld; i++)
-        add_place(d, o, ct_scene_place(d->value, b->held[i]), known, &n);
+        add_position(d, o, ct_scene_position(d->value, b->held[i]), known, &n);
     if (d->block[body])
-        add_place(d, o, d->block[body], known, &n);
+        add_position(d, o, d->block[body], known, &n);
     if (body > 0 && o->n == 0)
-        add_place(d, o, ct_scene_place(d->value, d->s->model->body[body].frame), known, &n);
-    if (body > 0 && shows_centre(d, body)) {
-        double *place = CT_NEWN(d->a, double, 3);
-        ct_scene_point(d->value, d->s->model->body[body].frame, b->com, place);
-        if (n < 2 || (n == 2 && extends(known[0], known[1], place)))
-            o->has_centre = add_place(d, o, place, known, &n);
-        o->centre = ct_sketch_spot(d, place);
+        add_position(d, o, ct_scene_position(d->value, d->s->model->body[body].frame), known,
+                     &n);
+    if (body > 0 && has_offset_centre(d, body)) {
+        double *position = CT_NEWN(d->a, double, 3);
+        ct_scene_point(d->value, d->s->model->body[body].frame, b->com, position);
+        if (n < 2 || (n == 2 && extends(known[0], known[1], position)))
+            o->has_centre = add_position(d, o, position, known, &n);
+        o->centre = ct_sketch_spot(d, position);
     }
     if (o->n)
         o->depth /= (double)o->n;
@@ -275,7 +276,7 @@ static void find_outline(struct ct_sketch *d, int body)
 }
 
 // Both bodies of a telescope extend to its block.
-static void reach_blocks(struct ct_sketch *d)
+static void find_blocks_of_telescopes(struct ct_sketch *d)
 {
     for (size_t i = 0; i < d->s->model->njoint; i++) {
         const struct ct_scene_joint *j = &d->s->joint[i];
@@ -283,9 +284,9 @@ static void reach_blocks(struct ct_sketch *d)
             continue;
         double *middle = CT_NEWN(d->a, double, 3);
         for (int k = 0; k < 3; k++)
-            middle[k]
-                = (ct_scene_place(d->value, j->from)[k] + ct_scene_place(d->value, j->to)[k])
-                / 2;
+            middle[k] = (ct_scene_position(d->value, j->from)[k]
+                         + ct_scene_position(d->value, j->to)[k])
+                      / 2;
         d->block[ct_sketch_body_of(d, j->from)] = d->block[ct_sketch_body_of(d, j->to)]
             = middle;
     }
@@ -294,7 +295,7 @@ static void reach_blocks(struct ct_sketch *d)
 void ct_sketch_find_outlines(struct ct_sketch *d)
 {
     d->block = CT_NEWN(d->a, const double *, d->s->model->nbody);
-    reach_blocks(d);
+    find_blocks_of_telescopes(d);
     d->outline = CT_NEWN(d->a, struct ct_outline, d->s->model->nbody);
     for (size_t i = 0; i < d->s->model->nbody; i++)
         find_outline(d, (int)i);

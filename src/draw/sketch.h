@@ -49,14 +49,14 @@ static inline const char *ct_sketch_color_of(int body)
     return body == 0 ? "#606060" : ct_palette[(body - 1) % CT_NPALETTE];
 }
 
-static inline struct ct_spot ct_sketch_spot(const struct ct_sketch *d, const double place[3])
+static inline struct ct_spot ct_sketch_spot(const struct ct_sketch *d, const double position[3])
 {
-    return ct_view_spot(&d->view, place);
+    return ct_view_spot(&d->view, position);
 }
 
 static inline struct ct_spot ct_sketch_frame_spot(const struct ct_sketch *d, int frame)
 {
-    return ct_sketch_spot(d, ct_scene_place(d->value, frame));
+    return ct_sketch_spot(d, ct_scene_position(d->value, frame));
 }
 
 static inline double ct_sketch_distance(struct ct_spot a, struct ct_spot b)
@@ -101,7 +101,7 @@ static inline double ct_sketch_size_of(const double v[3])
 
 // ---- sketch.c ------------------------------------------------------------------------------
 
-/// Scale and place of the view; width and height of the picture [px].
+/// Scale and position of the view; width and height of the picture [px].
 void ct_sketch_fit(struct ct_sketch *d, double *width, double *height);
 /// The largest size of pins that fits between neighbours [px].
 double ct_sketch_symbol_size(const struct ct_sketch *d);

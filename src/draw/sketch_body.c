@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 // Layout: of the picture
-enum { TRIAD = 46 }; // [px], axes of a loose body
+enum { TRIAD = 46 }; // [px], axes of a free body
 
 // ---- drawing: paths, bodies ----------------------------------------------------------------
 
@@ -18,12 +18,12 @@ static bool is_drawn_already(const struct ct_sketch *d, size_t i)
     const double same = 0.5; // [px]
     for (size_t other = 0; other < i; other++) {
         size_t k = 0;
-        while (k < q->nplace
+        while (k < q->nposition
                && ct_sketch_distance(ct_sketch_spot(d, q->path + 3 * (q->npath * k + i)),
                                      ct_sketch_spot(d, q->path + 3 * (q->npath * k + other)))
                       < same)
             k++;
-        if (k == q->nplace)
+        if (k == q->nposition)
             return true;
     }
     return false;
@@ -34,15 +34,15 @@ static void draw_path(struct ct_sketch *d, size_t i)
     const struct ct_picture *q = d->picture;
     // Layout: of the picture
     const double invisible = 0.15, still = 1; // [px]
-    struct ct_spot *p = CT_NEWN(d->a, struct ct_spot, q->nplace);
+    struct ct_spot *p = CT_NEWN(d->a, struct ct_spot, q->nposition);
     double moved = 0;
-    for (size_t k = 0; k < q->nplace; k++) {
+    for (size_t k = 0; k < q->nposition; k++) {
         p[k] = ct_sketch_spot(d, q->path + 3 * (q->npath * k + i));
         moved = fmax(moved, ct_sketch_distance(p[k], p[0]));
     }
     if (moved < still || is_drawn_already(d, i))
         return;
-    const size_t n = ct_spots_thin(d->a, p, q->nplace, invisible);
+    const size_t n = ct_spots_thin(d->a, p, q->nposition, invisible);
     char style[128];
     snprintf(style, sizeof style,
              "stroke=\"%s\" stroke-width=\"9\" fill=\"none\" stroke-opacity=\"0.75\"",
@@ -52,7 +52,7 @@ static void draw_path(struct ct_sketch *d, size_t i)
 
 void ct_sketch_draw_paths(struct ct_sketch *d)
 {
-    if (d->picture->nplace < 2)
+    if (d->picture->nposition < 2)
         return;
     ct_canvas_open(&d->canvas, "traces", NULL, "stroke-linejoin=\"round\"");
     for (size_t i = 0; i < d->picture->npath; i++)
@@ -146,7 +146,7 @@ void ct_sketch_draw_shapes(struct ct_sketch *d)
     ct_facets_sort(&f);
     d->edge = ct_arena_calloc(d->a, d->s->model->nbody, sizeof *d->edge);
     find_edges(d, &f);
-    for (size_t i = 0, end; i < f.n; i = end) { // a group for each run of one body's
+    for (size_t i = 0, end; i < f.n; i = end) { // one group for consecutive facets of a body
         ct_canvas_open(&d->canvas, "body", d->s->model->body[f.facet[i].body].instance.name,
                        "stroke-linejoin=\"round\"");
         for (end = i; end < f.n && f.facet[end].body == f.facet[i].body; end++)

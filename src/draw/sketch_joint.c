@@ -236,7 +236,6 @@ void ct_sketch_draw_joints(struct ct_sketch *d)
 
 static const char load_color[] = "#b00020";
 
-// Is there an arrow?
 bool ct_sketch_acts(const struct ct_sketch *d, const struct ct_scene_force *f)
 {
     return f->first != SIZE_MAX

@@ -127,7 +127,8 @@ static void draw_box(struct ct_pen *pen, struct ct_spot at, const double n[3],
     }
 }
 
-// Axes of a box about n that look solid: the vertical, if it is perpendicular to n, else any.
+// Two axes of a box perpendicular to n: a is horizontal, b as close to the vertical of the view as
+// possible. If n is vertical: as `across`.
 static void box_axes(const struct ct_view *v, const double n[3], double a[3], double b[3])
 {
     cross3(v->up, n, a);

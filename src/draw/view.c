@@ -73,10 +73,10 @@ bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *nam
     return true;
 }
 
-struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3])
+struct ct_spot ct_view_spot(const struct ct_view *v, const double position[3])
 {
-    return (struct ct_spot){v->origin.x + v->scale * (ct_dot3(v->right, place) - v->low[0]),
-                            v->origin.y - v->scale * (ct_dot3(v->up, place) - v->low[1])};
+    return (struct ct_spot){v->origin.x + v->scale * (ct_dot3(v->right, position) - v->low[0]),
+                            v->origin.y - v->scale * (ct_dot3(v->up, position) - v->low[1])};
 }
 
 struct ct_spot ct_view_across(const struct ct_view *v, const double direction[3])
@@ -84,7 +84,7 @@ struct ct_spot ct_view_across(const struct ct_view *v, const double direction[3]
     return (struct ct_spot){ct_dot3(v->right, direction), -ct_dot3(v->up, direction)};
 }
 
-double ct_view_depth(const struct ct_view *v, const double place[3])
+double ct_view_depth(const struct ct_view *v, const double position[3])
 {
-    return ct_dot3(v->toward, place);
+    return ct_dot3(v->toward, position);
 }

@@ -18,10 +18,10 @@ struct ct_view {
 /// else isometric. False: no such view.
 bool ct_view_choose(struct ct_view *v, const struct ct_scene *s, const char *name);
 
-struct ct_spot ct_view_spot(const struct ct_view *v, const double place[3]);
+struct ct_spot ct_view_spot(const struct ct_view *v, const double position[3]);
 /// Projection of a direction onto the view, per unit of length; y downwards.
 struct ct_spot ct_view_across(const struct ct_view *v, const double direction[3]);
-double ct_view_depth(const struct ct_view *v, const double place[3]);
+double ct_view_depth(const struct ct_view *v, const double position[3]);
 
 static inline double ct_dot3(const double a[3], const double b[3])
 {

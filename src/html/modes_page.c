@@ -131,7 +131,7 @@ static bool write(void *task)
     struct ct_outfile file;
     if (!ct_html_is_built(p->ctx))
         return false;
-    ct_animation_create(a, s->at.e->build, CT_ANIMATION_PLACES, &p->animation);
+    ct_animation_create(a, s->at.e->build, CT_ANIMATION_POSITIONS, &p->animation);
     ct_animation_compile(a, &p->animation, s->at.l->m);
     find_rows(p);
     ct_evaluator_remove_program(s->at.l->m, &p->animation.values.program);
