@@ -3,7 +3,7 @@
 //   across   d = R r, v = v_B + R (w x r + r_q q')           arm to a point P, r = x_P + U(q)
 //            R_P = R S(theta), w_P = w_B + R Y q'
 //   through  F_B = -R int mu c dx                            [N]     c: acceleration of the section
-//            T_B = -R int mu r x c dx                        [N m]   less gravity, body axes
+//            T_B = -R int mu r x c dx                        [N m]   minus gravity, body axes
 //            effort(q) = -int mu r_q . c dx - V_q            V: strain energy
 //
 // Source: formulation (1.6), (5.4), (5.5).
@@ -83,5 +83,5 @@ const struct ct_component_class ct_component_beam = {
     .nkey = COUNT(keys),
     .across = "section at x: d = r(x, q), S(x, q)",
     .through = "F = -int(mu*c), T = -int(mu*r x c), effort(q) = -int(mu*r_q . c) - V_q; c: "
-               "acceleration of the section less g",
+               "acceleration of the section minus g",
 };

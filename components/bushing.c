@@ -64,8 +64,8 @@ static void apply(struct ct_build *b, const struct ct_instance *self)
               to = b->kinematics->placement[head].frame;
     const ct_ex3 k = three(self, "stiffness", 0), kr = three(self, "stiffness", 3);
     const ct_ex3 c = three(self, "damping", 0), cr = three(self, "damping", 3);
-    const ct_ex3 place = ct_path_position_seen(b, tail, head);
-    const ct_ex3 rate = ct_path_velocity_seen(b, tail, head);
+    const ct_ex3 place = ct_path_position_in_tail(b, tail, head);
+    const ct_ex3 rate = ct_path_velocity_in_tail(b, tail, head);
     const ct_ex3 w = ct_node_unturn(b, tail, ct_cluster_path_velocity(b, from, to));
     const ct_ex33 A = ct_node_rotation(b, tail), B = ct_node_rotation(b, head);
     const ct_ex33 T = ct_ex33_transpose(&A), R = ct_ex33_mul(x, &T, &B);

@@ -76,8 +76,8 @@ double ct_beam_mode_steady_force(const struct ct_beam_mode *s, const double b[9]
     const bool is_z = s->is_z;
     const double *w = b, *v = b + 3;
     const double turned = is_z ? w[0] * v[1] - w[1] * v[0] : w[2] * v[0] - w[0] * v[2];
-    const double weight = b[6 + (is_z ? 2 : 1)], swept = w[0] * w[is_z ? 2 : 1];
-    return s->mass[0] * (weight - turned) - s->mass[1] * swept;
+    const double weight = b[6 + (is_z ? 2 : 1)], centripetal = w[0] * w[is_z ? 2 : 1];
+    return s->mass[0] * (weight - turned) - s->mass[1] * centripetal;
 }
 
 double ct_beam_mode_base_momentum(const struct ct_beam_mode *s, const double V[6])

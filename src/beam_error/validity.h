@@ -12,7 +12,7 @@
 //     Kg1 = int P1 s s' dx,   P1(x) = int_x^L m x dx,   s: slopes of the shapes
 //     Kg2 = int P2 s s' dx,   P2(x) = int_x^L m dx
 //
-// w: angular velocity of the base; a_x: its acceleration less gravity, along the beam. eta is the
+// w: angular velocity of the base; a_x: its acceleration minus gravity, along the beam. eta is the
 // ratio of motion-induced to elastic stiffness. For a beam at rest under its loads it is the
 // relative error of the linear model. The error in a motion is estimated in beam_error_modal.h.
 #ifndef CT_BEAM_ERROR_VALIDITY_H

@@ -118,7 +118,7 @@ static void add_edge(const struct ct_repetitions *p, const struct ct_repetition 
 }
 
 // Resolve an operand as results of one instruction of a repetition at constant row distance; values
-// before its first and after its last row are stored beside them.
+// before its first and after its last row are stored next to them.
 static bool resolve_results(const struct ct_repetitions *p, struct ct_repetition *r,
                             uint32_t operand, struct ct_source *out)
 {

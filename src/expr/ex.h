@@ -246,9 +246,9 @@ ct_ex ct_ex_subst(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
 /// The same for all of a (na) in one walk.
 void ct_ex_subst_list(struct ct_exs *x, ct_ex *a, size_t na, const ct_ex *from, const ct_ex *to,
                       size_t n);
-/// The same, but nodes without symbols of the kinds of from stay as they are, while the functions
-/// above make all nodes anew, which may simplify them. Cost: nodes below a that have such symbols
-/// below them.
+/// The same, but nodes without symbols of the kinds of from stay as they are. The functions above
+/// rebuild all nodes, which may simplify them. Cost: nodes below a that have such symbols below
+/// them.
 ct_ex ct_ex_subst_within(struct ct_exs *x, ct_ex a, const ct_ex *from, const ct_ex *to,
                          size_t n);
 /// A node that has operands, made in x from image[id] of each operand.

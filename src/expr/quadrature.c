@@ -35,7 +35,8 @@ void ct_gauss(int n, double point[], double weight[])
 }
 
 static const uint32_t none = UINT32_MAX; // not a polynomial
-// Limit: degree that is told, far beyond that of a rule; sums of two stay far below `none`
+// Limit: largest degree that is distinguished, far above that of a rule; the sum of two such
+// degrees stays far below `none`
 static const uint32_t most = 1000;
 
 static uint32_t larger(uint32_t a, uint32_t b)

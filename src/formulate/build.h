@@ -92,7 +92,7 @@ struct ct_topology {
     ct_ex *layer;              // by node: its position along n [m]
     // by node: rotation from its axes to ground axes with all joints at rest; identity where the
     // normal has the same components in both
-    ct_ex33 *upright;
+    ct_ex33 *reference_axes;
 };
 
 /// Motion of an edge in terms of the coordinates of the chosen trees.

@@ -145,7 +145,7 @@ static void warn_of_cuts(struct ct_ctx *ctx, const struct ct_build *b)
         if (f->cut > 0)
             ct_warning(ctx, f->beam->modes_mark, 0,
                        "beam '%s' has several modes of %.6g rad/s, and `modes` keeps only some "
-                       "of them, which ones is chance; take %s%d",
+                       "of them, an arbitrary choice; take %s%d",
                        f->name, f->cut,
                        f->uncut[0] ? ct_arena_printf(ctx->scratch, "%d or ", f->uncut[0]) : "",
                        f->uncut[1]);

@@ -159,7 +159,7 @@ static bool may_keep(const struct ct_build *b, const struct ct_formulate_options
 }
 
 // Cost of a pair, derived in the trial arena and discarded. The chosen pair reports errors later.
-static double passing_cost(struct trials *s, const struct ct_tree *T, const struct ct_tree *R)
+static double trial_cost(struct trials *s, const struct ct_tree *T, const struct ct_tree *R)
 {
     ct_arena_clear(s->arena);
     struct ct_ctx quiet = {.model = s->arena, .scratch = s->arena};
@@ -220,8 +220,8 @@ static double pair_cost(void *data, const struct ct_tree *T, const struct ct_tre
         s->T = *T;
         s->R = *R;
     }
-    const double cost = is_first && may_keep(s->open, s->options) ? kept_cost(s, T, R)
-                                                                  : passing_cost(s, T, R);
+    const double cost
+        = is_first && may_keep(s->open, s->options) ? kept_cost(s, T, R) : trial_cost(s, T, R);
     if (is_first)
         s->cost = cost;
     list_pair(s, T, R, cost);

@@ -421,7 +421,7 @@ static bool report_open(struct ct_data *d)
                   : d->sim.system->model.joint[joint].mark,
         CT_E_OFF,
         "the state at t = %.9g cannot be assembled: the constraint '%s' is off by %.3g, and "
-        "no place near by meets all",
+        "no configuration near it satisfies all constraints",
         d->t, e->row[worst].name, m->phi[worst]);
     for (size_t i = 0; i < m->nrow; i++)
         if (i != worst && fabs(m->phi[i]) > 0.1 * fabs(m->phi[worst]))

@@ -14,9 +14,10 @@
 #include <math.h>
 #include <string.h>
 
-// Derived: the square root of eps, as accelerations may come from a plan or another program and
-// have half the digits.
-static const double met = 1.5e-8;
+// A constraint is satisfied by accelerations if its residual is below this, relatively. Derived: the
+// square root of eps, as accelerations may come from a plan or another program and have half the
+// digits.
+static const double allowed_residual = 1.5e-8;
 
 struct inverse {
     struct ct_ctx *ctx;
@@ -35,7 +36,7 @@ static size_t larger(size_t a, size_t b)
 }
 
 // v (nu) <- P v.
-static void take_out(struct inverse *s, double *v)
+static void project(struct inverse *s, double *v)
 {
     const struct ct_evaluator *m = ct_run_evaluator(s->d->sim.run);
     const size_t n = s->d->nu, r = m->nrow;
@@ -82,7 +83,7 @@ static bool are_allowed(const struct inverse *s)
             sum += d->J[i * d->nu + k] * s->a[k];
             size += fabs(d->J[i * d->nu + k] * s->a[k]);
         }
-        if (!(fabs(sum) <= met * fmax(size, 1)))
+        if (!(fabs(sum) <= allowed_residual * fmax(size, 1)))
             return ct_error(
                 s->ctx, (struct ct_mark){0}, CT_E_INVERSE,
                 "the constraint '%s' does not allow these accelerations: it would be "
@@ -105,9 +106,9 @@ static bool find_in_loops(struct inverse *s, double *b)
     double size = ct_vector_largest(b, n), left = 0;
     for (int k = 0; k < s->n; k++) {
         PS[n * (size_t)k + (size_t)s->speed[k]] = 1;
-        take_out(s, PS + n * (size_t)k);
+        project(s, PS + n * (size_t)k);
     }
-    take_out(s, b);
+    project(s, b);
     kept = CT_NEWN(a, double, n *(size_t)s->n + 1);
     memcpy(kept, PS, n * (size_t)s->n * sizeof *kept);
     memcpy(tau, b, n * sizeof *tau);
@@ -123,7 +124,7 @@ static bool find_in_loops(struct inverse *s, double *b)
     memset(s->effort, 0, n * sizeof *s->effort);
     for (int k = 0; k < s->n; k++)
         s->effort[s->speed[k]] = tau[k];
-    if (left > met * size)
+    if (left > allowed_residual * size)
         return ct_error(s->ctx, (struct ct_mark){0}, CT_E_INVERSE,
                         "efforts of %d joint coordinates do not give these accelerations: a "
                         "generalised force of %.3g is left of %.3g",

@@ -14,8 +14,8 @@ static const char *const axis_name[] = {"x", "y", "z"};
 
 static ct_ex symbol(struct ct_exs *x, enum ct_sym_kind kind, const char *name)
 {
-    static const uint32_t not_a_number = UINT32_MAX; // of a speed or multiplier of the system
-    return ct_ex_sym(x, kind, ct_arena_strdup(x->arena, name), not_a_number);
+    static const uint32_t no_index = UINT32_MAX; // of a speed or multiplier of the system
+    return ct_ex_sym(x, kind, ct_arena_strdup(x->arena, name), no_index);
 }
 
 // Symbols of rows by axis; zero for an axis along which no coordinate moves the beam.
@@ -65,13 +65,13 @@ static bool has_linear_stiffness(struct ct_arena *a, const struct ct_equations *
 }
 
 static void name_block(struct ct_arena *a, const struct ct_equations *e,
-                       const struct ct_flexible *f, const struct ct_columns *columns,
+                       const struct ct_flexible *f, const struct ct_elastic_columns *columns,
                        struct ct_beam_block *s)
 {
     struct ct_exs *x = e->x;
     s->f = f;
-    name_axes(a, x, "m_rf", f, columns->moved, s->moved, s->moved_t);
-    name_axes(a, x, "m_thetaf", f, columns->swept, s->swept, s->swept_t);
+    name_axes(a, x, "m_rf", f, columns->m_rf, s->m_rf, s->m_rf_t);
+    name_axes(a, x, "m_thetaf", f, columns->m_thetaf, s->m_thetaf, s->m_thetaf_t);
     s->acceleration = symbol(x, CT_SYM_A, ct_arena_printf(a, "q_%s''", f->name));
     s->inertia = symbol(x, CT_SYM_A, ct_arena_printf(a, "m_ff_%s*q_%s''", f->name, f->name));
     s->velocity = symbol(x, CT_SYM_LOCAL, ct_arena_printf(a, "Q_vf_%s", f->name));
@@ -94,8 +94,8 @@ static struct ct_inertia *block_inertia(struct ct_arena *a, const struct ct_iner
     named->torque = parts->named->torque;
     named->acceleration = s->acceleration;
     for (int k = 0; k < s->f->nelastic; k++) {
-        memcpy(named->columns.moved[k].e, s->moved, sizeof s->moved);
-        memcpy(named->columns.swept[k].e, s->swept, sizeof s->swept);
+        memcpy(named->columns.m_rf[k].e, s->m_rf, sizeof s->m_rf);
+        memcpy(named->columns.m_thetaf[k].e, s->m_thetaf, sizeof s->m_thetaf);
         named->velocity[k] = s->velocity;
         named->elastic[k] = s->elastic;
     }
@@ -120,10 +120,10 @@ static void symbols_of(const struct ct_beam_block *s, ct_ex own[NSYMBOL],
                        ct_ex as_column[NSYMBOL])
 {
     for (int i = 0; i < 3; i++) {
-        own[i] = s->moved[i];
-        own[3 + i] = s->swept[i];
-        as_column[i] = s->moved_t[i];
-        as_column[3 + i] = s->swept_t[i];
+        own[i] = s->m_rf[i];
+        own[3 + i] = s->m_thetaf[i];
+        as_column[i] = s->m_rf_t[i];
+        as_column[3 + i] = s->m_thetaf_t[i];
     }
     own[6] = as_column[6] = s->velocity;
     own[7] = as_column[7] = s->elastic;
@@ -153,7 +153,7 @@ static void split(struct finder *f, const struct ct_beam_block *s, ct_ex v, bool
     *own = CT_EX_ZERO;
     *rest = v;
     symbols_of(s, symbol, as_column);
-    // the walk for all symbols
+    // one walk serves the derivatives by all symbols
     const size_t nwalk = ct_ex_walk_kinds(x, &v, 1, 1u << CT_SYM_LOCAL);
     if (!find_symbols(x, nwalk, symbol, found))
         return;

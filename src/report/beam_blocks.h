@@ -17,13 +17,13 @@
 
 /// Vectors and matrices of one beam, as symbols.
 struct ct_beam_block {
-    const struct ct_flexible *f;  // NULL: its coordinates are listed one by one
-    ct_ex moved[3], swept[3];     // rows m_rf, m_thetaf by axis of the beam
-    ct_ex moved_t[3], swept_t[3]; // their transposes
-    ct_ex acceleration;           // q''
-    ct_ex inertia;                // m_ff*q''
-    ct_ex velocity, elastic;      // Q_vf; V_q, or K_f*q where that is linear
-    ct_ex applied;                // Q; zero if no force acts
+    const struct ct_flexible *f;    // NULL: its coordinates are listed one by one
+    ct_ex m_rf[3], m_thetaf[3];     // rows m_rf, m_thetaf by axis of the beam
+    ct_ex m_rf_t[3], m_thetaf_t[3]; // their transposes
+    ct_ex acceleration;             // q''
+    ct_ex inertia;                  // m_ff*q''
+    ct_ex velocity, elastic;        // Q_vf; V_q, or K_f*q where that is linear
+    ct_ex applied;                  // Q; zero if no force acts
 };
 
 /// A coefficient times an acceleration or a multiplier.

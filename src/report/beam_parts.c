@@ -19,11 +19,12 @@ static void remember(struct ct_arena *a, struct ct_beam_parts *p, ct_ex node, ct
     CT_PUSH(a, p->symbol, p->n, p->symbol_cap, symbol);
 }
 
-// The angular velocity of the frame, which other parts contain.
+// Replaces the symbols of the frame's angular velocity in `value` by their expressions.
 static ct_ex without_names(struct ct_exs *x, const struct ct_beam_parts *p, ct_ex value)
 {
-    return p->nturning && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
-             ? ct_ex_subst(x, value, p->turning, p->turning_full, (size_t)p->nturning)
+    return p->nangular_velocity && ct_ex_kinds(x, value) & 1u << CT_SYM_LOCAL
+             ? ct_ex_subst(x, value, p->angular_velocity, p->angular_velocity_full,
+                           (size_t)p->nangular_velocity)
              : value;
 }
 
@@ -48,22 +49,23 @@ static ct_ex define(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *
     return make(a, x, p, value, name);
 }
 
-// In space, with several beams, an angular velocity always has a name. The parts of equal beams
-// then differ by names alone.
-static ct_ex define_turning(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p,
-                            ct_ex value, const char *name, bool always)
+// As define, for the angular velocity of a frame. always: also if it is short. In space, with
+// several beams, it always gets a name, so that the parts of equal beams differ by names alone.
+static ct_ex define_angular_velocity(struct ct_arena *a, struct ct_exs *x,
+                                     struct ct_beam_parts *p, ct_ex value, const char *name,
+                                     bool always)
 {
     const ct_ex symbol = !always || ct_ex_is_const(x, value, NULL)
                            ? define(a, x, p, value, name)
                            : make(a, x, p, value, name);
     if (!ct_ex_same(symbol, value)) {
-        p->turning[p->nturning] = symbol;
-        p->turning_full[p->nturning++] = value;
+        p->angular_velocity[p->nangular_velocity] = symbol;
+        p->angular_velocity_full[p->nangular_velocity++] = value;
     }
     return symbol;
 }
 
-// The same for a node of the equations.
+// The symbol of a node of the equations: the known one, or that of a new definition.
 static ct_ex name(struct ct_arena *a, struct ct_exs *x, struct ct_beam_parts *p, ct_ex value,
                   const char *text)
 {
@@ -109,23 +111,23 @@ static void name_forces(struct ct_arena *a, struct ct_build *b, const struct ct_
     const struct ct_base m = ct_flexible_base(b, f, CT_BIAS),
                          effective = ct_flexible_effective_base(b, f, &m, &less[0], &less[1]);
     const size_t nu = b->eqs->nu;
-    struct ct_base turned = {{{{0}}}};
-    p->nturning = 0;
+    struct ct_base base = {{{{0}}}};
+    p->nangular_velocity = 0;
     for (int i = 0; i < 3; i++)
-        turned.w.e[i] = define_turning(a, x, p, effective.w.e[i],
-                                       ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
-                                       b->nflexible > 1 && !b->topology->is_planar);
-    ct_ex *still = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);
-    ct_flexible_inertia_rows(b, f, &turned, CT_BIAS, still);
+        base.w.e[i] = define_angular_velocity(
+            a, x, p, effective.w.e[i], ct_arena_printf(a, "om_%s.%s", f->name, axis_name[i]),
+            b->nflexible > 1 && !b->topology->is_planar);
+    ct_ex *inertia = CT_NEWN(a, ct_ex, nu + 1), *elastic = CT_NEWN(a, ct_ex, nu + 1);
+    ct_flexible_inertia_rows(b, f, &base, CT_BIAS, inertia);
     ct_flexible_stiffness_rows(b, f, elastic);
     for (int k = 0; k < f->nelastic; k++) {
         const int u = f->elastic[k].u;
-        out->velocity[k] = define(a, x, p, ct_ex_neg(x, still[u]),
+        out->velocity[k] = define(a, x, p, ct_ex_neg(x, inertia[u]),
                                   ct_arena_printf(a, "Q_vf_%s", f->elastic[k].name));
         out->elastic[k]
             = define(a, x, p, elastic[u], ct_arena_printf(a, "V_q_%s", f->elastic[k].name));
     }
-    f->inertia->method->wrench(b, f, &turned, CT_BIAS, &out->force, &out->torque);
+    f->inertia->method->wrench(b, f, &base, CT_BIAS, &out->force, &out->torque);
     for (int i = 0; i < 3; i++) {
         out->force.e[i] = name(a, x, p, out->force.e[i],
                                ct_arena_printf(a, "F_v_%s.%s", f->name, axis_name[i]));
@@ -144,10 +146,11 @@ static void name_elastic(struct ct_arena *a, struct ct_build *b, const struct ct
     for (size_t k = 0; k < n; k++) {
         const char *of = f->elastic[k].name;
         for (int i = 0; i < 3; i++) {
-            ct_ex *moved = &out->columns.moved[k].e[i], *swept = &out->columns.swept[k].e[i];
-            *moved = name(a, x, p, *moved, ct_arena_printf(a, "m_rf_%s.%s", of, axis_name[i]));
-            *swept
-                = name(a, x, p, *swept, ct_arena_printf(a, "m_thetaf_%s.%s", of, axis_name[i]));
+            ct_ex *m_rf = &out->columns.m_rf[k].e[i],
+                  *m_thetaf = &out->columns.m_thetaf[k].e[i];
+            *m_rf = name(a, x, p, *m_rf, ct_arena_printf(a, "m_rf_%s.%s", of, axis_name[i]));
+            *m_thetaf = name(a, x, p, *m_thetaf,
+                             ct_arena_printf(a, "m_thetaf_%s.%s", of, axis_name[i]));
         }
         for (size_t l = 0; l <= k; l++) {
             const size_t row = (size_t)f->elastic[k].u, column = (size_t)f->elastic[l].u;
@@ -178,7 +181,8 @@ static bool varies(const struct ct_exs *x, const struct ct_beam *beam)
 struct ct_named_inertia *ct_named_inertia_create(struct ct_arena *a, size_t n)
 {
     struct ct_named_inertia *s = CT_NEW(a, struct ct_named_inertia);
-    s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
+    s->columns
+        = (struct ct_elastic_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
     s->M = CT_NEWN(a, ct_ex, n * n + 1);
     s->velocity = CT_NEWN(a, ct_ex, n + 1);
     s->elastic = CT_NEWN(a, ct_ex, n + 1);

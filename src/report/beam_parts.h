@@ -25,8 +25,9 @@ struct ct_beam_parts {
     struct ct_definitions definitions;
     ct_ex *node, *symbol; // named nodes of the equations and their symbols
     size_t n, node_cap, symbol_cap, definition_cap;
-    ct_ex turning[3], turning_full[3]; // symbols om of the current beam, and their values
-    int nturning;
+    ct_ex angular_velocity[3],
+        angular_velocity_full[3]; // symbols om of the current beam, and their values
+    int nangular_velocity;
     // by beam: its named inertia integrals, NULL if it has none; NULL: not requested
     struct ct_inertia **inertia;
 };

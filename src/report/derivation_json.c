@@ -121,7 +121,7 @@ static void put_terminal(struct writer *w)
         const struct ct_edge_info *e = &b->topology->edge[i];
         put_component(w, e->name, w->d->e->edge_kind[i],
                       e->self        ? e->self->cls->across
-                      : e->beam >= 0 ? "d = r, S: place and turn of the section"
+                      : e->beam >= 0 ? "d = r, S: position and rotation of the section"
                                      : "d, S constant",
                       e->self ? e->self->cls->through : "F, T are reactions");
     }

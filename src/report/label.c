@@ -40,7 +40,7 @@ static void label33(const struct labels *l, const ct_ex33 *A, const char *letter
 
 // The first node of each cluster, the frame of its own body if there is one; and the first node
 // at each anchor.
-static void name_places(const struct ct_build *b, const char **cluster, const char **anchor)
+static void name_clusters(const struct ct_build *b, const char **cluster, const char **anchor)
 {
     for (size_t i = 0; i < b->topology->nnode; i++) {
         const struct ct_node_placement *p = &b->kinematics->placement[i];
@@ -103,7 +103,7 @@ static void label_anchor(const struct labels *l, int a, const char *name)
         label3(l, self->a[CT_BIAS], "a", name);
 }
 
-// Names of the outboard sums at each anchor: masses, first moments, inertias.
+// Labels the sums over outboard bodies at each anchor: masses, first moments, inertias.
 static void label_lumped(const struct labels *l, const char *const *cluster,
                          const char *const *anchor)
 {
@@ -125,7 +125,7 @@ void ct_reduced_label(struct ct_equations *e, enum ct_level level)
     const struct labels labels = {b, level}, *l = &labels;
     const char **cluster = CT_NEWN(b->x->arena, const char *, b->kinematics->ncluster + 1);
     const char **anchor = CT_NEWN(b->x->arena, const char *, b->kinematics->nanchor + 1);
-    name_places(b, cluster, anchor);
+    name_clusters(b, cluster, anchor);
     if (level == CT_FULL)
         name_ends_of_links(b, anchor);
     for (size_t c = 1; c < b->kinematics->ncluster; c++)

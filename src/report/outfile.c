@@ -25,7 +25,7 @@ static const char *written_path(const struct ct_outfile *o)
 
 // ---- the partial file ----------------------------------------------------------------------
 
-enum grip { HELD, LOST, REFUSED };
+enum lock { LOCKED, LOST, REFUSED };
 
 static bool is_at(const struct stat *file, const char *path)
 {
@@ -34,8 +34,8 @@ static bool is_at(const struct stat *file, const char *path)
         && there.st_ino == file->st_ino;
 }
 
-// LOST: another process has renamed the file between opening and locking.
-static enum grip grip(struct ct_ctx *ctx, const struct ct_outfile *o, int fd)
+// Locks the partial file. LOST: another process has renamed it between opening and locking.
+static enum lock lock(struct ct_ctx *ctx, const struct ct_outfile *o, int fd)
 {
     struct stat file;
     if (fstat(fd, &file) != 0)
@@ -51,7 +51,7 @@ static enum grip grip(struct ct_ctx *ctx, const struct ct_outfile *o, int fd)
                         "end, or write to another file",
                         o->path, o->partial),
                REFUSED;
-    return is_at(&file, o->partial) ? HELD : LOST;
+    return is_at(&file, o->partial) ? LOCKED : LOST;
 }
 
 // The descriptor of the partial file, locked, or -1.
@@ -67,8 +67,8 @@ static int open_partial(struct ct_ctx *ctx, const struct ct_outfile *o)
                                  "cannot write '%s': it is a link; remove it", o->partial),
                         -1)
                      : (cannot(ctx, "write", o->partial, errno), -1);
-        const enum grip g = grip(ctx, o, fd);
-        if (g == HELD)
+        const enum lock g = lock(ctx, o, fd);
+        if (g == LOCKED)
             return fd;
         close(fd);
         if (g == REFUSED)

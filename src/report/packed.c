@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-// Definition: of 24 bits
-enum { MOST = 0xfffffe, ABSENT = 0xffffff }; // of k: 24 bits
+// Definition: k has 24 bits; ABSENT stands for a value that is not finite
+enum { MOST = 0xfffffe, ABSENT = 0xffffff };
 
 char *ct_base64(struct ct_arena *a, const unsigned char *b, size_t n)
 {
@@ -60,10 +60,11 @@ static void put_column(unsigned char *plane, size_t size, const double *value, s
     int32_t last = 0, slope = 0;
     for (size_t i = 0; i < nrow; i++) {
         const int32_t k = multiple_of(value[i * ncolumn], low, step);
-        const int32_t bend = k - last - slope; // below 2^26
+        const int32_t second = k - last - slope; // below 2^26
         slope = k - last;
         last = k;
-        const uint32_t z = bend < 0 ? 2 * (uint32_t)(-(bend + 1)) + 1 : 2 * (uint32_t)bend;
+        const uint32_t z
+            = second < 0 ? 2 * (uint32_t)(-(second + 1)) + 1 : 2 * (uint32_t)second;
         for (size_t b = 0; b < 4; b++)
             plane[b * size + i] = (unsigned char)(z >> 8 * b);
     }

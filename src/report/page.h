@@ -46,12 +46,11 @@ struct ct_page_block {
     const char *text;  // TITLE, HEADING, SENTENCE
     bool is_folded;    // HEADING: HTML folds the block that follows
     const char *align; // TABLE: one letter a column: l or r plain, L or R mathematics
-    const char **
-        // TABLE: the first row is the head, plain; row by row. MATRIX: mathematics; the first row
-        cell;
-    // has the names of the columns, the first column those of the rows
+    // row by row. TABLE: the first row is the head, plain. MATRIX: mathematics; the first row has
+    // the names of the columns, the first column those of the rows
+    const char **cell;
     size_t ncell, cell_cap;
-    size_t ncolumn; // MATRIX: with that of the names
+    size_t ncolumn; // MATRIX: number of columns, that of the row names included
     struct ct_page_equation *equation;
     size_t nequation, equation_cap;
 };

@@ -86,10 +86,10 @@ static size_t piece_of(const char *s, bool at_factors)
 // A line that is being written.
 struct line {
     FILE *out;
-    size_t column, room; // [pt], from the start of the first line
-    size_t indent;       // of further lines [pt]
-    const char *again;   // text that starts them
-    size_t *nline;       // of the environment
+    size_t column, room;      // [pt], from the start of the first line
+    size_t indent;            // of further lines [pt]
+    const char *continuation; // text that starts them
+    size_t *nline;            // of the environment
 };
 
 // Layout: largest number of lines of an environment, which TeX keeps in memory. It ends between
@@ -119,7 +119,7 @@ static void end_line(struct line *l, int depth)
     for (int i = 0; i < depth; i++)
         fputs(" \\right.", l->out);
     put_line_end(l->out, l->nline, MOST_LINES_WITHIN);
-    fprintf(l->out, "    %s{}", l->again);
+    fprintf(l->out, "    %s{}", l->continuation);
     for (int i = 0; i < depth; i++)
         fputs(" \\left.", l->out);
     fputs(depth ? " {}" : "", l->out);
@@ -155,7 +155,7 @@ static void put_wide_term(struct line *l, const char *s, size_t length)
                 n -= 4;
             }
             end_line(l, depth);
-            if (!is_list && !strncmp(s, " \\, ", 4)) { // the product is said
+            if (!is_list && !strncmp(s, " \\, ", 4)) { // a product sign where a line begins
                 fputs(" \\cdot", l->out);
                 s += 3;
                 n -= 3;
@@ -226,7 +226,7 @@ static void put_labelled(FILE *out, const struct ct_page_equation *e, size_t lab
                      .column = QUAD,
                      .room = LINE - (is_above ? 0 : label_width),
                      .indent = 2 * (size_t)QUAD,
-                     .again = "&\\qquad ",
+                     .continuation = "&\\qquad ",
                      .nline = nline};
     const size_t left = ct_latex_width(e->left, strlen(e->left));
     const size_t right = e->right ? ct_latex_width(e->right, strlen(e->right)) : 0;
@@ -247,7 +247,7 @@ static void put_labelled(FILE *out, const struct ct_page_equation *e, size_t lab
     }
     fputs(" = ", out);
     l.column += EQUALS;
-    l.again = "&\\qquad\\quad ";
+    l.continuation = "&\\qquad\\quad ";
     l.indent += QUAD;
     put_sum(&l, e->right);
     put_note(&l, e->note);
@@ -260,7 +260,7 @@ static void put_aligned(FILE *out, const struct ct_page_equation *e, size_t left
                      .column = EQUALS,
                      .room = LINE - left_width,
                      .indent = QUAD,
-                     .again = "&\\quad ",
+                     .continuation = "&\\quad ",
                      .nline = nline};
     fprintf(out, "%s &= ", e->left);
     put_sum(&l, e->right ? e->right : "");

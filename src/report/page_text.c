@@ -39,7 +39,7 @@ static void put_words(FILE *out, const char *s, size_t indent)
 
 // Position at which to break s after at most `room` characters: at the last sign of a sum or
 // comma of a list with the fewest open brackets, otherwise before a factor; 0 if there is none.
-static size_t break_place(const char *s, size_t room)
+static size_t break_position(const char *s, size_t room)
 {
     size_t best = 0;
     int depth = 0, best_level = 0, best_rank = 9;
@@ -75,7 +75,7 @@ static void put_wrapped(FILE *out, const char *s, size_t column, size_t indent)
     size_t width = ct_text_width(s);
     while (column + width > CT_PAGE_WIDTH) {
         const size_t room = CT_PAGE_WIDTH > column ? CT_PAGE_WIDTH - column : 0;
-        const size_t at = break_place(s, room);
+        const size_t at = break_position(s, room);
         if (!at)
             break;
         const bool keep = s[at] == '*'; // the sign of a factor goes to the next line

@@ -60,15 +60,15 @@ static double size(const struct ct_equations *e, ct_ex v)
 }
 
 // k (a + b) as k a + k b.
-static ct_ex spread(struct ct_equations *e, ct_ex k, ct_ex sum)
+static ct_ex distribute(struct ct_equations *e, ct_ex k, ct_ex sum)
 {
     struct ct_exs *x = e->x;
     const struct ct_exnode n = *ct_ex_node(x, sum);
     if (n.op == CT_OP_NEG)
-        return ct_ex_neg(x, spread(e, k, (ct_ex){n.a}));
+        return ct_ex_neg(x, distribute(e, k, (ct_ex){n.a}));
     if (n.op != CT_OP_ADD && n.op != CT_OP_SUB)
         return ct_ex_mul(x, k, sum);
-    const ct_ex a = spread(e, k, (ct_ex){n.a}), b = spread(e, k, (ct_ex){n.b});
+    const ct_ex a = distribute(e, k, (ct_ex){n.a}), b = distribute(e, k, (ct_ex){n.b});
     return n.op == CT_OP_ADD ? ct_ex_add(x, a, b) : ct_ex_sub(x, a, b);
 }
 
@@ -88,7 +88,7 @@ static ct_ex keep_apart(struct ct_equations *e, ct_ex v)
         const unsigned kinds = ct_ex_kinds(x, sum);
         if ((op != CT_OP_ADD && op != CT_OP_SUB) || !(kinds & ~(1u << CT_SYM_PARAM)))
             continue;
-        const ct_ex apart = spread(e, k, sum);
+        const ct_ex apart = distribute(e, k, sum);
         if (size(e, apart) <= 1.3 * size(e, v))
             return apart;
     }

@@ -37,8 +37,8 @@ struct ct_reduced {
     ct_ex *phi, *gam; // nrow
     ct_ex *effort;    // ndriver: of the drivers of branches, in terms of u' and lam
     ct_ex *rate;      // nq: q' in terms of u
-    ct_ex *
-        output; // nresult: outputs whose terms are listed, 0 for others (provenance.h); else NULL
+    // nresult: outputs whose terms are listed, 0 for others (provenance.h); NULL: none is listed
+    ct_ex *output;
     bool is_collected;
     struct ct_definitions definitions; // none if everything is short
     size_t npart;                      // of these, the first: parts of beams (beam_parts.h)

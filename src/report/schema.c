@@ -192,8 +192,9 @@ static void write_points(struct ct_json *j, const char *name, const char *place)
     ct_schema_refer(j, NULL, place, NULL);
     ct_schema_object(j, NULL);
     ct_json_object(j, "properties");
-    ct_schema_refer(j, "at", place, "place in axes of the body [m]");
-    ct_schema_refer(j, "rotate", "turns", "turns the point's axes out of the body's");
+    ct_schema_refer(j, "at", place, "position in axes of the body [m]");
+    ct_schema_refer(j, "rotate", "turns",
+                    "rotations from the axes of the body to those of the point");
     ct_json_end(j);
     ct_json_bool(j, "additionalProperties", false);
     ct_json_end(j);
@@ -272,8 +273,8 @@ static void write_solid(struct ct_json *j, const char *kind, int length, const c
     ct_json_end(j);
     if (more)
         ct_schema_refer(j, more, strcmp(more, "axis") == 0 ? "axis" : "scalar", NULL);
-    ct_schema_refer(j, "at", "vector", "its place in axes of the body [m] ([0, 0, 0])");
-    ct_schema_refer(j, "rotate", "turns", "turns it out of the body's axes");
+    ct_schema_refer(j, "at", "vector", "its position in axes of the body [m] ([0, 0, 0])");
+    ct_schema_refer(j, "rotate", "turns", "rotations from the axes of the body to its own");
     ct_schema_typed(j, "color", "string", NULL);
     ct_json_end(j);
     ct_json_array(j, "required");
@@ -405,14 +406,15 @@ static void write_ground(struct ct_json *j)
 static void write_input(struct ct_json *j)
 {
     ct_json_object(j, "input");
-    ct_json_text(j, "description", "a number set from outside, held in between");
+    ct_json_text(j, "description",
+                 "a number that the caller sets; constant until it is set again");
     ct_json_array(j, "type");
     ct_json_text(j, NULL, "object");
     ct_json_text(j, NULL, "number");
     ct_json_text(j, NULL, "string");
     ct_json_end(j);
     ct_json_object(j, "properties");
-    ct_schema_refer(j, "value", "scalar", "where nothing sets it (0)");
+    ct_schema_refer(j, "value", "scalar", "value until it is set (0)");
     ct_schema_typed(j, "unit", "string", NULL);
     ct_json_end(j);
     ct_json_bool(j, "additionalProperties", false);

@@ -30,7 +30,7 @@ static int ndof_of(const struct ct_beam *beam, size_t i)
     return families[i].n - is_linear;
 }
 
-// Its j-th one.
+// Number of the j-th dof of family i.
 static int dof_of(size_t i, int j)
 {
     return families[i].bit == CT_BEAM_AXIAL ? ct_stretch_dof(j) : families[i].first + j;
@@ -194,7 +194,7 @@ static const char *of(struct ct_derivation *d, const char *letter, const struct 
     return ct_derivation_of(d, letter, f->name);
 }
 
-static const char *place(const struct ct_derivation *d)
+static const char *position_symbol(const struct ct_derivation *d)
 {
     return ct_derivation_is_latex(d) ? "\\boldsymbol{r}" : "r";
 }
@@ -235,9 +235,9 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
     ct_page_equations(&d->page);
     const char *v = f->deformation & CT_BEAM_BENDING_Z ? "v" : "0";
     const char *w = f->deformation & CT_BEAM_BENDING_Y ? "w" : "0";
-    put(d, place(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
+    put(d, position_symbol(d), ct_arena_printf(d->a, "[x + u, %s, %s]", v, w),
         ct_arena_printf(d->a, "(x + u,\\; %s,\\; %s)", v, w),
-        ct_arena_printf(d->a, "place of the section at x, axes of %s", frame));
+        ct_arena_printf(d->a, "position of the section at x, axes of %s", frame));
     const char *const motion[]
         = {ct_derivation_of(d, "a", frame), ct_derivation_of(d, "al", frame),
            ct_derivation_of(d, "w", frame)};
@@ -251,7 +251,7 @@ static void put_body(struct ct_derivation *d, const struct ct_flexible *f)
                     "\\ddot{\\boldsymbol{r}}"
                   : "%s - g + %s x r + %s x (%s x r) + 2*%s x r' + r''",
             motion[0], motion[1], motion[2], motion[2], motion[2]),
-        "its acceleration less gravity");
+        "its acceleration minus gravity");
     ct_page_equation(&d->page, NULL, latex ? "\\mu" : "mu",
                      ct_derivation_text(d, f->beam->mass_per_length), "mass per length");
     put(d, of(d, "F", f), "-int(mu*c)", "-\\int \\mu \\, \\boldsymbol{c} \\, dx", NULL);
@@ -312,8 +312,8 @@ static const char *axial_text(struct ct_derivation *d, const struct ct_flexible 
 {
     const bool latex = ct_derivation_is_latex(d);
     const unsigned bending = CT_BEAM_BENDING_Y | CT_BEAM_BENDING_Z;
-    const bool is_straight = f->kinematics == CT_AXIAL_LINEAR || !(f->deformation & bending);
-    const char *more = is_straight ? ""
+    const bool is_linear = f->kinematics == CT_AXIAL_LINEAR || !(f->deformation & bending);
+    const char *more = is_linear ? ""
                      : f->kinematics == CT_AXIAL_LOCAL
                          ? latex ? " + \\xi \\, S(1) - S(\\xi)" : " + xi*S(1) - S(xi)"
                      : latex ? " - S_0 - S(\\xi)"
@@ -330,7 +330,7 @@ static void put_shortening(struct ct_derivation *d, const struct ct_flexible *f,
         return;
     put(d, ct_derivation_is_latex(d) ? "S(\\xi)" : "S(xi)", "int((dv/dx)^2/2 + (dw/dx)^2/2)",
         "\\tfrac{1}{2} \\int_0^{\\xi} \\left( v_{,x}^{2} + w_{,x}^{2} \\right) h \\, d\\xi",
-        "what bending takes from the axis");
+        "foreshortening: shortening of the axis by bending");
     if (e->is_constant && !ct_ex_is_zero(e->shortening))
         ct_page_equation(&d->page, NULL, "S(1)", ct_derivation_collected(d, e->shortening),
                          NULL);
@@ -338,7 +338,7 @@ static void put_shortening(struct ct_derivation *d, const struct ct_flexible *f,
         ct_page_sentence(
             &d->page, "S0 is the sum of S(1) over the elements before%s",
             f->kinematics == CT_AXIAL_LINEAR
-                ? "; places are those of a linear beam, forces of a foreshortened one"
+                ? "; positions are those of a linear beam, forces those of a foreshortened one"
                 : "");
 }
 
@@ -496,13 +496,13 @@ void ct_beams_put_terminal(struct ct_derivation *d)
             }
         }
         if (b->flexible[i].nelastic)
-            ct_beam_matrices_put_turning(d, i);
+            ct_beam_matrices_put_angular_velocity(d, i);
     }
 }
 
 // ---- arms ----------------------------------------------------------------------------------
 
-static const char *place_text(struct ct_derivation *d, const struct ct_edge_info *e)
+static const char *position_text(struct ct_derivation *d, const struct ct_edge_info *e)
 {
     struct ct_exs *x = d->e->x;
     const struct ct_collect_options o = {.scratch = d->a};
@@ -546,7 +546,7 @@ void ct_beams_put_arms(struct ct_derivation *d)
         }
         any = true;
         d->page.about = e->name;
-        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), place_text(d, e),
+        ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->name), position_text(d, e),
                          ct_arena_printf(d->a, "axes of %s",
                                          b->topology->node[b->topology->wiring[i].tail].name));
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "S", e->name),
@@ -594,9 +594,10 @@ void ct_beams_put_cutsets(struct ct_derivation *d)
         for (int k = 0; k < f->nelastic; k++, n++) {
             if (n == 0) {
                 ct_page_heading(&d->page, "elastic coordinates");
-                ct_page_sentence(
-                    &d->page, "what the beam gives goes into its arms; d_q, Y_q: velocity and "
-                              "angular velocity of an arm's head for a unit rate of q");
+                ct_page_sentence(&d->page,
+                                 "the generalised force of the beam is that of its arms; d_q, "
+                                 "Y_q: velocity and "
+                                 "angular velocity of an arm's head for a unit rate of q");
                 ct_page_equations(&d->page);
             }
             if (n < MOST_COORDINATES)

@@ -13,15 +13,15 @@
 struct ct_beam_element {
     struct ct_exs *x;
     ct_ex dof[CT_DOF]; // zero where the beam does not deform that way
-    ct_ex xi, h;       // place on the element, 0 ... 1; its length
+    ct_ex xi, h;       // position on the element, 0 ... 1; its length
     ct_ex axial;       // displacement along the axis without foreshortening
     ct_ex shortening;  // int (v'^2 + w'^2)/2 dx over the element
     ct_ex v, w, twist;
     ct_ex stretch; // the symbol s
-    ct_ex
-        energy[4]; // of strain: axial with s for the stretch, bending-z, bending-y, torsion [J]
-    bool
-        is_constant; // the sections do not vary: energy and shortening are known in closed form
+    // strain energy [J]: axial with s for the stretch, bending-z, bending-y, torsion
+    ct_ex energy[4];
+    // the sections do not vary: energy and shortening are known in closed form
+    bool is_constant;
 };
 
 /// Name of dof j: u1 u2 v1 alpha1 v2 alpha2 w1 beta1 w2 beta2 phi1 phi2.
@@ -41,7 +41,7 @@ void ct_beams_put_terminal(struct ct_derivation *d);
 /// liang2017. (stage_beam_matrices.c)
 void ct_beam_matrices_put(struct ct_derivation *d, size_t beam);
 /// Angular velocity of its frame, if the matrices use a name for it.
-void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t beam);
+void ct_beam_matrices_put_angular_velocity(struct ct_derivation *d, size_t beam);
 void ct_beam_matrices_put_element(struct ct_derivation *d, const struct ct_flexible *f);
 /// Arms to sections.
 void ct_beams_put_arms(struct ct_derivation *d);

@@ -257,7 +257,7 @@ static void put_foreshortening(struct ct_derivation *d, const struct element *e)
     ct_page_heading(&d->page, "foreshortening (3.105) to (3.110)");
     ct_page_equations(&d->page);
     put(d, "B_s", "\\boldsymbol{B}_s", "q_f'*H", "\\boldsymbol{q}_f^{T} \\, \\boldsymbol{H}",
-        "3.106: u_s = B_s q_f, and what the elements before it take");
+        "3.106: u_s = B_s q_f, plus the foreshortening of the elements before it");
     put(d, "B_H", "\\boldsymbol{B}_H", "[B_s, 0, 0]'", "(\\boldsymbol{B}_s,\\; 0,\\; 0)",
         "3.110; A.5 is int(mu*B_H): along x the row q_f' times the matrix above");
     put(d, "S_jBs", "\\boldsymbol{S}_{j,B_s}", "int(mu*N_j'*B_s)",
@@ -412,18 +412,18 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
     const size_t n = (size_t)f->nelastic;
     const char **name = CT_NEWN(d->a, const char *, n + 1);
     struct ct_symmetric M = ct_symmetric_create(d->a, b->eqs->nu);
-    ct_ex *moved = CT_NEWN(d->a, ct_ex, 3 * n + 1), *swept = CT_NEWN(d->a, ct_ex, 3 * n + 1),
+    ct_ex *m_rf = CT_NEWN(d->a, ct_ex, 3 * n + 1), *m_thetaf = CT_NEWN(d->a, ct_ex, 3 * n + 1),
           *mff = CT_NEWN(d->a, ct_ex, n * n + 1), *K = CT_NEWN(d->a, ct_ex, n * n + 1),
           *q = CT_NEWN(d->a, ct_ex, n + 1), *zero = CT_NEWN(d->a, ct_ex, n + 1),
           *force = CT_NEWN(d->a, ct_ex, n + 1);
-    struct ct_columns c = {CT_NEWN(d->a, ct_ex3, n + 1), CT_NEWN(d->a, ct_ex3, n + 1)};
+    struct ct_elastic_columns c = {CT_NEWN(d->a, ct_ex3, n + 1), CT_NEWN(d->a, ct_ex3, n + 1)};
     ct_flexible_columns(b, f, &c, &M);
     for (size_t k = 0; k < n; k++) {
         name[k] = ct_derivation_name(d, f->elastic[k].name);
         q[k] = b->eqs->q[f->elastic[k].q].symbol;
         for (size_t i = 0; i < 3; i++) {
-            moved[3 * k + i] = ct_beam_parts_name(p, c.moved[k].e[i]);
-            swept[3 * k + i] = ct_beam_parts_name(p, c.swept[k].e[i]);
+            m_rf[3 * k + i] = ct_beam_parts_name(p, c.m_rf[k].e[i]);
+            m_thetaf[3 * k + i] = ct_beam_parts_name(p, c.m_thetaf[k].e[i]);
         }
     }
     ct_ex_gradient(x, d->a, ct_flexible_strain(b, f), q, n, force);
@@ -435,9 +435,9 @@ static void put_elastic(struct ct_derivation *d, const struct ct_flexible *f,
             K[i * n + k] = ct_ex_subst(x, ct_ex_diff(x, force[i], q[k]), q, zero, n);
         }
     put_matrix(d, &(struct matrix){"(m_rf'*A)", "(\\boldsymbol{m}_{rf}^{T} \\boldsymbol{A})",
-                                   "m_rf'*A", "(A.6), (A.7)", name, xyz, n, 3, moved, false});
+                                   "m_rf'*A", "(A.6), (A.7)", name, xyz, n, 3, m_rf, false});
     put_matrix(d, &(struct matrix){"m_thetaf'", "\\boldsymbol{m}_{\\theta f}^{T}", "m_thetaf'",
-                                   "(A.14), (A.15)", name, xyz, n, 3, swept, false});
+                                   "(A.14), (A.15)", name, xyz, n, 3, m_thetaf, false});
     put_matrix(d, &(struct matrix){"m_ff", "\\boldsymbol{m}_{ff}", "m_ff", "(A.16), (A.17)",
                                    name, name, n, n, mff, true});
     put_matrix(d, &(struct matrix){"K_f", "\\boldsymbol{K}_{f}", "K_f",
@@ -506,7 +506,7 @@ static void put_parts(struct ct_derivation *d, const struct ct_flexible *f,
     put_definitions(d, &list);
 }
 
-void ct_beam_matrices_put_turning(struct ct_derivation *d, size_t i)
+void ct_beam_matrices_put_angular_velocity(struct ct_derivation *d, size_t i)
 {
     struct ct_beam_parts p;
     if (!add_parts(d, i, &p))

@@ -346,7 +346,7 @@ static bool take_named(const struct ct_equations *e, const struct ct_named_dynam
     return taken == named->nM;
 }
 
-// The same with the parts of beams by name.
+// Prepares r with the parts of beams by name. False: take_named fails.
 static bool name_parts(struct ct_derivation *d, const struct ct_beam_parts *parts,
                        struct ct_reduced *r)
 {

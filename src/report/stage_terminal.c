@@ -29,8 +29,8 @@ static void put_laws(struct ct_derivation *d)
     CT_PAGE_ROW(&d->page, "component", "across", "through");
     CT_PAGE_ROW(&d->page, "arm", "d, S constant in axes of its tail", "F, T are reactions");
     if (b->nflexible)
-        CT_PAGE_ROW(&d->page, "flexible arm", "d = r, S: place and turn of the section",
-                    "F, T are reactions; effort(q) takes d_q . F + Y_q . T");
+        CT_PAGE_ROW(&d->page, "flexible arm", "d = r, S: position and rotation of the section",
+                    "F, T are reactions; effort(q) = sum of d_q . F + Y_q . T");
     for (size_t i = 0; i < b->topology->nedge; i++) {
         const struct ct_instance *self = b->topology->edge[i].self;
         if (self && b->topology->edge[i].kind != CT_EDGE_CLOSURE && is_first_of_class(b, i))

@@ -193,8 +193,8 @@ static const struct ct_body *body_of(const struct ct_derivation *d, int edge)
     return e->kind == CT_EDGE_BODY && !d->m->body[e->index].beam ? &d->m->body[e->index] : NULL;
 }
 
-// The force of an edge or, of a body, its inertia less weight, of which the force is the
-// negative; NULL: zero.
+// The force of an edge; for a body, inertia minus weight, which is the negative of its force. NULL:
+// zero.
 static const char *force_text(struct ct_derivation *d, int edge)
 {
     const struct ct_body *body = body_of(d, edge);
@@ -275,7 +275,7 @@ void ct_stage_cutset(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Cutset equations");
     ct_page_sentence(&d->page,
-                     "one per branch: what crosses the cut that the branch makes in its tree");
+                     "one per branch: the balance of the edges in its fundamental cutset");
     put_tree_matrices(d, true);
     ct_page_heading(&d->page, "forces, tree of translation");
     put_cutsets(d, d->e->T, false);
@@ -407,7 +407,8 @@ static void put_substituted(struct ct_derivation *d)
         ct_page_equation(&d->page, NULL, ct_derivation_of(d, "d", e->edge_name[s.edge[i]]),
                          ct_derivation_vector(d, s.at[i]), NULL);
     if (e->nrow) {
-        ct_page_heading(&d->page, "circuits of the joints, with the terminal equations of all");
+        ct_page_heading(&d->page,
+                        "circuits of the joints, with the terminal equations of all edges");
         ct_page_equations(&d->page);
     }
     for (size_t i = 0; i < e->nrow; i++)
@@ -417,8 +418,7 @@ static void put_substituted(struct ct_derivation *d)
 void ct_stage_circuit(struct ct_derivation *d)
 {
     ct_page_title(&d->page, "Circuit equations");
-    ct_page_sentence(&d->page,
-                     "one per chord: the way through the tree from its tail to its head");
+    ct_page_sentence(&d->page, "one per chord: the path in the tree from its tail to its head");
     put_tree_matrices(d, false);
     ct_page_heading(&d->page, "displacements, tree of translation (ground axes)");
     put_circuits(d, d->e->T, false);

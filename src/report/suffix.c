@@ -28,8 +28,8 @@ static bool refuse(struct ct_ctx *ctx, const char *path, const char *dot, unsign
             separator = ", ";
         }
     return ct_error(ctx, (struct ct_mark){0}, CT_E_SUFFIX,
-                    "'%s': nothing here is written as '%s'; the suffix may be %s", path, dot,
-                    list);
+                    "'%s': this output cannot be written as '%s'; the suffix must be one of %s",
+                    path, dot, list);
 }
 
 bool ct_suffix_read(struct ct_ctx *ctx, const char *path, unsigned allowed,

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static bool is_on(const struct ct_equations *e, const struct ct_tree_candidate *c)
+static bool is_pair_of(const struct ct_equations *e, const struct ct_tree_candidate *c)
 {
     const size_t size = (size_t)e->graph->nedge * sizeof(bool);
     return !memcmp(c->trans, e->T->is_branch, size) && !memcmp(c->rot, e->R->is_branch, size);
@@ -16,7 +16,7 @@ static bool is_on(const struct ct_equations *e, const struct ct_tree_candidate *
 int ct_tree_pairs_chosen(const struct ct_equations *e, const struct ct_tree_report *r)
 {
     for (int i = 0; i < r->ncandidate; i++)
-        if (is_on(e, &r->candidate[i]))
+        if (is_pair_of(e, &r->candidate[i]))
             return i;
     return -1;
 }
@@ -37,7 +37,7 @@ const char *ct_tree_pairs_reason(struct ct_arena *a, const struct ct_equations *
                       : more < 0   ? ct_arena_printf(a, "%.0f fewer", -more)
                       : other == 0 ? "as many"
                       : c->nu > r->candidate[chosen].nu ? "as many and has more unknowns"
-                                                        : "as many and was met later";
+                                                        : "as many and was found later";
     return ct_arena_printf(a, "%s: %.0f operations; number %d needs %s", r->how, cost,
                            other + 1, needs);
 }

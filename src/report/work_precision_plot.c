@@ -44,7 +44,7 @@ static struct axis axis_over(int from, int to)
     return (struct axis){.low = 400, .high = -400, .from = from, .to = to}; // no value yet
 }
 
-static int place(const struct axis *a, double v)
+static int position(const struct axis *a, double v)
 {
     const double part = (log10(v) - a->low) / (a->high - a->low);
     return (int)lround(a->from + part * (a->to - a->from));
@@ -107,17 +107,17 @@ static void draw_grid(const struct canvas *c)
     for (int e = c->x.low; e <= c->x.high; e++) {
         const bool has_label = (e - c->x.low) % every_x == 0;
         for (int k = 2; every_x == 1 && e < c->x.high && k < 10; k++) {
-            const int x = place(&c->x, k * pow(10, e));
+            const int x = position(&c->x, k * pow(10, e));
             print_line(c->out, x, c->y.from, x, c->y.to, thin);
         }
-        const int x = place(&c->x, pow(10, e));
+        const int x = position(&c->x, pow(10, e));
         print_line(c->out, x, c->y.from, x, c->y.to, has_label ? strong : thin);
         if (has_label)
             print_power(c->out, x, c->y.from + 200, "middle", e);
     }
     for (int e = c->y.low; e <= c->y.high; e++) {
         const bool has_label = (e - c->y.low) % every_y == 0;
-        const int y = place(&c->y, pow(10, e));
+        const int y = position(&c->y, pow(10, e));
         print_line(c->out, c->x.from, y, c->x.to, y, has_label ? strong : thin);
         if (has_label)
             print_power(c->out, c->x.from - 60, y + FONT / 3, "end", e);
@@ -173,13 +173,13 @@ static void draw_method(const struct canvas *c, const struct ct_work_precision_p
     fputs("<polyline fill=\"none\" points=\"", c->out);
     for (size_t i = 0; i < n; i++)
         if (is_drawn(&point[i]))
-            fprintf(c->out, "%d,%d ", place(&c->x, point[i].seconds),
-                    place(&c->y, point[i].error));
+            fprintf(c->out, "%d,%d ", position(&c->x, point[i].seconds),
+                    position(&c->y, point[i].error));
     fputs("\"/>\n", c->out);
     for (size_t i = 0; i < n; i++)
         if (is_drawn(&point[i]))
-            draw_mark(c->out, place(&c->x, point[i].seconds), place(&c->y, point[i].error),
-                      method);
+            draw_mark(c->out, position(&c->x, point[i].seconds),
+                      position(&c->y, point[i].error), method);
     print_line(c->out, x, y, x + 300, y, "");
     draw_mark(c->out, x + 150, y, method);
     fputs("</g>\n", c->out);
@@ -191,7 +191,7 @@ static void draw_method(const struct canvas *c, const struct ct_work_precision_p
 // A line at an error, labelled at its end.
 static void draw_level(const struct canvas *c, double error, const char *name)
 {
-    const int y = place(&c->y, error);
+    const int y = position(&c->y, error);
     if (!(error > 0) || y > c->y.from || y < c->y.to)
         return;
     print_line(c->out, c->x.from, y, c->x.to, y,
@@ -216,7 +216,8 @@ static void draw_all(const struct canvas *c, const struct ct_work_precision_poin
         fprintf(c->out,
                 "<circle cx=\"%d\" cy=\"%d\" r=\"%d\" fill=\"none\" stroke=\"#000000\" "
                 "stroke-width=\"14\"/>\n",
-                place(&c->x, plot->best->seconds), place(&c->y, plot->best->error), 2 * MARK);
+                position(&c->x, plot->best->seconds), position(&c->y, plot->best->error),
+                2 * MARK);
 }
 
 void ct_work_precision_print(FILE *out, const struct ct_work_precision_point *point, size_t n,

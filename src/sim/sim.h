@@ -64,8 +64,8 @@ struct ct_sim {
     long nwritten;                     // number of rows written
     struct ct_progress bar, *progress; // NULL: no progress bar
     long nstep;                        // accepted steps, for deadlines
-    double begun;    // time on ct_input_sampling's clock when integration began
-    double deadline; // time on the same clock when the run is abandoned; 0: none
+    double begun;                      // ct_monotonic_time when integration began [s]
+    double deadline; // ct_monotonic_time when the run is abandoned [s]; 0: none
     bool has_run, is_done, is_late, is_interrupted, is_followed;
     double reached;                                   // time reached by accepted steps
     double time;                                      // time of the last sample

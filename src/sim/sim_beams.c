@@ -30,11 +30,11 @@ static void warn_of_starts(struct ct_sim *sim, const struct ct_build *b)
     const double notable = 0.01; // relative limit, as that of the validity indicator
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        if (f->start_missed > notable)
+        if (f->start_residual > notable)
             ct_warning(&sim->own, f->beam->start[0].mark, 0,
                        "beam '%s' starts with what its shapes have of this; they leave out "
                        "%.3g %%",
-                       f->name, 100 * f->start_missed);
+                       f->name, 100 * f->start_residual);
     }
 }
 

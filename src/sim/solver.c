@@ -25,8 +25,9 @@ bool ct_sim_choose_solver(struct ct_sim *sim, const char *name)
                         "sparse, dense",
                         name);
     if (i == 0) {
-        // Implicit methods solve for accelerations a few times per step, beside their own factors:
-        // making a symbolic solver takes longer than the sparse one, which is made at once.
+        // Implicit methods solve for accelerations only a few times per step, in addition to their
+        // own systems: generating a symbolic solver takes longer than it saves; the sparse solver
+        // needs no generation.
         struct ct_partition *s = ct_run_partition(sim->run);
         if (sim->run_options.method->is_implicit
             && s->m->nu + s->m->nrow >= CT_FEWEST_SPARSE_UNKNOWNS)

@@ -177,7 +177,7 @@ static void write_validity(struct ct_json *j, const struct ct_sim *sim)
         if (error > CT_ESTIMATED_ERROR_LIMIT)
             ct_json_text(j, "error", "beyond 1");
         else if (isnan(error))
-            ct_json_text(j, "error", "not foretold");
+            ct_json_text(j, "error", "not estimated");
         else
             ct_json_number(j, "error", error);
         if (v->error_beyond_since >= 0)

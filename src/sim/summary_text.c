@@ -276,22 +276,23 @@ static void print_choices(FILE *out, const struct ct_equations *e)
     }
 }
 
-static void print_rounding(FILE *out, const struct ct_sim *sim)
+static void print_roundoff(FILE *out, const struct ct_sim *sim)
 {
     const struct ct_run_report *r = &sim->report;
     if (sim->is_followed || r->roundoff_limited < 0)
         return;
     if (isnan(r->roundoff)) {
         fprintf(out,
-                "rounding     inertias that are small differences of larger ones lose digits: "
+                "round-off    inertias that are small differences of larger ones lose digits: "
                 "the error comes to some %.1e of the largest %s\n",
                 r->roundoff_sum, sim->system->equations.result[r->roundoff_limited].name);
         return;
     }
-    fprintf(
-        out,
-        "rounding     one of coordinates is %.1e of the largest %s: smaller steps do not help",
-        r->roundoff, sim->system->equations.result[r->roundoff_limited].name);
+    fprintf(out,
+            "round-off    a round-off error of the coordinates causes an error of %.1e of the "
+            "largest "
+            "%s: smaller steps do not help",
+            r->roundoff, sim->system->equations.result[r->roundoff_limited].name);
     if (!isnan(r->roundoff_sum))
         fprintf(out, ", and those of %ld steps add up to some %.1e", r->explicit_steps,
                 r->roundoff_sum);
@@ -321,7 +322,7 @@ static void print_summary(const void *object, FILE *out)
         print_method(out, sim);
     fprintf(out, "error        energy drift %.2g, constraints %.2g, their rates %.2g\n",
             r->energy_drift, r->position_constraint, r->velocity_constraint);
-    print_rounding(out, sim);
+    print_roundoff(out, sim);
     print_singular(out, sim);
     print_estimate(out, sim);
     fprintf(out,

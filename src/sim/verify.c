@@ -357,7 +357,7 @@ void ct_sim_verify(struct ct_sim *sim)
     } else {
         if (!is_other(sim, &c) && add_third(sim, &said, &c, &comparison))
             e->how = ct_arena_printf(a, "%s, and %s%s", e->how, describe(a, &c),
-                                     is_same(&comparison) ? ", alike to the bit" : "");
+                                     is_same(&comparison) ? ", equal to the last bit" : "");
         e->worst = 0;
         e->output = comparison.output;
         judge(sim, &comparison, c.margin, e);

@@ -130,7 +130,7 @@ static void print_row(const struct subject *s, double one)
     const double n
         = (double)(s->stats.evaluations + s->stats.jacobians) / (double)s->stats.steps;
     const double step = s->seconds / (double)s->stats.steps;
-    printf("| %s%s | %.0f ns | %.2g | %.0f ns | %.0f ns | %.0f ns |\n", s->method,
+    printf("| %s%s | %.0f | %.2g | %.0f | %.0f | %.0f |\n", s->method,
            s->step > 0 ? ", fixed steps" : "", 1e9 * step, n, 1e9 * n * one,
            1e9 * (step - n * one), 1e9 * n * assumed);
 }
@@ -156,10 +156,10 @@ static void print_table(struct ct_ctx *ctx, const char *name, int rounds)
     }
     printf("%s: an evaluation %.1f ns, of the residual %.1f ns\n\n", name, 1e9 * one,
            1e9 * other);
-    printf(
-        "| method | a step | evaluations of it | they take | beside them | at %g ns each they "
-        "would be |\n| --- | --- | --- | --- | --- | --- |\n",
-        1e9 * assumed);
+    printf("| method | a step [ns] | evaluations | time of these [ns] | rest [ns] | "
+           "evaluations at %g "
+           "ns [ns] |\n| --- | --- | --- | --- | --- | --- |\n",
+           1e9 * assumed);
     for (int k = 0; k < n; k++)
         print_row(&all[k], one);
     printf("\n");

@@ -1,4 +1,4 @@
-# kinematics: a driven mechanism stays on its way of assembly, however far apart the samples are. Links of 1 m on feet D apart,
+# kinematics: a driven mechanism keeps its assembly mode, however far apart the samples are. Links of 1 m on feet D apart,
 # nearly a parallelogram, pass a singular configuration where the rocker turns back within sqrt(1 - D) rad of the crank; at
 # D = 1 they go straight through. Samples are compared with those of a run with a sample each thousandth of a second.
 four_bar() {

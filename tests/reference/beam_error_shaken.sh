@@ -60,7 +60,7 @@ figure() {
 none() {
     run "$@"
     echo "$1: said $said"
-    [ "$said" = "not foretold" ] || failed=1
+    [ "$said" = "not estimated" ] || failed=1
 }
 figure first 16 'motion: "0.006*sin(3.97*t)"'
 figure turning 16 'motion: "if(t < 4, t^2/16, 0.5*t - 1) + 0.004*sin(4.05*t)"'

@@ -69,5 +69,17 @@ warming_steps:steps before counting
 leaves_speeds:violates_velocity_constraints
 put_off_by:postponed steps
 turn_to|turn_on:normalize, apply the Jacobian
+foretold|foretell:estimate, predict
+sought:chosen, searched
+draw_in|draw_mass|scaled_draw:foreshortening
+lost_speed|name_lost:lost inertia
+swing_matrix|carrying_matrix:centripetal, acceleration matrix
+ct_path_sweep|swept:partial velocity; columns of base motion
+hand_inwards:transfer inwards
+size_beside:largest off-diagonal
+ct_flexible_moving|ct_base_turning:relative momentum, base acceleration
+share_missed|start_missed:relative residual
+way of assembly:assembly mode
+grip:lock
 END
 exit $bad

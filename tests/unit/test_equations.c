@@ -254,7 +254,7 @@ static void the_recursive_form_equals_the_matrix_form(void **state)
 
 // Entries of the matrices of a beam as the engine has them, and the lines below its block.
 struct engine_beam {
-    struct ct_columns columns;
+    struct ct_elastic_columns columns;
     struct ct_symmetric M; // nu x nu
     ct_ex *velocity, *elastic;
     double *applied;
@@ -271,7 +271,8 @@ static void find_entries(struct fixture *f, const struct ct_flexible *self,
                          effective
                          = ct_flexible_effective_base(b, self, &m, &less[0], &less[1]),
                          turned = {.w = effective.w};
-    s->columns = (struct ct_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
+    s->columns
+        = (struct ct_elastic_columns){CT_NEWN(a, ct_ex3, n + 1), CT_NEWN(a, ct_ex3, n + 1)};
     s->M = ct_symmetric_create(a, nu);
     s->velocity = CT_NEWN(a, ct_ex, nu + 1);
     s->elastic = CT_NEWN(a, ct_ex, nu + 1);
@@ -294,12 +295,12 @@ static void set_block(struct fixture *f, const struct ct_beam_block *s,
 {
     const struct ct_equations *e = &f->e;
     for (int i = 0; i < 3; i++) {
-        const double moved = k < 0 ? 0 : engine[of->columns.moved[k].e[i].id],
-                     swept = k < 0 ? 0 : engine[of->columns.swept[k].e[i].id];
-        set_symbol(f, s->moved[i], moved);
-        set_symbol(f, s->moved_t[i], moved);
-        set_symbol(f, s->swept[i], swept);
-        set_symbol(f, s->swept_t[i], swept);
+        const double m_rf = k < 0 ? 0 : engine[of->columns.m_rf[k].e[i].id],
+                     m_thetaf = k < 0 ? 0 : engine[of->columns.m_thetaf[k].e[i].id];
+        set_symbol(f, s->m_rf[i], m_rf);
+        set_symbol(f, s->m_rf_t[i], m_rf);
+        set_symbol(f, s->m_thetaf[i], m_thetaf);
+        set_symbol(f, s->m_thetaf_t[i], m_thetaf);
     }
     double inertia = 0;
     for (int l = 0; l < s->f->nelastic && k >= 0; l++) {

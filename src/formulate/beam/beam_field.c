@@ -7,23 +7,24 @@ enum { NKIND = CT_NODE_FREEDOM };
 
 // ---- fields at nodes ----------------------------------------------------------------------------
 
-static ct_ex at_place(struct ct_build *b, const struct ct_flexible *f, ct_ex g, ct_ex place)
+static ct_ex value_at(struct ct_build *b, const struct ct_flexible *f, ct_ex g, ct_ex place)
 {
     return ct_ex_subst(b->x, g, &f->beam->x, &place, 1);
 }
 
-static ct_ex place_of(const struct ct_flexible *f, int node)
+static ct_ex position_of(const struct ct_flexible *f, int node)
 {
     return node ? f->beam->end[node - 1] : CT_EX_ZERO;
 }
 
-// Value of g in the middle of the element before the node, minus the mean of its ends.
-static ct_ex bulge(struct ct_build *b, const struct ct_flexible *f, ct_ex g, int node)
+// Value of g in the middle of the element before the node, minus the mean of the values at its ends.
+static ct_ex mid_element_excess(struct ct_build *b, const struct ct_flexible *f, ct_ex g,
+                                int node)
 {
     struct ct_exs *x = b->x;
-    const ct_ex from = place_of(f, node - 1), to = place_of(f, node);
-    const ct_ex ends = ct_ex_add(x, at_place(b, f, g, from), at_place(b, f, g, to));
-    const ct_ex middle = at_place(b, f, g, ct_ex_scale(x, 0.5, ct_ex_add(x, from, to)));
+    const ct_ex from = position_of(f, node - 1), to = position_of(f, node);
+    const ct_ex ends = ct_ex_add(x, value_at(b, f, g, from), value_at(b, f, g, to));
+    const ct_ex middle = value_at(b, f, g, ct_ex_scale(x, 0.5, ct_ex_add(x, from, to)));
     return ct_ex_sub(x, middle, ct_ex_scale(x, 0.5, ends));
 }
 
@@ -33,12 +34,12 @@ ct_ex ct_field_freedom(struct ct_build *b, const struct ct_flexible *f, enum ct_
     static const int slope[CT_BEAM_NFIELD] = {-1, CT_FREEDOM_RZ, CT_FREEDOM_RY, -1},
                      middle[CT_BEAM_NFIELD] = {CT_FREEDOM_UM, -1, -1, CT_FREEDOM_RM};
     if (freedom == (int)kind)
-        return at_place(b, f, g, place_of(f, node));
+        return value_at(b, f, g, position_of(f, node));
     if (freedom == middle[kind] && node > 0)
-        return bulge(b, f, g, node);
+        return mid_element_excess(b, f, g, node);
     if (freedom != slope[kind])
         return CT_EX_ZERO;
-    const ct_ex v = at_place(b, f, ct_ex_diff(b->x, g, f->beam->x), place_of(f, node));
+    const ct_ex v = value_at(b, f, ct_ex_diff(b->x, g, f->beam->x), position_of(f, node));
     return kind == CT_BEAM_FIELD_W ? ct_ex_neg(b->x, v) : v; // dw/dx = -ry
 }
 
@@ -62,9 +63,10 @@ bool ct_fields_leave_plane(const struct ct_beam *beam, bool about_z)
     return false;
 }
 
-// LOCAL: axial positions of the nodes for a given stretch, U = s - S, and their rates; S:
-// foreshortening by bending.
-static void draw_in(struct ct_build *b, const struct ct_flexible *f, ct_ex *value, ct_ex *rate)
+// In LOCAL coordinates the axial freedoms are positions, U = s - S, with the stretch s and the
+// foreshortening S by bending: subtracts S from the given s, and S' from its rate.
+static void subtract_foreshortening(struct ct_build *b, const struct ct_flexible *f,
+                                    ct_ex *value, ct_ex *rate)
 {
     struct ct_exs *x = b->x;
     ct_ex S = CT_EX_ZERO, dS = CT_EX_ZERO;
@@ -91,8 +93,8 @@ static void draw_in(struct ct_build *b, const struct ct_flexible *f, ct_ex *valu
     }
 }
 
-static bool deforms_so(struct ct_build *b, const struct ct_flexible *f,
-                       const struct ct_beam_given *g)
+static bool has_deformation(struct ct_build *b, const struct ct_flexible *f,
+                            const struct ct_beam_given *g)
 {
     static const char *const what[CT_BEAM_NFIELD]
         = {"stretch", "bend in its x-y plane", "bend in its x-z plane", "twist"};
@@ -115,7 +117,7 @@ void ct_fields_start(struct ct_build *b, struct ct_flexible *f)
         of[k] = CT_NEWN(b->ctx->scratch, ct_ex, nfreedom);
     for (int k = 0; k < beam->nstart; k++) {
         const struct ct_beam_given *g = &beam->start[k];
-        if (!deforms_so(b, f, g))
+        if (!has_deformation(b, f, g))
             return;
         for (int i = 0; i < nfreedom; i++) {
             ct_ex *v = &of[g->is_rate][i];
@@ -124,7 +126,7 @@ void ct_fields_start(struct ct_build *b, struct ct_flexible *f)
         }
     }
     if (f->axial == CT_AXIAL_LOCAL)
-        draw_in(b, f, of[0], of[1]);
+        subtract_foreshortening(b, f, of[0], of[1]);
     for (int k = 0; k < 2; k++) {
         const bool shares = f->nelastic && (beam->modes || beam->nshape)
                          && f->elastic[f->nelastic - 1].freedom < 0;

@@ -10,25 +10,25 @@ static ct_ex3 normal_at(struct ct_build *b, const ct_ex33 *U)
 }
 
 // Is v normal to n for any time and state?
-static bool is_across(struct ct_build *b, ct_ex3 v, ct_ex3 n)
+static bool is_perpendicular(struct ct_build *b, ct_ex3 v, ct_ex3 n)
 {
     const ct_ex along = ct_ex3_dot(b->x, v, n);
-    const unsigned still = 1u << CT_SYM_PARAM;
+    const unsigned constant = 1u << CT_SYM_PARAM;
     double size = 0;
-    if (ct_ex_kinds(b->x, along) & ~still)
+    if (ct_ex_kinds(b->x, along) & ~constant)
         return false;
     for (int i = 0; i < 3; i++)
-        if (!(ct_ex_kinds(b->x, v.e[i]) & ~still))
+        if (!(ct_ex_kinds(b->x, v.e[i]) & ~constant))
             size = fmax(size, fabs(ct_ex_value(b->x, v.e[i], b->value)));
     return fabs(ct_ex_value(b->x, along, b->value)) <= CT_DATA_ROUNDOFF * size;
 }
 
-static bool is_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
+static bool is_parallel(struct ct_build *b, ct_ex3 v, ct_ex3 n)
 {
     double most = 0;
     for (int i = 0; i < 3; i++)
         most = fmax(most, fabs(ct_ex_value(b->x, n.e[i], b->value)));
-    // along an axis its own component is all; else look at the cross product
+    // if n is along a coordinate axis, the other two components decide; else the cross product
     if (most < 1 - CT_DATA_ROUNDOFF) {
         const ct_ex3 c = ct_ex3_cross(b->x, v, n);
         for (int i = 0; i < 3; i++)
@@ -65,7 +65,7 @@ static bool loads_keep_plane(struct ct_build *b, ct_ex33 *const *U)
             const ct_ex3 value = {{v->e[0], v->e[1], v->e[2]}};
             const ct_ex3 n = in->given ? normal_at(b, U[b->topology->node_of_frame[in->frame]])
                                        : b->topology->plane[2];
-            if (is_torque ? !is_along(b, value, n) : !is_across(b, value, n))
+            if (is_torque ? !is_parallel(b, value, n) : !is_perpendicular(b, value, n))
                 return false;
         } else if (self->from >= 0
                    && !is_axis(b, normal_at(b, U[b->topology->node_of_frame[self->from]]))) {
@@ -89,7 +89,7 @@ static bool masses_keep_plane(struct ct_build *b, ct_ex33 *const *U, double allo
         const ct_ex33 own = {{I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2]}};
         const ct_ex3 n = normal_at(b, U[b->topology->node_of_com[i]]);
         if (!m->body[i].is_particle && !m->body[i].beam
-            && !is_along(b, ct_ex33_apply(b->x, &own, n), n))
+            && !is_parallel(b, ct_ex33_apply(b->x, &own, n), n))
             return false;
     }
     return true;
@@ -117,8 +117,8 @@ bool ct_deformation_keeps_plane(struct ct_build *b, ct_ex33 *const *U, bool *is_
     }
     const bool keeps
         = !asked
-       || (is_across(b, b->model->gravity, b->topology->plane[2]) && loads_keep_plane(b, U)
-           && masses_keep_plane(b, U, CT_SAME_PLACE * longest));
+       || (is_perpendicular(b, b->model->gravity, b->topology->plane[2])
+           && loads_keep_plane(b, U) && masses_keep_plane(b, U, CT_SAME_PLACE * longest));
     *is_spatial = *is_spatial || (keeps && frees && b->options->keeps_all_deformations);
     return keeps && !*is_spatial;
 }
@@ -134,7 +134,7 @@ static bool turns_section(const struct ct_build *b, int frame, const struct ct_f
 }
 
 // Is the stiffness of the section equal in all transverse directions?
-static bool is_even(const struct ct_build *b, const struct ct_beam *beam)
+static bool is_isotropic(const struct ct_build *b, const struct ct_beam *beam)
 {
     const bool shears = beam->theory == CT_BEAM_TIMOSHENKO;
     return ct_ex_is_zero(ct_ex_sub(b->x, beam->Iy, beam->Iz))
@@ -154,7 +154,7 @@ static bool bending_twists(const struct ct_build *b, const struct ct_flexible *f
 {
     return bends_about_both(f)
         && (b->options->keeps_all_deformations
-            || (f->formulation == CT_BEAM_FORESHORTENING && !is_even(b, f->beam)));
+            || (f->formulation == CT_BEAM_FORESHORTENING && !is_isotropic(b, f->beam)));
 }
 
 // Does a joint, a torque or an arm off the axis twist the beam beyond its base?

@@ -73,15 +73,15 @@ void ct_dof_push_pair(struct ct_build *b, const struct ct_flexible *f, int e, in
 }
 
 void ct_dof_push_column(struct ct_build *b, const struct ct_flexible *f, int e, int j,
-                        ct_ex3 moved, ct_ex3 swept, struct ct_columns *out)
+                        ct_ex3 m_rf, ct_ex3 m_thetaf, struct ct_elastic_columns *out)
 {
     int sign;
     const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
     for (int i = 0; d && i < d->npart; i++) {
         const int k = d->part[i].k;
         const ct_ex c = sign > 0 ? d->part[i].coef : ct_ex_neg(b->x, d->part[i].coef);
-        out->moved[k] = ct_ex3_add(b->x, out->moved[k], ct_ex3_scale(b->x, c, moved));
-        out->swept[k] = ct_ex3_add(b->x, out->swept[k], ct_ex3_scale(b->x, c, swept));
+        out->m_rf[k] = ct_ex3_add(b->x, out->m_rf[k], ct_ex3_scale(b->x, c, m_rf));
+        out->m_thetaf[k] = ct_ex3_add(b->x, out->m_thetaf[k], ct_ex3_scale(b->x, c, m_thetaf));
     }
 }
 

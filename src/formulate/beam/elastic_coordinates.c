@@ -11,7 +11,7 @@
 enum { NKIND = CT_NODE_FREEDOM };
 static const char *const kind_name[NKIND] = {"u", "v", "w", "rx", "ry", "rz", "rm", "um"};
 
-static enum ct_elastic_kind sort_of(int kind)
+static enum ct_elastic_kind elastic_kind_of(int kind)
 {
     return kind == CT_FREEDOM_U || kind == CT_FREEDOM_UM ? CT_ELASTIC_ALONG
          : kind < CT_FREEDOM_RX                          ? CT_ELASTIC_ACROSS
@@ -64,8 +64,8 @@ static void dof_values(struct ct_build *b, struct ct_flexible *f)
 }
 
 // Foreshortening of one element from the integrals E of slope products and of rotation gradients.
-static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
-                             ct_ex *rate, ct_ex *bias)
+static void foreshorten_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                                    ct_ex *rate, ct_ex *bias)
 {
     struct ct_exs *x = b->x;
     struct ct_element *self = &f->element[e];
@@ -92,8 +92,8 @@ static void draw_by_matrices(struct ct_build *b, struct ct_flexible *f, int e, c
 }
 
 // The same from Legendre coefficients of the slopes.
-static void draw_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
-                           ct_ex *rate, ct_ex *bias)
+static void foreshorten_by_slopes(struct ct_build *b, struct ct_flexible *f, int e, ct_ex *c,
+                                  ct_ex *rate, ct_ex *bias)
 {
     struct ct_exs *x = b->x;
     struct ct_element *self = &f->element[e];
@@ -125,9 +125,9 @@ static void run_chain(struct ct_build *b, struct ct_flexible *f)
         struct ct_element *self = &f->element[e];
         ct_ex c = self->c, rate = self->c_rate, bias = self->c_bias;
         if (f->beam->higher_order)
-            draw_by_matrices(b, f, e, &c, &rate, &bias);
+            foreshorten_by_matrices(b, f, e, &c, &rate, &bias);
         else
-            draw_by_slopes(b, f, e, &c, &rate, &bias);
+            foreshorten_by_slopes(b, f, e, &c, &rate, &bias);
         if (e + 1 < f->beam->nelement) {
             self[1].c = c;
             self[1].c_rate = rate;
@@ -160,10 +160,10 @@ static void combine_shapes(struct ct_build *b, struct ct_flexible *f, const stru
 {
     struct ct_freedom *d = &f->freedom[s->freedom[i]];
     d->part = CT_NEWN(b->arena, struct ct_part, s->nshape);
-    const bool follows = f->condensation && i >= s->nstatic;
+    const bool is_condensed = f->condensation && i >= s->nstatic;
     for (int k = 0; k < s->nshape; k++) {
         const ct_ex coef = ct_ex_const(b->x, s->shape[(size_t)i + (size_t)s->n * (size_t)k]);
-        if (follows)
+        if (is_condensed)
             list_part(d, k, coef);
         else
             add_part(b, f, d, k, coef);
@@ -180,7 +180,7 @@ static void unknowns_of_shapes(struct ct_build *b, struct ct_flexible *f,
                         ? ct_arena_printf(b->arena, "%s.%d.%s", f->name, i / NKIND,
                                           kind_name[i % NKIND])
                         : ct_arena_printf(b->arena, "%s.mode%d", f->name, k - s->nstatic + 1),
-                    k < s->nstatic ? sort_of(i % NKIND) : CT_ELASTIC_MODE,
+                    k < s->nstatic ? elastic_kind_of(i % NKIND) : CT_ELASTIC_MODE,
                     k < s->nstatic ? i : -1);
     }
     for (int i = 0; i < s->n; i++)
@@ -198,7 +198,7 @@ static void nodal_unknowns(struct ct_build *b, struct ct_flexible *f)
                 continue;
             const int k = new_unknown(
                 b, f, ct_arena_printf(b->arena, "%s.%d.%s", f->name, node, kind_name[kind]),
-                sort_of(kind), NKIND * node + kind);
+                elastic_kind_of(kind), NKIND * node + kind);
             struct ct_freedom *d = &f->freedom[NKIND * node + kind];
             d->part = CT_NEW(b->arena, struct ct_part);
             add_part(b, f, d, k, CT_EX_ONE);
@@ -276,7 +276,7 @@ static void given_unknowns(struct ct_build *b, struct ct_flexible *f)
             continue;
         const int k = new_unknown(
             b, f, ct_arena_printf(b->arena, "%s.%s%d", f->name, kind_name[kind], number),
-            sort_of((int)kind), -1);
+            elastic_kind_of((int)kind), -1);
         marks[k] = beam->shape[s].mark;
         for (int i = 0; i < NKIND * (beam->nelement + 1); i++)
             if (!ct_freedom_is_fixed(f, i / NKIND, i % NKIND))

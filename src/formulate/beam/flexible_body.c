@@ -84,7 +84,8 @@ static unsigned in_plane(const struct ct_build *b, const struct ct_flexible *f)
 {
     if (!b->topology->keeps_plane)
         return CT_BEAM_ALL;
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->normal);
+    const ct_ex3 n
+        = ct_ex33_apply_t(b->x, &b->topology->reference_axes[f->base], b->topology->normal);
     const bool about_z = fabs(ct_ex_value(b->x, n.e[2], b->value)) > 0.5;
     return CT_BEAM_AXIAL | (about_z ? CT_BEAM_BENDING_Z : CT_BEAM_BENDING_Y);
 }

@@ -117,7 +117,7 @@ struct ct_flexible {
     // (beam_augmented.h)
     const struct ct_condensation *former_condensation;
     // fraction of the initial deflection that modes or given shapes cannot represent
-    double start_missed;
+    double start_residual;
     int most_modes; // for `modes`: number of available modes
     double cut;     // repeated frequency of which only some modes are kept [rad/s]; else 0
     // uncut: in that case the nearest numbers of modes, below and above, that keep none or all of

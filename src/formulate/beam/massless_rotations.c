@@ -38,8 +38,8 @@ static int axis_along(struct ct_build *b, const struct ct_frame *frame, ct_ex3 v
 static unsigned about_normal(const struct node_moments *w)
 {
     const struct ct_build *b = w->b;
-    const ct_ex3 n
-        = ct_ex33_apply_t(b->x, &b->topology->upright[w->f->base], b->topology->plane[2]);
+    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->reference_axes[w->f->base],
+                                     b->topology->plane[2]);
     unsigned bits = 0;
     for (int i = 0; i < NAXIS; i++)
         if (fabs(ct_ex_value(b->x, n.e[i], b->value)) > 0.5)
@@ -169,13 +169,13 @@ int ct_flexible_bare_joint(struct ct_build *b, const struct ct_flexible *f)
 // ---- all ----------------------------------------------------------------------------------------
 
 bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_flexible *f,
-                                         bool *follows)
+                                         bool *is_condensed)
 {
     const int nnode = f->beam->nelement + 1;
     struct node_moments w = {b, f, CT_NEWN(b->ctx->scratch, unsigned, nnode)};
     const bool turns_apart = f->beam->is_lumped || f->beam->theory == CT_BEAM_TIMOSHENKO;
     bool any = false, marked = false;
-    memset(follows, 0, (size_t)(NKIND * nnode) * sizeof *follows);
+    memset(is_condensed, 0, (size_t)(NKIND * nnode) * sizeof *is_condensed);
     if (b->options->keeps_all_deformations && f->formulation != CT_BEAM_LINEAR)
         return false; // analyses may omit masses, and then further loads matter
     for (int axis = 0; axis < NAXIS && f->deformation; axis++) {
@@ -188,9 +188,9 @@ bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_fle
                 mark_frame(&w, i);
         marked = true;
         for (int node = 0; node < nnode; node++)
-            any |= follows[NKIND * node + RX + axis] = !(w.about[node] & 1u << axis);
+            any |= is_condensed[NKIND * node + RX + axis] = !(w.about[node] & 1u << axis);
         for (int node = 0; node < nnode && axis == 0; node++)
-            any |= follows[NKIND * node + CT_FREEDOM_RM] = f->beam->has_quadratic_twist;
+            any |= is_condensed[NKIND * node + CT_FREEDOM_RM] = f->beam->has_quadratic_twist;
     }
     return any;
 }

@@ -4,10 +4,10 @@
 
 #include "formulate/beam/degrees_of_freedom.h"
 
-/// Rotations of nodes without inertia and moment (massless_rotations.c). follows (6 per node,
+/// Rotations of nodes without inertia and moment (massless_rotations.c). is_condensed (6 per node,
 /// out): by freedom, fixed ones included. False if there are none.
 bool ct_flexible_find_massless_rotations(struct ct_build *b, const struct ct_flexible *f,
-                                         bool *follows);
+                                         bool *is_condensed);
 /// The joint that rotates only the first section of the beam, which has no inertia, while the other
 /// nodes stay fixed. This is exact for a straight axis and approximate for a bent one with
 /// foreshortening. -1: none.

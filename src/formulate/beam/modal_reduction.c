@@ -2,11 +2,10 @@
 //
 // Condensed: rotations without inertia depend statically on the other freedoms.
 //
-// Modal:
-// the nodal freedoms become  q = Psi eta_c + Phi eta_m:  Psi, the static shapes of a unit
-// displacement of each freedom that joints or loads act on, the others of them held; Phi, the
-// lowest modes with those freedoms held. A beam that nothing acts on beyond its base has modes
-// only.
+// Modal: the nodal freedoms become  q = Psi eta_c + Phi eta_m.  The boundary freedoms are those
+// that joints or loads act on. Psi: static shapes of a unit displacement of each boundary freedom
+// with the other ones fixed. Phi: the lowest modes with all boundary freedoms fixed. A beam without
+// joints and loads beyond its base has modes only.
 // Source: Craig & Bampton (1968), key craig1968.
 #include "formulate/beam/modal_reduction.h"
 #include "numeric/dense.h"
@@ -153,7 +152,7 @@ static bool static_shapes(struct reduction *r)
 
 // Removes round-off from a shape. For a straight axis with principal axes, stretch, twist and both
 // bendings are decoupled. Components of other families are round-off of the largest component, 1.
-static void drop_rounding(const struct reduction *r, double *v)
+static void drop_roundoff(const struct reduction *r, double *v)
 {
     unsigned moves = 0;
     for (int i = 0; i < r->n; i++)
@@ -184,11 +183,11 @@ static void find_cut(const struct reduction *r, const double *w, int m, int want
 
 // Relative difference below which entries count as equal by symmetry. The first of them is then
 // taken as the largest, so that round-off does not decide. Derived: far above n eps, and far below
-// what differs by design.
-static const double alike = 1e-6;
+// differences of unequal entries.
+static const double equality_tolerance = 1e-6;
 
-// Of these families: K v = w^2 M v with the others held, solved as M v = (1/w^2) K v: M may be
-// singular. Scaled to a largest component of 1.
+// Modes of these families, K v = w^2 M v with the other freedoms fixed. Solved as M v = (1/w^2) K v,
+// because M may be singular. Scaled to a largest component of 1.
 static bool modes(struct reduction *r, unsigned families, int wanted)
 {
     struct ct_arena *scratch = r->b->ctx->scratch;
@@ -203,10 +202,10 @@ static bool modes(struct reduction *r, unsigned families, int wanted)
         const double *v = A + (size_t)m * (size_t)(m - 1 - k);
         double most = 0, *out = r->shape + (size_t)r->n * (size_t)r->nshape++;
         for (int i = 0; i < m; i++)
-            most = fabs(v[i]) > (1 + alike) * fabs(most) ? v[i] : most;
+            most = fabs(v[i]) > (1 + equality_tolerance) * fabs(most) ? v[i] : most;
         for (int i = 0; i < m; i++)
             out[at[i]] = v[i] / most;
-        drop_rounding(r, out);
+        drop_roundoff(r, out);
     }
     if (wanted > 0 && wanted < m)
         find_cut(r, w, m, wanted);
@@ -262,7 +261,7 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
     return true;
 }
 
-// v' M v of freedoms' values.
+// v' M v for values v of the freedoms.
 static double weight_of(const struct reduction *r, const double *v)
 {
     double sum = 0;
@@ -273,8 +272,8 @@ static double weight_of(const struct reduction *r, const double *v)
 }
 
 // Relative part of the values g that P c cannot represent.
-static double share_missed(const struct reduction *r, const double *P, const ct_ex *by_freedom,
-                           const ct_ex *c)
+static double relative_residual(const struct reduction *r, const double *P,
+                                const ct_ex *by_freedom, const ct_ex *c)
 {
     const struct ct_build *b = r->b;
     const size_t n = (size_t)r->n;
@@ -326,12 +325,12 @@ bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_
         for (int k = 0; k < m; k++)
             out[k] = ct_ex_add(b->x, out[k], ct_ex_scale(b->x, v[k], by_freedom[r.freedom[i]]));
     }
-    f->start_missed = fmax(f->start_missed, share_missed(&r, P, by_freedom, out));
+    f->start_residual = fmax(f->start_residual, relative_residual(&r, P, by_freedom, out));
     return true;
 }
 
-// Are the numbers of those without a static shape what the elements always have, and move these no
-// mass?
+// Are the rows of the freedoms without a static shape constant in K and zero in M, for any values
+// of the parameters?
 static bool is_balanced(const struct reduction *r)
 {
     ct_ex K[CT_DOF][CT_DOF], M[CT_DOF][CT_DOF];

@@ -21,9 +21,9 @@ bool ct_flexible_reduce(struct ct_build *b, struct ct_flexible *f, struct ct_sha
 /// condensed rotations in equilibrium. False if nothing is condensed or the stiffness of the
 /// condensed rotations is not positive.
 bool ct_flexible_condense(struct ct_build *b, struct ct_flexible *f, struct ct_shapes *out);
-/// Coordinates whose shapes come nearest to freedoms' values, by the mass between: (P' M P)^-1 P'
-/// M g, with numbers of the file for P and M; f->start_missed tells what they leave out. False:
-/// the shapes depend on each other, or move no mass.
+/// Projects values g of the freedoms on the shapes P of the coordinates, in the norm of the mass
+/// matrix: (P' M P)^-1 P' M g, with P and M at the parameter values of the file. f->start_residual
+/// is the relative part of g that remains. False: the shapes are linearly dependent or have no mass.
 bool ct_flexible_fit(struct ct_build *b, struct ct_flexible *f, const ct_ex *by_freedom,
                      ct_ex *out);
 

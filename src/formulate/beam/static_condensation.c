@@ -15,24 +15,24 @@ struct entry {
 };
 
 // A condensed rotation: its row of G by freedoms, of A and of L below the diagonal.
-struct follower {
-    int freedom, nheld, nbefore, nlaw;
+struct condensed_rotation {
+    int freedom, nheld, nbefore, nequilibrium;
     struct entry *held, *forth, *back;
     // its row of K divided by the diagonal entry, without that entry
-    struct ct_condensation_term *law;
+    struct ct_condensation_term *equilibrium;
 };
 
 struct ct_condensation {
     int n;
     bool is_balanced;
     int *number; // by freedom: its row, or -1
-    struct follower *row;
+    struct condensed_rotation *row;
 };
 
 // ---- creation -----------------------------------------------------------------------------------
 
 static void fill_row(struct ct_condensation *out, const struct ct_condensation_numbers *c,
-                     int k, struct follower *row)
+                     int k, struct condensed_rotation *row)
 {
     const size_t n = (size_t)c->n, m = (size_t)(c->n - c->nkept);
     const double pivot = c->L[(size_t)k + m * (size_t)k];
@@ -42,7 +42,8 @@ static void fill_row(struct ct_condensation *out, const struct ct_condensation_n
     for (int i = 0; i < c->n; i++) {
         const double v = c->K[(size_t)(c->nkept + k) + n * (size_t)i];
         if (v != 0 && i != c->nkept + k)
-            row->law[row->nlaw++] = (struct ct_condensation_term){c->freedom[i], v / own};
+            row->equilibrium[row->nequilibrium++]
+                = (struct ct_condensation_term){c->freedom[i], v / own};
     }
     for (int i = 0; i < c->nkept; i++) {
         const double v = c->K[(size_t)(c->nkept + k) + n * (size_t)i];
@@ -76,13 +77,13 @@ struct ct_condensation *ct_condensation_create(struct ct_build *b,
     out->number = CT_NEWN(b->arena, int, c->nfreedom);
     for (int i = 0; i < c->nfreedom; i++)
         out->number[i] = -1;
-    out->row = CT_NEWN(b->arena, struct follower, m);
+    out->row = CT_NEWN(b->arena, struct condensed_rotation, m);
     for (int k = 0; k < m; k++) {
-        struct follower *row = &out->row[k];
+        struct condensed_rotation *row = &out->row[k];
         const int nheld = count(c->K + c->nkept + k, c->nkept, (size_t)c->n),
                   nbefore = count(c->L + k, k, (size_t)m);
-        row->law = CT_NEWN(b->arena, struct ct_condensation_term,
-                           count(c->K + c->nkept + k, c->n, (size_t)c->n) + 1);
+        row->equilibrium = CT_NEWN(b->arena, struct ct_condensation_term,
+                                   count(c->K + c->nkept + k, c->n, (size_t)c->n) + 1);
         row->held = CT_NEWN(b->arena, struct entry, nheld + 1);
         row->forth = CT_NEWN(b->arena, struct entry, nbefore + 1);
         row->back = CT_NEWN(b->arena, struct entry, nbefore + 1);
@@ -107,11 +108,11 @@ int ct_condensation_number(const struct ct_flexible *f, int freedom)
     return f->condensation ? f->condensation->number[freedom] : -1;
 }
 
-const struct ct_condensation_term *ct_condensation_law(const struct ct_flexible *f, int k,
-                                                       int *n)
+const struct ct_condensation_term *ct_condensation_equilibrium(const struct ct_flexible *f,
+                                                               int k, int *n)
 {
-    *n = f->condensation->row[k].nlaw;
-    return f->condensation->row[k].law;
+    *n = f->condensation->row[k].nequilibrium;
+    return f->condensation->row[k].equilibrium;
 }
 
 // ---- values, forces -----------------------------------------------------------------------------
@@ -124,14 +125,14 @@ static void add(struct ct_exs *x, ct_ex *sum, double by, ct_ex v)
 void ct_condensation_extend(struct ct_exs *x, const struct ct_condensation *s, ct_ex *v)
 {
     for (int k = 0; k < s->n; k++) {
-        const struct follower *row = &s->row[k];
+        const struct condensed_rotation *row = &s->row[k];
         for (int i = 0; i < row->nheld; i++)
             add(x, &v[row->freedom], row->held[i].by, v[row->held[i].at]);
         for (int i = 0; i < row->nbefore; i++)
             add(x, &v[row->freedom], -row->forth[i].by, v[s->row[row->forth[i].at].freedom]);
     }
     for (int k = s->n; k-- > 0;) {
-        const struct follower *row = &s->row[k];
+        const struct condensed_rotation *row = &s->row[k];
         for (int i = 0; i < row->nbefore; i++)
             add(x, &v[s->row[row->back[i].at].freedom], -row->back[i].by, v[row->freedom]);
     }
@@ -158,13 +159,13 @@ void ct_condensation_values(struct ct_build *b, struct ct_flexible *f)
 void ct_condensation_forces(struct ct_exs *x, const struct ct_condensation *s, ct_ex *force)
 {
     for (int k = 0; k < s->n; k++) {
-        const struct follower *row = &s->row[k];
+        const struct condensed_rotation *row = &s->row[k];
         for (int i = 0; i < row->nbefore; i++)
             add(x, &force[row->freedom], -row->back[i].by,
                 force[s->row[row->back[i].at].freedom]);
     }
     for (int k = s->n; k-- > 0;) {
-        const struct follower *row = &s->row[k];
+        const struct condensed_rotation *row = &s->row[k];
         const ct_ex w = force[row->freedom];
         for (int i = 0; i < row->nbefore; i++)
             add(x, &force[s->row[row->forth[i].at].freedom], -row->forth[i].by, w);

@@ -22,8 +22,8 @@ struct ct_condensation_term {
 /// number k.
 int ct_condensation_count(const struct ct_flexible *f);
 int ct_condensation_number(const struct ct_flexible *f, int freedom);
-const struct ct_condensation_term *ct_condensation_law(const struct ct_flexible *f, int k,
-                                                       int *n);
+const struct ct_condensation_term *ct_condensation_equilibrium(const struct ct_flexible *f,
+                                                               int k, int *n);
 struct ct_condensation *ct_condensation_create(struct ct_build *b,
                                                const struct ct_condensation_numbers *c);
 /// Derives values, rates and accelerations of the condensed rotations.

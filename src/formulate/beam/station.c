@@ -110,9 +110,9 @@ static void add_partial(struct ct_build *b, const struct ct_flexible *f, int e, 
 {
     int sign;
     const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
-    const int follower = d && apart ? ct_condensation_number(f, (int)(d - f->freedom)) : -1;
-    if (follower >= 0) {
-        ct_ex3 *sum = &by_coordinate[f->nelastic + follower];
+    const int condensed = d && apart ? ct_condensation_number(f, (int)(d - f->freedom)) : -1;
+    if (condensed >= 0) {
+        ct_ex3 *sum = &by_coordinate[f->nelastic + condensed];
         *sum = ct_ex3_add(b->x, *sum, ct_ex3_scale(b->x, ct_ex_const(b->x, sign), value));
         return;
     }
@@ -157,7 +157,7 @@ void ct_station_own_partials(struct ct_build *b, const struct ct_flexible *f,
 
 // Are translations of sections cheaper by distributing forces of condensed rotations? That sum is
 // new for each section, while sums by freedom continue from section to section.
-static bool is_handed(const struct ct_build *b, const struct ct_flexible *f)
+static bool distributes_forces(const struct ct_build *b, const struct ct_flexible *f)
 {
     size_t nsection = 0, nproduct = 0;
     for (size_t i = 0; i < b->topology->nedge; i++)
@@ -185,8 +185,8 @@ static void chain_partials(struct ct_build *b, const struct ct_flexible *f, int 
 }
 
 // The same by forces on freedoms; those on condensed rotations are distributed from node to node.
-static void handed_partials(struct ct_build *b, const struct ct_flexible *f, int element,
-                            ct_ex3 *slide)
+static void distributed_partials(struct ct_build *b, const struct ct_flexible *f, int element,
+                                 ct_ex3 *slide)
 {
     const int n = NKIND * (f->beam->nelement + 1);
     ct_ex *force = CT_NEWN(b->ctx->scratch, ct_ex, n);
@@ -206,5 +206,6 @@ void ct_station_partials(struct ct_build *b, const struct ct_flexible *f,
 {
     own_partials(b, f, s, slide, turn, false);
     if (s->axial == CT_AXIAL_CHAIN)
-        (is_handed(b, f) ? handed_partials : chain_partials)(b, f, s->element, slide);
+        (distributes_forces(b, f) ? distributed_partials : chain_partials)(b, f, s->element,
+                                                                           slide);
 }

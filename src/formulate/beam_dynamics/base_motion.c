@@ -59,7 +59,7 @@ void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct
 }
 
 // al~ + w~ w~
-ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m)
+ct_ex33 ct_base_acceleration_matrix(struct ct_build *b, const struct ct_base *m)
 {
     struct ct_exs *x = b->x;
     ct_ex33 Om;

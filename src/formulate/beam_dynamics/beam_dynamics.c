@@ -67,8 +67,8 @@ static void named_rows(struct ct_build *b, const struct ct_flexible *f, const st
     const struct ct_named_inertia *n = f->inertia->named;
     for (int k = 0; k < f->nelastic; k++) {
         ct_ex *r = &row[f->elastic[k].u];
-        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.moved[k], m->a));
-        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.swept[k], m->al));
+        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.m_rf[k], m->a));
+        *r = ct_ex_add(x, *r, ct_ex3_dot(x, n->columns.m_thetaf[k], m->al));
         for (int l = 0; l < f->nelastic && level == CT_FULL; l++)
             *r = ct_ex_add(
                 x, *r,
@@ -117,8 +117,8 @@ void ct_flexible_relative_wrench(struct ct_build *b, const struct ct_flexible *f
     const bool is_vector = !ct_ex_is_zero(n->acceleration);
     for (int k = 0; k < (is_vector ? 1 : f->nelastic) && level == CT_FULL; k++) {
         const ct_ex u = is_vector ? n->acceleration : b->eqs->u[f->elastic[k].u].derivative;
-        *force = ct_ex3_add(b->x, *force, ct_ex3_scale(b->x, u, n->columns.moved[k]));
-        *torque = ct_ex3_add(b->x, *torque, ct_ex3_scale(b->x, u, n->columns.swept[k]));
+        *force = ct_ex3_add(b->x, *force, ct_ex3_scale(b->x, u, n->columns.m_rf[k]));
+        *torque = ct_ex3_add(b->x, *torque, ct_ex3_scale(b->x, u, n->columns.m_thetaf[k]));
     }
 }
 
@@ -150,9 +150,9 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
     const struct ct_inertia *I = f->inertia;
     const ct_ex3 a
         = ct_ex3_sub(x, ct_node_acceleration(b, f->base, CT_FULL), b->model->gravity);
-    const struct ct_base moved = ct_base_motion(b, f, CT_FULL, a);
+    const struct ct_base motion = ct_base_motion(b, f, CT_FULL, a);
     ct_ex3 F, T;
-    const struct ct_base m = ct_flexible_effective_base(b, f, &moved, &F, &T);
+    const struct ct_base m = ct_flexible_effective_base(b, f, &motion, &F, &T);
     ct_flexible_relative_wrench(b, f, &m, CT_FULL, &F, &T);
     F = ct_ex3_add(x, F, ct_ex3_scale(x, I->mass, m.a));
     F = ct_ex3_add(x, F, ct_ex3_cross(x, m.al, I->moment));
@@ -166,14 +166,14 @@ void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 
 
 // ---- motion ------------------------------------------------------------------------------------
 
-struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f)
+struct ct_flexible_state ct_flexible_momentum(struct ct_build *b, const struct ct_flexible *f)
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
     const struct ct_base m = ct_base_motion(b, f, CT_BIAS, zero3);
     const ct_ex3 v = ct_base_into(b, f, ct_node_velocity(b, f->base));
     struct ct_relative r = {zero3, zero3, CT_EX_ZERO};
-    I->method->moving(b, f, &r);
+    I->method->relative_momentum(b, f, &r);
     const ct_ex3 momentum = ct_ex3_add(x, ct_ex3_cross(x, m.w, I->moment), r.momentum);
     const ct_ex3 Iw = ct_ex33_apply(x, &I->inertia, m.w);
     ct_ex twice = ct_ex_add(x, r.twice_kinetic, ct_ex_mul(x, I->mass, ct_ex3_dot(x, v, v)));
@@ -194,21 +194,21 @@ struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_
 
 // Entries of the start of element e, elastic coordinate k, which moves the whole element.
 static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
-                          const struct ct_element_sums *s, int e, struct ct_columns *out,
-                          struct ct_symmetric *M)
+                          const struct ct_element_sums *s, int e,
+                          struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const int k = ct_flexible_start(f, e);
     const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
-    out->moved[k] = (ct_ex3){{s->m, CT_EX_ZERO, CT_EX_ZERO}};
-    out->swept[k] = (ct_ex3){{CT_EX_ZERO, s->moment.e[2], ct_ex_neg(x, s->moment.e[1])}};
+    out->m_rf[k] = (ct_ex3){{s->m, CT_EX_ZERO, CT_EX_ZERO}};
+    out->m_thetaf[k] = (ct_ex3){{CT_EX_ZERO, s->moment.e[2], ct_ex_neg(x, s->moment.e[1])}};
     ct_symmetric_add(x, M, (size_t)own.speed, (size_t)own.speed, s->m);
     for (int j = 0; j < CT_DOF; j++) {
         int sign;
         const struct ct_freedom *d = ct_dof_freedom(f, e, j, &sign);
         for (int p = 0; d && p < d->npart; p++) {
             const struct ct_term dof = {f->elastic[d->part[p].k].u, -1, d->part[p].coef};
-            ct_mass_spread(b, M, &own, 1, &dof, 1, ct_ex_scale(x, sign, s->moved[j].e[0]));
+            ct_mass_spread(b, M, &own, 1, &dof, 1, ct_ex_scale(x, sign, s->m_rf[j].e[0]));
         }
     }
 }
@@ -217,19 +217,19 @@ static void mass_of_start(struct ct_build *b, const struct ct_flexible *f,
 
 // Adds the mass m beyond an element, with this first moment, which moves axially by g per unit of a
 // dof.
-static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3 *moved,
-                       ct_ex3 *swept)
+static void add_beyond(struct ct_exs *x, ct_ex g, ct_ex m, ct_ex3 moment, ct_ex3 *m_rf,
+                       ct_ex3 *m_thetaf)
 {
-    moved->e[0] = ct_ex_add(x, moved->e[0], ct_ex_mul(x, g, m));
-    swept->e[1] = ct_ex_add(x, swept->e[1], ct_ex_mul(x, g, moment.e[2]));
-    swept->e[2] = ct_ex_sub(x, swept->e[2], ct_ex_mul(x, g, moment.e[1]));
+    m_rf->e[0] = ct_ex_add(x, m_rf->e[0], ct_ex_mul(x, g, m));
+    m_thetaf->e[1] = ct_ex_add(x, m_thetaf->e[1], ct_ex_mul(x, g, moment.e[2]));
+    m_thetaf->e[2] = ct_ex_sub(x, m_thetaf->e[2], ct_ex_mul(x, g, moment.e[1]));
 }
 
 // Columns as forces on nodal freedoms. Forces on condensed rotations are distributed from node to
 // node. The cost is proportional to the number of nodes; separate sums for each coordinate would
 // cost its square.
 static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
-                               const struct ct_element_sums *s, struct ct_columns *out)
+                               const struct ct_element_sums *s, struct ct_elastic_columns *out)
 {
     struct ct_exs *x = b->x;
     const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
@@ -239,11 +239,11 @@ static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
         force[i] = CT_NEWN(b->ctx->scratch, ct_ex, n);
     for (int e = f->beam->nelement; e-- > 0;) {
         for (int j = 0; j < CT_DOF; j++) {
-            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
+            ct_ex3 m_rf = s[e].m_rf[j], m_thetaf = s[e].m_thetaf[j];
             if (f->kinematics == CT_AXIAL_CHAIN && j < CT_AXIS_DOF)
-                add_beyond(x, f->element[e].g[j], m, moment, &moved, &swept);
+                add_beyond(x, f->element[e].g[j], m, moment, &m_rf, &m_thetaf);
             for (int i = 0; i < 6; i++)
-                ct_dof_push(b, f, e, j, i < 3 ? moved.e[i] : swept.e[i - 3], force[i]);
+                ct_dof_push(b, f, e, j, i < 3 ? m_rf.e[i] : m_thetaf.e[i - 3], force[i]);
         }
         m = ct_ex_add(x, m, s[e].m);
         moment = ct_ex3_add(x, moment, s[e].moment);
@@ -254,7 +254,8 @@ static void columns_by_freedom(struct ct_build *b, const struct ct_flexible *f,
         for (int k = 0; k < n; k++)
             for (int p = 0; p < f->freedom[k].npart && !ct_ex_is_zero(force[i][k]); p++) {
                 const struct ct_part *part = &f->freedom[k].part[p];
-                ct_ex *sum = i < 3 ? &out->moved[part->k].e[i] : &out->swept[part->k].e[i - 3];
+                ct_ex *sum
+                    = i < 3 ? &out->m_rf[part->k].e[i] : &out->m_thetaf[part->k].e[i - 3];
                 *sum = ct_ex_add_product(x, *sum, part->coef, force[i][k]);
             }
     }
@@ -282,8 +283,8 @@ static void mass_at_rest(struct ct_build *b, const struct ct_flexible *f,
 
 // Mass of a beam with small coordinates: entries between them are those of the straight beam.
 // (small_motion.h)
-static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                       struct ct_symmetric *M)
+static void small_mass(struct ct_build *b, const struct ct_flexible *f,
+                       struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     struct ct_element_sums *s = f->inertia->method->sums(b, f);
     columns_by_freedom(b, f, s, out);
@@ -297,7 +298,7 @@ static void small_mass(struct ct_build *b, const struct ct_flexible *f, struct c
 // Adds the elements from the tip inwards. In a CHAIN the bending of an element moves everything
 // beyond it, unless element starts are coordinates.
 static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, struct ct_symmetric *M)
+                         struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const bool chain = f->kinematics == CT_AXIAL_CHAIN && !f->nstart;
@@ -310,18 +311,18 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
         ct_element_close(x, &s[e]);
         for (int j = 0; j < CT_DOF; j++) {
             const ct_ex g = chain && j < CT_AXIS_DOF ? self->g[j] : CT_EX_ZERO;
-            ct_ex3 moved = s[e].moved[j], swept = s[e].swept[j];
-            add_beyond(x, g, m, moment, &moved, &swept);
-            ct_dof_push_column(b, f, e, j, moved, swept, out);
+            ct_ex3 m_rf = s[e].m_rf[j], m_thetaf = s[e].m_thetaf[j];
+            add_beyond(x, g, m, moment, &m_rf, &m_thetaf);
+            ct_dof_push_column(b, f, e, j, m_rf, m_thetaf, out);
             for (int k = 0; k < CT_DOF; k++) {
                 const ct_ex gk = chain && k < CT_AXIS_DOF ? self->g[k] : CT_EX_ZERO;
                 const ct_ex v
                     = ct_ex_add(x, s[e].M[j][k], ct_ex_mul(x, ct_ex_mul(x, g, gk), m));
                 ct_dof_push_pair(b, f, e, j, e, k, v, M);
             }
-            for (int inner = 0; inner < e && chain && !ct_ex_is_zero(moved.e[0]); inner++)
+            for (int inner = 0; inner < e && chain && !ct_ex_is_zero(m_rf.e[0]); inner++)
                 for (int k = 2; k < CT_BENT_DOF; k++) {
-                    const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], moved.e[0]);
+                    const ct_ex v = ct_ex_mul(x, f->element[inner].g[k], m_rf.e[0]);
                     ct_dof_push_pair(b, f, e, j, inner, k, v, M);
                     ct_dof_push_pair(b, f, inner, k, e, j, v, M);
                 }
@@ -333,15 +334,15 @@ static void mass_of_sums(struct ct_build *b, const struct ct_flexible *f,
     }
 }
 
-// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . moved + s
-// . swept).
+// Rows of the elastic coordinates in the column of a speed that moves the base: coef (p . m_rf + s
+// . m_thetaf).
 static void base_column(struct ct_build *b, const struct ct_flexible *f,
-                        const struct ct_columns *c, ct_ex3 p, ct_ex3 s,
+                        const struct ct_elastic_columns *c, ct_ex3 p, ct_ex3 s,
                         const struct ct_term *term, int nterm, struct ct_symmetric *M)
 {
     for (int k = 0; k < f->nelastic; k++) {
-        const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->moved[k]),
-                                  ct_ex3_dot(b->x, s, c->swept[k]));
+        const ct_ex m = ct_ex_add(b->x, ct_ex3_dot(b->x, p, c->m_rf[k]),
+                                  ct_ex3_dot(b->x, s, c->m_thetaf[k]));
         if (ct_ex_is_zero(m))
             continue;
         const struct ct_term own = {f->elastic[k].u, -1, CT_EX_ONE};
@@ -379,7 +380,7 @@ static bool local_lever(struct ct_build *b, const struct ct_flexible *f,
 }
 
 static void base_columns(struct ct_build *b, const struct ct_flexible *f,
-                         const struct ct_columns *c, struct ct_symmetric *M)
+                         const struct ct_elastic_columns *c, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const struct ct_node_placement *at = &b->kinematics->placement[f->base];
@@ -422,19 +423,19 @@ static void base_columns(struct ct_build *b, const struct ct_flexible *f,
 }
 
 // Does each coordinate foreshorten every element, because slopes are condensed?
-static bool draws_by_shapes(const struct ct_flexible *f)
+static bool is_foreshortened_by_shapes(const struct ct_flexible *f)
 {
     return f->condensation && f->kinematics == CT_AXIAL_CHAIN
         && (f->beam->theory == CT_BEAM_EULER_BERNOULLI || f->beam->higher_order);
 }
 
 static void named_columns(struct ct_build *b, const struct ct_flexible *f,
-                          struct ct_columns *out, struct ct_symmetric *M)
+                          struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     const struct ct_named_inertia *n = f->inertia->named;
     for (int k = 0; k < f->nelastic; k++) {
-        out->moved[k] = n->columns.moved[k];
-        out->swept[k] = n->columns.swept[k];
+        out->m_rf[k] = n->columns.m_rf[k];
+        out->m_thetaf[k] = n->columns.m_thetaf[k];
         for (int l = 0; l <= k; l++)
             ct_symmetric_add(b->x, M, (size_t)f->elastic[k].u, (size_t)f->elastic[l].u,
                              n->M[k * f->nelastic + l]);
@@ -442,7 +443,7 @@ static void named_columns(struct ct_build *b, const struct ct_flexible *f,
 }
 
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, struct ct_symmetric *M)
+                         struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     const struct ct_inertia_method *form = f->inertia->method;
     if (f->inertia->named)
@@ -451,7 +452,7 @@ void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
         form->mass(b, f, out, M);
     else if (ct_flexible_is_small(b, f) && ct_flexible_is_nodal(f))
         small_mass(b, f, out, M);
-    else if (f->beam->modes || f->beam->nshape || draws_by_shapes(f))
+    else if (f->beam->modes || f->beam->nshape || is_foreshortened_by_shapes(f))
         ct_flexible_modal_mass(b, f, out, M);
     else
         mass_of_sums(b, f, out, M);
@@ -461,8 +462,8 @@ void ct_flexible_mass(struct ct_build *b, struct ct_symmetric *M)
 {
     for (size_t i = 0; i < b->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i];
-        struct ct_columns c = {CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
-                               CT_NEWN(b->arena, ct_ex3, f->nelastic + 1)};
+        struct ct_elastic_columns c = {CT_NEWN(b->arena, ct_ex3, f->nelastic + 1),
+                                       CT_NEWN(b->arena, ct_ex3, f->nelastic + 1)};
         ct_flexible_columns(b, f, &c, M);
         base_columns(b, f, &c, M);
     }

@@ -38,18 +38,19 @@ struct ct_inertia_method {
     /// of the sections.
     void (*wrench)(struct ct_build *b, const struct ct_flexible *f, const struct ct_base *m,
                    enum ct_level level, ct_ex3 *force, ct_ex3 *torque);
-    void (*moving)(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out);
+    void (*relative_momentum)(struct ct_build *b, const struct ct_flexible *f,
+                              struct ct_relative *out);
     /// The sums for the columns of the elements, in b->arena; NULL: mass computes them itself.
     struct ct_element_sums *(*sums)(struct ct_build *b, const struct ct_flexible *f);
     /// Entries between elastic coordinates, added to M; columns of the base's motion.
-    void (*mass)(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                 struct ct_symmetric *M);
+    void (*mass)(struct ct_build *b, const struct ct_flexible *f,
+                 struct ct_elastic_columns *out, struct ct_symmetric *M);
 };
 
 /// Integrals that appear as symbols in printed equations (report/beam_parts.h).
 struct ct_named_inertia {
-    struct ct_columns columns; // of the base's motion, by elastic coordinate
-    ct_ex *M;                  // between elastic coordinates (nelastic x nelastic)
+    struct ct_elastic_columns columns; // of the base's motion, by elastic coordinate
+    ct_ex *M;                          // between elastic coordinates (nelastic x nelastic)
     // by elastic coordinate: quadratic velocity force; stiffness and damping
     ct_ex *velocity, *elastic;
     ct_ex3 force, torque; // of the motion relative to the base with u' = 0
@@ -74,7 +75,7 @@ struct ct_inertia {
 struct ct_element_sums {
     ct_ex M[CT_DOF][CT_DOF];
     // int mu dr, int mu r x dr (and of the sections' rotation)
-    ct_ex3 moved[CT_DOF], swept[CT_DOF];
+    ct_ex3 m_rf[CT_DOF], m_thetaf[CT_DOF];
     ct_ex m;
     ct_ex3 moment;
     int nsquare; // M also contains sum c p p', p by dof: c in weight, p in square, c p in heavy
@@ -110,13 +111,13 @@ struct ct_base ct_flexible_effective_base(struct ct_build *b, const struct ct_fl
 /// Angular velocity and velocity of the base, and gravity, in axes of the beam.
 void ct_flexible_base_motion(struct ct_build *b, const struct ct_flexible *f, ct_ex3 out[3]);
 /// al~ + w~ w~
-ct_ex33 ct_base_turning(struct ct_build *b, const struct ct_base *m);
+ct_ex33 ct_base_acceleration_matrix(struct ct_build *b, const struct ct_base *m);
 /// Entries between elastic coordinates, added to M; columns of the base's motion.
 void ct_flexible_columns(struct ct_build *b, const struct ct_flexible *f,
-                         struct ct_columns *out, struct ct_symmetric *M);
+                         struct ct_elastic_columns *out, struct ct_symmetric *M);
 /// The same for shapes of the whole beam as coordinates, for methods with sums.
 void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
-                            struct ct_columns *out, struct ct_symmetric *M);
+                            struct ct_elastic_columns *out, struct ct_symmetric *M);
 /// 2 w x v
 ct_ex3 ct_twice_cross(struct ct_build *b, ct_ex3 w, ct_ex3 v);
 
@@ -155,7 +156,7 @@ struct ct_flexible_state {
     ct_ex3 momentum, angular_momentum;
     ct_ex twice_kinetic;
 };
-struct ct_flexible_state ct_flexible_moving(struct ct_build *b, const struct ct_flexible *f);
+struct ct_flexible_state ct_flexible_momentum(struct ct_build *b, const struct ct_flexible *f);
 /// Force and torque about the base for the inertia and weight of the beam, with the symbols u';
 /// ground axes.
 void ct_flexible_wrench(struct ct_build *b, const struct ct_flexible *f, ct_ex3 *force,

@@ -140,7 +140,8 @@ static ct_ex product(struct ct_build *b, const struct ct_element_mass *s, const 
 }
 
 // int m (displacement) of dof values v: sum F_j v_j along each direction.
-static ct_ex3 first(struct ct_build *b, const struct ct_element_mass *s, const ct_ex *v)
+static ct_ex3 first_integral(struct ct_build *b, const struct ct_element_mass *s,
+                             const ct_ex *v)
 {
     ct_ex3 sum = zero3;
     for (int j = 0; j < CT_AXIS_DOF; j++) {
@@ -151,8 +152,8 @@ static ct_ex3 first(struct ct_build *b, const struct ct_element_mass *s, const c
 }
 
 // int m r x d of the field d = (sum f_k D[0][k], sum f_k D[1][k], sum f_k D[2][k]).
-static ct_ex3 swept(struct ct_build *b, const struct ct_element *e,
-                    const struct ct_element_mass *s, ct_ex D[3][CT_AXIS_DOF])
+static ct_ex3 moment_of_field(struct ct_build *b, const struct ct_element *e,
+                              const struct ct_element_mass *s, ct_ex D[3][CT_AXIS_DOF])
 {
     struct ct_exs *x = b->x;
     ct_ex N[3][3];
@@ -197,7 +198,7 @@ static void add_moments(struct ct_build *b, const struct ct_element *e,
                         ct_ex second[3][3])
 {
     struct ct_exs *x = b->x;
-    I->moment = ct_ex3_add(x, I->moment, first(b, s, e->value));
+    I->moment = ct_ex3_add(x, I->moment, first_integral(b, s, e->value));
     I->moment.e[0] = ct_ex_add(x, I->moment.e[0], s->mx);
     for (int a = 0; a < 3; a++) {
         ct_ex u[CT_AXIS_DOF];
@@ -259,7 +260,7 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
                  enum ct_level level, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
-    const ct_ex33 Om = ct_base_turning(b, m);
+    const ct_ex33 Om = ct_base_acceleration_matrix(b, m);
     for (int i = 0; i < f->beam->nelement; i++) {
         const struct ct_element *e = &f->element[i];
         const struct ct_element_mass *s = &f->inertia->element[i];
@@ -295,11 +296,11 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
         ct_ex D[3][CT_AXIS_DOF];
         for (int a = 0; a < 3; a++)
             combine(b, e, m, NULL, level, a, D[a]);
-        rate = ct_ex3_add(x, rate, first(b, s, e->rate));
+        rate = ct_ex3_add(x, rate, first_integral(b, s, e->rate));
         spin = ct_ex3_add(x, spin, turned(b, s, e->rate));
-        *torque = ct_ex3_add(x, *torque, swept(b, e, s, D));
+        *torque = ct_ex3_add(x, *torque, moment_of_field(b, e, s, D));
         if (level == CT_FULL) {
-            *force = ct_ex3_add(x, *force, first(b, s, e->acceleration));
+            *force = ct_ex3_add(x, *force, first_integral(b, s, e->acceleration));
             *torque = ct_ex3_add(x, *torque, turned(b, s, e->acceleration));
         }
     }
@@ -307,7 +308,8 @@ static void wrench(struct ct_build *b, const struct ct_flexible *f, const struct
     *torque = ct_ex3_add(x, *torque, ct_ex3_cross(x, m->w, spin));
 }
 
-static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out)
+static void relative_momentum(struct ct_build *b, const struct ct_flexible *f,
+                              struct ct_relative *out)
 {
     struct ct_exs *x = b->x;
     for (int i = 0; i < f->beam->nelement; i++) {
@@ -322,14 +324,15 @@ static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_re
             out->twice_kinetic
                 = ct_ex_add(x, out->twice_kinetic,
                             ct_ex_mul(x, e->rate[j], row_times(b, s->R[j], e->rate, CT_DOF)));
-        out->momentum = ct_ex3_add(x, out->momentum, first(b, s, e->rate));
-        out->angular_momentum = ct_ex3_add(x, out->angular_momentum, swept(b, e, s, D));
+        out->momentum = ct_ex3_add(x, out->momentum, first_integral(b, s, e->rate));
+        out->angular_momentum
+            = ct_ex3_add(x, out->angular_momentum, moment_of_field(b, e, s, D));
         out->angular_momentum = ct_ex3_add(x, out->angular_momentum, turned(b, s, e->rate));
     }
 }
 
-static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_columns *out,
-                 struct ct_symmetric *M)
+static void mass(struct ct_build *b, const struct ct_flexible *f,
+                 struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     for (int i = 0; i < f->beam->nelement; i++) {
@@ -338,16 +341,16 @@ static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_colu
         for (int j = 0; j < CT_DOF; j++) {
             if (!is_free(f, i, j))
                 continue;
-            ct_ex3 moved = zero3, sweep = zero3;
+            ct_ex3 m_rf = zero3, m_thetaf = zero3;
             if (j < CT_AXIS_DOF) {
                 ct_ex D[3][CT_AXIS_DOF] = {{{0}}};
                 D[direction(j)][j] = CT_EX_ONE;
-                moved.e[direction(j)] = s->F[j];
-                sweep = swept(b, e, s, D);
+                m_rf.e[direction(j)] = s->F[j];
+                m_thetaf = moment_of_field(b, e, s, D);
             }
             if (axis(j) >= 0)
-                sweep.e[axis(j)] = ct_ex_add(x, sweep.e[axis(j)], s->G[j]);
-            ct_dof_push_column(b, f, i, j, moved, sweep, out);
+                m_thetaf.e[axis(j)] = ct_ex_add(x, m_thetaf.e[axis(j)], s->G[j]);
+            ct_dof_push_column(b, f, i, j, m_rf, m_thetaf, out);
             for (int k = 0; k < CT_DOF; k++) {
                 const bool same
                     = j < CT_AXIS_DOF && k < CT_AXIS_DOF && direction(j) == direction(k);
@@ -358,5 +361,8 @@ static void mass(struct ct_build *b, const struct ct_flexible *f, struct ct_colu
     }
 }
 
-const struct ct_inertia_method ct_inertia_exact
-    = {.derive = derive, .rows = rows, .wrench = wrench, .moving = moving, .mass = mass};
+const struct ct_inertia_method ct_inertia_exact = {.derive = derive,
+                                                   .rows = rows,
+                                                   .wrench = wrench,
+                                                   .relative_momentum = relative_momentum,
+                                                   .mass = mass};

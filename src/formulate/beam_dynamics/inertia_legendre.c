@@ -89,8 +89,8 @@ static struct ct_field field_of(struct ct_build *b, const struct ct_flexible *f,
     return s;
 }
 
-static void draw(struct ct_build *b, const struct ct_flexible *f, int e,
-                 const struct ct_foreshortening_products *d, ct_ex3 *place)
+static void add_foreshortening(struct ct_build *b, const struct ct_flexible *f, int e,
+                               const struct ct_foreshortening_products *d, ct_ex3 *place)
 {
     ct_ex u[CT_LEGENDRE_AXIAL];
     for (int k = 0; k < CT_LEGENDRE_AXIAL; k++)
@@ -117,8 +117,8 @@ static void derive_element(struct ct_build *b, const struct ct_flexible *f, int 
     bias.s01 = ct_ex_scale(x, 2, bias.s01);
     bias.s02 = ct_ex_scale(x, 2, bias.s02);
     bias.s12 = ct_ex_scale(x, 2, bias.s12);
-    draw(b, f, e, &value, s->value.place);
-    draw(b, f, e, &rate, s->rate.place);
+    add_foreshortening(b, f, e, &value, s->value.place);
+    add_foreshortening(b, f, e, &rate, s->rate.place);
     ct_foreshortening_axial(x, h, &bias, is_chain(f), s->bias);
     if (is_chain(f)) {
         s->value.place[0].e[0] = ct_ex_add(x, s->value.place[0].e[0], self->c);
@@ -141,7 +141,7 @@ static struct ct_field acceleration_of(struct ct_build *b, const struct ct_flexi
     struct ct_field a = field_of(b, f, e, f->element[e].acceleration);
     const struct ct_foreshortening_products by
         = ct_foreshortening_products_rate(b->x, s->value.bend, a.bend);
-    draw(b, f, e, &by, a.place);
+    add_foreshortening(b, f, e, &by, a.place);
     if (chain)
         a.place[0].e[0] = ct_ex_add(b->x, a.place[0].e[0], chain[e]);
     return a;
@@ -266,7 +266,7 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
                  enum ct_level level, ct_ex *by_freedom)
 {
     struct ct_exs *x = b->x;
-    const ct_ex33 Om = ct_base_turning(b, m);
+    const ct_ex33 Om = ct_base_acceleration_matrix(b, m);
     const ct_ex *chain = level == CT_FULL ? chain_accelerations(b, f) : NULL;
     ct_ex beyond = CT_EX_ZERO; // axial force of the elements beyond
     for (int e = f->beam->nelement; e-- > 0;) {
@@ -300,20 +300,21 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
     }
 }
 
-static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out)
+static void relative_momentum(struct ct_build *b, const struct ct_flexible *f,
+                              struct ct_relative *out)
 {
     struct ct_exs *x = b->x;
     for (int e = 0; e < f->beam->nelement; e++) {
         const struct ct_legendre_element *s = &f->inertia->series[e];
         const ct_ex h = f->element[e].span.length, mass = mass_of(b, f, e);
         for (int k = 0; k < CT_LEGENDRE_AXIAL; k++) {
-            const ct_ex3 moved = ct_ex3_scale(x, weighted(x, mass, h, k), s->rate.place[k]);
+            const ct_ex3 momentum = ct_ex3_scale(x, weighted(x, mass, h, k), s->rate.place[k]);
             if (k == 0)
-                out->momentum = ct_ex3_add(x, out->momentum, moved);
+                out->momentum = ct_ex3_add(x, out->momentum, momentum);
             out->angular_momentum
-                = ct_ex3_add(x, out->angular_momentum, ct_ex3_cross(x, s->place[k], moved));
+                = ct_ex3_add(x, out->angular_momentum, ct_ex3_cross(x, s->place[k], momentum));
             out->twice_kinetic
-                = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, s->rate.place[k], moved));
+                = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, s->rate.place[k], momentum));
         }
         for (int k = 0; k < CT_LEGENDRE_SLOPES; k++)
             for (int i = 0; i < 3; i++) {
@@ -397,20 +398,20 @@ static void sweep_element(struct ct_build *b, const struct ct_flexible *f, int e
         turn[0].e[i] = rotary_of(b, f, e, i);
         push_field(b, f, e, place, turn, dof);
         for (int n = 0; n < CT_DOF; n++)
-            s->swept[n].e[i] = dof[n];
+            s->m_thetaf[n].e[i] = dof[n];
     }
     const ct_ex3 unit[3] = {{{CT_EX_ONE}}, {{{0}, CT_EX_ONE}}, {{{0}, {0}, CT_EX_ONE}}};
     for (int i = 0; i < 3; i++) {
         ct_ex dof[CT_DOF] = {{0}};
         push_along(b, f, e, 0, ct_ex3_scale(x, mass, unit[i]), dof);
         for (int n = 0; n < CT_DOF; n++)
-            s->moved[n].e[i] = dof[n];
+            s->m_rf[n].e[i] = dof[n];
     }
 }
 
 // Derivatives of a sum of D, by dof (bending alone).
-static void draw_slopes(struct ct_build *b, const struct ct_flexible *f, int e,
-                        const struct ct_foreshortening_products *by, ct_ex dof[CT_DOF])
+static void products_by_dof(struct ct_build *b, const struct ct_flexible *f, int e,
+                            const struct ct_foreshortening_products *by, ct_ex dof[CT_DOF])
 {
     for (int plane = 0; plane < 2; plane++) {
         struct ct_legendre_bending force = {0};
@@ -456,8 +457,8 @@ static int own_squares(struct ct_exs *x, ct_ex h, ct_ex mass,
     return CT_LEGENDRE_AXIAL;
 }
 
-static struct ct_foreshortening_products scaled_draw(struct ct_exs *x, ct_ex c,
-                                                     struct ct_foreshortening_products d)
+static struct ct_foreshortening_products scaled_products(struct ct_exs *x, ct_ex c,
+                                                         struct ct_foreshortening_products d)
 {
     return (struct ct_foreshortening_products){ct_ex_mul(x, c, d.s00), ct_ex_mul(x, c, d.s11),
                                                ct_ex_mul(x, c, d.s22), ct_ex_mul(x, c, d.s01),
@@ -472,8 +473,8 @@ static void add_pair(struct ct_exs *x, struct ct_element_sums *s, int i, int j, 
 }
 
 // Mass terms of the foreshortening: with itself and with the axial dofs.
-static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
-                      struct ct_element_sums *s)
+static void foreshortening_mass(struct ct_build *b, const struct ct_flexible *f, int e,
+                                struct ct_element_sums *s)
 {
     struct ct_exs *x = b->x;
     const ct_ex h = f->element[e].span.length, mass = mass_of(b, f, e);
@@ -482,9 +483,10 @@ static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
     s->nsquare = is_chain(f) ? own_squares(x, h, mass, square, weights)
                              : bubble_squares(x, h, mass, square, weights);
     for (int i = 0; i < s->nsquare; i++) {
-        const struct ct_foreshortening_products heavy = scaled_draw(x, weights[i], square[i]);
-        draw_slopes(b, f, e, &square[i], s->square[i]);
-        draw_slopes(b, f, e, &heavy, s->heavy[i]);
+        const struct ct_foreshortening_products heavy
+            = scaled_products(x, weights[i], square[i]);
+        products_by_dof(b, f, e, &square[i], s->square[i]);
+        products_by_dof(b, f, e, &heavy, s->heavy[i]);
         s->weight[i] = weights[i];
     }
     // u_0 = (U_i + U_i+1)/2 + ..., u_1 = (U_i+1 - U_i)/2 + ...
@@ -494,8 +496,8 @@ static void draw_mass(struct ct_build *b, const struct ct_flexible *f, int e,
     const struct ct_foreshortening_products by_mean
         = ct_foreshortening_axial_forces(x, h, by[0], is_chain(f)),
         by_rise = ct_foreshortening_axial_forces(x, h, by[1], is_chain(f));
-    draw_slopes(b, f, e, &by_mean, mean);
-    draw_slopes(b, f, e, &by_rise, rise);
+    products_by_dof(b, f, e, &by_mean, mean);
+    products_by_dof(b, f, e, &by_rise, rise);
     for (int j = 2; j < CT_BENT_DOF; j++) {
         add_pair(x, s, 0, j, ct_ex_sub(x, mean[j], rise[j]));
         add_pair(x, s, 1, j, ct_ex_add(x, mean[j], rise[j]));
@@ -512,10 +514,13 @@ static struct ct_element_sums *sums_of(struct ct_build *b, const struct ct_flexi
         s[e].m = mass_of(b, f, e);
         s[e].moment = ct_ex3_scale(x, s[e].m, f->inertia->series[e].place[0]);
         sweep_element(b, f, e, &s[e]);
-        draw_mass(b, f, e, &s[e]);
+        foreshortening_mass(b, f, e, &s[e]);
     }
     return s;
 }
 
-const struct ct_inertia_method ct_inertia_legendre
-    = {.derive = derive, .rows = rows, .wrench = wrench, .moving = moving, .sums = sums_of};
+const struct ct_inertia_method ct_inertia_legendre = {.derive = derive,
+                                                      .rows = rows,
+                                                      .wrench = wrench,
+                                                      .relative_momentum = relative_momentum,
+                                                      .sums = sums_of};

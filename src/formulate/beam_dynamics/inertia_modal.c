@@ -13,8 +13,8 @@
 // it.
 struct reduced {
     ct_ex *C;            // CT_DOF x n, by rows
-    ct_ex *draw, *along; // gamma, beta
-    ct_ex3 *moved, *swept;
+    ct_ex *gamma, *beta; // gamma, beta
+    ct_ex3 *m_rf, *m_thetaf;
 };
 
 static void find_shares(struct ct_build *b, const struct ct_flexible *f, int e, ct_ex *C)
@@ -81,14 +81,14 @@ static void reduce(struct ct_build *b, const struct ct_flexible *f, int e,
     const int n = f->nelastic;
     find_shares(b, f, e, r->C);
     for (int k = 0; k < n; k++) {
-        r->draw[k] = CT_EX_ZERO;
-        r->moved[k] = r->swept[k] = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
+        r->gamma[k] = CT_EX_ZERO;
+        r->m_rf[k] = r->m_thetaf[k] = (ct_ex3){{CT_EX_ZERO, CT_EX_ZERO, CT_EX_ZERO}};
         for (int j = 0; j < CT_DOF; j++) {
             const ct_ex c = r->C[j * n + k];
-            r->moved[k] = ct_ex3_add(x, r->moved[k], ct_ex3_scale(x, c, s->moved[j]));
-            r->swept[k] = ct_ex3_add(x, r->swept[k], ct_ex3_scale(x, c, s->swept[j]));
+            r->m_rf[k] = ct_ex3_add(x, r->m_rf[k], ct_ex3_scale(x, c, s->m_rf[j]));
+            r->m_thetaf[k] = ct_ex3_add(x, r->m_thetaf[k], ct_ex3_scale(x, c, s->m_thetaf[j]));
             if (f->kinematics == CT_AXIAL_CHAIN && j < CT_AXIS_DOF)
-                r->draw[k] = ct_ex_add(x, r->draw[k], ct_ex_mul(x, c, f->element[e].g[j]));
+                r->gamma[k] = ct_ex_add(x, r->gamma[k], ct_ex_mul(x, c, f->element[e].g[j]));
         }
     }
 }
@@ -101,21 +101,21 @@ static void add_beyond(struct ct_build *b, const struct ct_flexible *f, struct r
     const int n = f->nelastic;
     for (int k = 0; k < n; k++)
         for (int i = k; i < n; i++) {
-            ct_ex v = ct_ex_mul(x, r->draw[i], ct_ex_mul(x, r->draw[k], m));
-            v = ct_ex_add(x, v, ct_ex_mul(x, r->draw[i], r->along[k]));
-            v = ct_ex_add(x, v, ct_ex_mul(x, r->along[i], r->draw[k]));
+            ct_ex v = ct_ex_mul(x, r->gamma[i], ct_ex_mul(x, r->gamma[k], m));
+            v = ct_ex_add(x, v, ct_ex_mul(x, r->gamma[i], r->beta[k]));
+            v = ct_ex_add(x, v, ct_ex_mul(x, r->beta[i], r->gamma[k]));
             M[i + n * k] = ct_ex_add(x, M[i + n * k], v);
         }
     for (int k = 0; k < n; k++) {
         const ct_ex3 about = {{CT_EX_ZERO, moment.e[2], ct_ex_neg(x, moment.e[1])}};
-        r->moved[k].e[0] = ct_ex_add(x, r->moved[k].e[0], ct_ex_mul(x, r->draw[k], m));
-        r->along[k] = ct_ex_add(x, r->along[k], r->moved[k].e[0]);
-        r->swept[k] = ct_ex3_add(x, r->swept[k], ct_ex3_scale(x, r->draw[k], about));
+        r->m_rf[k].e[0] = ct_ex_add(x, r->m_rf[k].e[0], ct_ex_mul(x, r->gamma[k], m));
+        r->beta[k] = ct_ex_add(x, r->beta[k], r->m_rf[k].e[0]);
+        r->m_thetaf[k] = ct_ex3_add(x, r->m_thetaf[k], ct_ex3_scale(x, r->gamma[k], about));
     }
 }
 
 void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
-                            struct ct_columns *out, struct ct_symmetric *M)
+                            struct ct_elastic_columns *out, struct ct_symmetric *M)
 {
     struct ct_exs *x = b->x;
     const int n = f->nelastic;
@@ -133,8 +133,8 @@ void ct_flexible_modal_mass(struct ct_build *b, const struct ct_flexible *f,
         add_squares(b, f, r.C, &s[e], p, own);
         add_beyond(b, f, &r, m, moment, own);
         for (int k = 0; k < n; k++) {
-            out->moved[k] = ct_ex3_add(x, out->moved[k], r.moved[k]);
-            out->swept[k] = ct_ex3_add(x, out->swept[k], r.swept[k]);
+            out->m_rf[k] = ct_ex3_add(x, out->m_rf[k], r.m_rf[k]);
+            out->m_thetaf[k] = ct_ex3_add(x, out->m_thetaf[k], r.m_thetaf[k]);
         }
         m = ct_ex_add(x, m, s[e].m);
         moment = ct_ex3_add(x, moment, s[e].moment);

@@ -161,7 +161,7 @@ static void inertia_rows(struct ct_build *b, const struct ct_flexible *f,
 {
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
-    const ct_ex33 Om = ct_base_turning(b, m);
+    const ct_ex33 Om = ct_base_acceleration_matrix(b, m);
     const ct_ex *chain = level == CT_FULL ? ct_chain_accelerations(b, f) : NULL;
     ct_ex beyond = CT_EX_ZERO; // axial force of the elements beyond
     for (size_t i = I->npoint; i > 0;) {
@@ -197,7 +197,7 @@ static void foreshortening_rows(struct ct_build *b, const struct ct_flexible *f,
     struct ct_exs *x = b->x;
     const struct ct_inertia *I = f->inertia;
     const struct ct_base turning_only = {.w = m->w};
-    const ct_ex33 ww = ct_base_turning(b, &turning_only);
+    const ct_ex33 ww = ct_base_acceleration_matrix(b, &turning_only);
     ct_ex beyond = CT_EX_ZERO;
     for (size_t i = I->npoint; i > 0;) {
         const int e = I->point[i - 1].element;
@@ -234,17 +234,18 @@ static void rows(struct ct_build *b, const struct ct_flexible *f, const struct c
         foreshortening_rows(b, f, m, by_freedom);
 }
 
-static void moving(struct ct_build *b, const struct ct_flexible *f, struct ct_relative *out)
+static void relative_momentum(struct ct_build *b, const struct ct_flexible *f,
+                              struct ct_relative *out)
 {
     struct ct_exs *x = b->x;
     for (size_t i = 0; i < f->inertia->npoint; i++) {
         const struct ct_point *p = &f->inertia->point[i];
-        const ct_ex3 moved = ct_ex3_scale(x, p->m, p->rate);
+        const ct_ex3 momentum = ct_ex3_scale(x, p->m, p->rate);
         const ct_ex3 turns = ct_ex33_apply(x, &p->section.J, p->section.relative_velocity);
-        out->momentum = ct_ex3_add(x, out->momentum, moved);
-        out->angular_momentum = ct_ex3_add(x, out->angular_momentum,
-                                           ct_ex3_add(x, ct_ex3_cross(x, p->r, moved), turns));
-        out->twice_kinetic = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, p->rate, moved));
+        out->momentum = ct_ex3_add(x, out->momentum, momentum);
+        out->angular_momentum = ct_ex3_add(
+            x, out->angular_momentum, ct_ex3_add(x, ct_ex3_cross(x, p->r, momentum), turns));
+        out->twice_kinetic = ct_ex_add(x, out->twice_kinetic, ct_ex3_dot(x, p->rate, momentum));
         out->twice_kinetic = ct_ex_add(x, out->twice_kinetic,
                                        ct_ex3_dot(x, p->section.relative_velocity, turns));
     }
@@ -309,8 +310,9 @@ static void add_point_mass(struct ct_build *b, const struct ct_point *p,
     for (int j = 0; j < CT_DOF; j++) {
         const ct_ex3 dr = ct_ex3_scale(x, p->m, point_partial(p, j));
         const ct_ex3 dth = ct_ex33_apply(x, &p->section.J, point_turn(b, p, j));
-        s->moved[j] = ct_ex3_add(x, s->moved[j], dr);
-        s->swept[j] = ct_ex3_add(x, s->swept[j], ct_ex3_add(x, ct_ex3_cross(x, p->r, dr), dth));
+        s->m_rf[j] = ct_ex3_add(x, s->m_rf[j], dr);
+        s->m_thetaf[j]
+            = ct_ex3_add(x, s->m_thetaf[j], ct_ex3_add(x, ct_ex3_cross(x, p->r, dr), dth));
         for (int k = 0; k <= j; k++) {
             const ct_ex v = ct_ex_add(x, ct_ex3_dot(x, dr, point_partial(p, k)),
                                       ct_ex3_dot(x, dth, point_turn(b, p, k)));
@@ -328,5 +330,8 @@ static struct ct_element_sums *sums_of(struct ct_build *b, const struct ct_flexi
     return s;
 }
 
-const struct ct_inertia_method ct_inertia_points
-    = {.derive = derive, .rows = rows, .wrench = wrench, .moving = moving, .sums = sums_of};
+const struct ct_inertia_method ct_inertia_points = {.derive = derive,
+                                                    .rows = rows,
+                                                    .wrench = wrench,
+                                                    .relative_momentum = relative_momentum,
+                                                    .sums = sums_of};

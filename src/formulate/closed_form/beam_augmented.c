@@ -50,7 +50,7 @@ static void *copy(struct ct_arena *a, const void *from, size_t n, size_t size)
 // ---- further coordinates ------------------------------------------------------------------------
 
 // Makes the condensed rotations coordinates, numbered from k.
-static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
+static void make_coordinates(struct ct_build *w, struct ct_flexible *f, int k)
 {
     const int n = CT_NODE_FREEDOM * (f->beam->nelement + 1);
     f->freedom = copy(w->arena, f->freedom, (size_t)n, sizeof *f->freedom);
@@ -68,13 +68,13 @@ static void free_followers(struct ct_build *w, struct ct_flexible *f, int k)
 // are numbered from nu.
 static void add_coordinates(struct ct_build *w, struct ct_flexible *f)
 {
-    const int n = f->nelastic, nfollow = ct_condensation_count(f);
+    const int n = f->nelastic, ncondensed = ct_condensation_count(f);
     struct ct_elastic *all
-        = CT_NEWN(w->arena, struct ct_elastic, n + nfollow + f->beam->nelement);
+        = CT_NEWN(w->arena, struct ct_elastic, n + ncondensed + f->beam->nelement);
     memcpy(all, f->elastic, (size_t)n * sizeof *all);
-    free_followers(w, f, n);
+    make_coordinates(w, f, n);
     f->nstart = f->beam->nelement - 1;
-    f->nelastic += nfollow + f->nstart;
+    f->nelastic += ncondensed + f->nstart;
     for (int k = n; k < f->nelastic; k++)
         all[k] = (struct ct_elastic){.u = (int)w->eqs->nu++, .freedom = -1};
     f->elastic = all;
@@ -188,19 +188,19 @@ static void list_start(const struct ct_build *b, const struct ct_flexible *f, in
 }
 
 // Lists the equilibrium equation of condensed rotation k.
-static void list_law(const struct ct_build *b, const struct ct_flexible *f,
-                     const struct ct_flexible *with, int k, struct ct_beam_augmented *c)
+static void list_equilibrium(const struct ct_build *b, const struct ct_flexible *f,
+                             const struct ct_flexible *with, int k, struct ct_beam_augmented *c)
 {
     int n;
-    const struct ct_condensation_term *law = ct_condensation_law(f, k, &n);
+    const struct ct_condensation_term *equilibrium = ct_condensation_equilibrium(f, k, &n);
     const int row = with->elastic[f->nelastic + k].u;
     push_link(b, c, row, row, CT_EX_ONE);
     for (int i = 0; i < n; i++)
-        push_link(b, c, row, unknown_of(with, &with->freedom[law[i].freedom]),
-                  ct_ex_const(b->x, law[i].by));
+        push_link(b, c, row, unknown_of(with, &with->freedom[equilibrium[i].freedom]),
+                  ct_ex_const(b->x, equilibrium[i].by));
 }
 
-static void list_places(const struct ct_build *w, struct ct_beam_augmented *c)
+static void list_positions(const struct ct_build *w, struct ct_beam_augmented *c)
 {
     c->position_along = CT_NEWN(w->arena, int, c->n + 1);
     for (size_t i = 0; i < c->n; i++)
@@ -227,11 +227,11 @@ struct ct_beam_augmented *ct_beam_augmented_derive(struct ct_build *b)
     c->M = w->eqs->M;
     c->nM = w->eqs->nM;
     take_rows(b, w, c);
-    list_places(w, c);
+    list_positions(w, c);
     for (size_t i = 0; i < w->nflexible; i++) {
         const struct ct_flexible *f = &b->flexible[i], *with = &w->flexible[i];
         for (int k = 0; with->nstart && k < ct_condensation_count(f); k++)
-            list_law(b, f, with, k, c);
+            list_equilibrium(b, f, with, k, c);
         for (int e = 1; e <= with->nstart; e++)
             list_start(b, with, e, c);
     }
@@ -251,9 +251,10 @@ static void exchange(const struct ct_flexible *f, ct_ex *by_freedom, ct_ex *y, b
 }
 
 // Condensed rotations from the other freedoms, or (transposed) their forces distributed to those.
-static void
-follow(struct ct_exs *x, struct ct_arena *scratch, const struct ct_beam_augmented *c, ct_ex *y,
-       void (*by)(struct ct_exs *x, const struct ct_condensation *s, ct_ex *by_freedom))
+static void condense(struct ct_exs *x, struct ct_arena *scratch,
+                     const struct ct_beam_augmented *c, ct_ex *y,
+                     void (*by)(struct ct_exs *x, const struct ct_condensation *s,
+                                ct_ex *by_freedom))
 {
     const struct ct_build *w = c->build;
     for (size_t i = 0; i < w->nflexible; i++) {
@@ -272,7 +273,7 @@ void ct_beam_augmented_extend(struct ct_exs *x, struct ct_arena *scratch,
 {
     for (size_t i = c->nu; i < c->n; i++)
         y[i] = CT_EX_ZERO;
-    follow(x, scratch, c, y, ct_condensation_extend);
+    condense(x, scratch, c, y, ct_condensation_extend);
     for (size_t i = 0; i < c->nsum; i++) {
         const struct ct_entry *s = &c->sum[i];
         y[s->row] = ct_ex_add_product(x, y[s->row], s->value, y[s->column]);
@@ -286,5 +287,5 @@ void ct_beam_augmented_project(struct ct_exs *x, struct ct_arena *scratch,
         const struct ct_entry *s = &c->sum[i];
         f[s->column] = ct_ex_add_product(x, f[s->column], s->value, f[s->row]);
     }
-    follow(x, scratch, c, f, ct_condensation_forces);
+    condense(x, scratch, c, f, ct_condensation_forces);
 }

@@ -28,12 +28,12 @@ struct ct_block_step {
     ct_ex factor[2];
 };
 
-/// Values of block_of for a column without a block.
 /// A pivot is large enough if it exceeds this fraction of the largest entries of its rows.
 /// Definition: threshold of sparse solvers (numeric/klu_include.h) for rows with sums of large
 /// forces along beams.
 #define CT_TIGHT_PIVOT 0.1
 
+/// Values of block_of for a column without a block: it is never eliminated, not yet eliminated.
 enum { CT_BLOCK_NEVER = -1, CT_BLOCK_OPEN = -2 }; // Definition: no index of a block
 
 /// A pivot that may come next.
@@ -60,7 +60,7 @@ struct ct_blocks {
         size_t n, cap;
     } * in;                       // (nu)
     struct ct_block_choice *best; // (rank) the best pivot of each row
-    bool *is_stale;               // (rank) it must be sought anew
+    bool *is_stale;               // (rank) `best` is out of date
     struct ct_block *block;
     size_t nblock;
     struct ct_block_step *step;

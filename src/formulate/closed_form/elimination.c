@@ -23,12 +23,12 @@ struct elimination {
     const struct ct_equations *e;
     const struct ct_partition_sets *p;
     int *row;                    // kept rows, ascending
-    int *place;                  // by row: its number among the kept rows plus one; 0: not kept
+    int *kept_number;            // by row: its number among the kept rows plus one; 0: not kept
     struct ct_probed_row *J, *M; // (rank), as given; (nu), both triangles
     struct ct_blocks d;          // J_d
     struct ct_kkt *whole;        // all equations as one system; NULL: coordinate partitioning
     struct ct_kkt_system system; // the system that is factored in whole
-    bool is_carried;             // the system is that of beam_augmented.h
+    bool is_augmented;           // the system is that of beam_augmented.h
     ct_ex *B;                    // (nu x nfree), with unit rows for independent speeds
     size_t *first;               // its entries by column: rows B_row[first[j] ...]
     int *B_row;
@@ -54,10 +54,10 @@ static void put_both(struct elimination *s, struct ct_probed_row *M, const struc
 static void read_matrices(struct elimination *s, const double *M, const double *J)
 {
     const struct ct_equations *e = s->e;
-    const int *place = s->place;
+    const int *number = s->kept_number;
     for (size_t i = 0; i < e->nJ; i++)
-        if (place[e->J[i].row]) {
-            const int r = place[e->J[i].row] - 1;
+        if (number[e->J[i].row]) {
+            const int r = number[e->J[i].row] - 1;
             ct_probed_row_append(s->a, &s->J[r], e->J[i].column, e->J[i].value, J[i]);
             ct_probed_row_append(s->a, &s->d.left[r], e->J[i].column, e->J[i].value, J[i]);
         }
@@ -81,7 +81,7 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
     const size_t n = c->nM + c->nJ + c->nL, nu = s->e->nu;
     struct ct_kkt_system k
         = {.n = c->n, .m = s->p->rank + c->n - nu, .threshold = CT_TIGHT_PIVOT};
-    int *place = CT_NEWN(s->a, int, k.n + k.m + 1);
+    int *position = CT_NEWN(s->a, int, k.n + k.m + 1);
     ct_ex *v = CT_NEWN(s->a, ct_ex, n + 1);
     double *number = CT_NEWN(s->a, double, n + 1), *of_J = number + c->nM, *of_L = of_J + c->nJ;
     struct ct_arena *scratch = ct_arena_create_under(s->a);
@@ -95,18 +95,18 @@ static struct ct_kkt_system read_augmented(struct elimination *s)
     for (size_t i = 0; i < c->nM; i++)
         put_both(s, k.M, &c->M[i], number[i]);
     for (size_t i = 0; i < c->nJ; i++)
-        if (s->place[c->J[i].row])
-            ct_probed_row_append(s->a, &k.J[s->place[c->J[i].row] - 1], c->J[i].column,
+        if (s->kept_number[c->J[i].row])
+            ct_probed_row_append(s->a, &k.J[s->kept_number[c->J[i].row] - 1], c->J[i].column,
                                  c->J[i].value, of_J[i]);
     for (size_t i = 0; i < c->nL; i++)
         ct_probed_row_append(s->a, &k.J[s->p->rank + (size_t)c->L[i].row - nu], c->L[i].column,
                              c->L[i].value, of_L[i]);
     ct_probed_rows_sort(k.M, k.n);
     ct_probed_rows_sort(k.J, k.m);
-    memcpy(place, c->position_along, c->n * sizeof *place);
+    memcpy(position, c->position_along, c->n * sizeof *position);
     for (size_t i = 0; i < k.m; i++) // an equation is placed next to its unknown
-        place[c->n + i] = i < s->p->rank ? INT_MAX : place[nu + i - s->p->rank];
-    k.position_along = place;
+        position[c->n + i] = i < s->p->rank ? INT_MAX : position[nu + i - s->p->rank];
+    k.position_along = position;
     return k;
 }
 
@@ -233,15 +233,15 @@ static bool reduce(struct elimination *s, size_t most_nodes)
         if (s->x->nnode > most_nodes)
             return false;
         for (size_t i = at; i-- > 0;) {
-            ct_ex *beside = S_at(s, k, s->order[i]);
-            if (ct_ex_is_zero(*beside))
+            ct_ex *off_diagonal = S_at(s, k, s->order[i]);
+            if (ct_ex_is_zero(*off_diagonal))
                 continue;
-            const ct_ex l = ct_ex_div(s->x, *beside, *S_at(s, k, k));
+            const ct_ex l = ct_ex_div(s->x, *off_diagonal, *S_at(s, k, k));
             for (size_t j = 0; j <= i; j++) {
                 ct_ex *entry = S_at(s, s->order[i], s->order[j]);
                 *entry = ct_ex_sub_product(s->x, *entry, l, *S_at(s, k, s->order[j]));
             }
-            *beside = l;
+            *off_diagonal = l;
         }
     }
     return true;
@@ -269,7 +269,7 @@ static void solve_whole(struct elimination *s, const ct_ex *Q, const ct_ex *g, c
                         ct_ex *lam)
 {
     const size_t nu = s->e->nu, m = s->p->rank, n = s->whole->n;
-    const size_t first = s->is_carried ? s->e->augmented->n : nu; // multiplier
+    const size_t first = s->is_augmented ? s->e->augmented->n : nu; // multiplier
     ct_ex *b = CT_NEWN(s->a, ct_ex, n + 1), *y = CT_NEWN(s->a, ct_ex, n + 1);
     memcpy(b, Q, nu * sizeof *b);
     if (m)
@@ -313,7 +313,7 @@ static void solve(struct elimination *s, const ct_ex *Q, ct_ex *g, ct_ex *a, ct_
 static void apply_mass(struct elimination *s, const ct_ex *a, ct_ex *r)
 {
     const size_t nu = s->e->nu;
-    if (!s->is_carried) {
+    if (!s->is_augmented) {
         apply(s, s->M, nu, a, r);
         return;
     }
@@ -354,9 +354,9 @@ static struct elimination create(struct ct_arena *a, struct ct_exs *x,
     s.row = CT_NEWN(a, int, m + 1);
     memcpy(s.row, p->row, m * sizeof *s.row);
     qsort(s.row, m, sizeof *s.row, ascending);
-    s.place = CT_NEWN(a, int, e->nrow + 1);
+    s.kept_number = CT_NEWN(a, int, e->nrow + 1);
     for (size_t i = 0; i < m; i++)
-        s.place[s.row[i]] = (int)i + 1;
+        s.kept_number[s.row[i]] = (int)i + 1;
     s.J = CT_NEWN(a, struct ct_probed_row, m + 1);
     s.M = CT_NEWN(a, struct ct_probed_row, e->nu + 1);
     s.d = ct_blocks_create(a, x, m, e->nu);
@@ -551,8 +551,8 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
             = p->pivots ? p->pivots : ct_pivot_order_find(a, e, p, M, J, (double)most_nodes);
         if (!found)
             return NULL;
-        s.is_carried = found->is_augmented;
-        s.system = s.is_carried
+        s.is_augmented = found->is_augmented;
+        s.system = s.is_augmented
                      ? read_augmented(&s)
                      : (struct ct_kkt_system){s.M, s.J, nu, m, pivot_threshold, NULL};
         s.whole = ct_kkt_factor(a, x, &s.system, found->way, (double)most);

@@ -119,7 +119,7 @@ static struct largest largest_of(const struct ct_probed_row *l)
 }
 
 // The largest magnitude in row r outside columns i and j.
-static double size_beside(const struct work *w, int r, int i, int j)
+static double largest_outside(const struct work *w, int r, int i, int j)
 {
     const struct largest *t = &w->largest[r];
     int at = 0;
@@ -185,8 +185,8 @@ static void try_pair(const struct work *w, int i, int j, struct choice *best)
 {
     const struct ct_probed_row *l = &w->row[i], *k = &w->row[j];
     const double a = number_at(l, i), b = number_at(l, j), c = number_at(k, j);
-    const double det = fabs(a * c - b * b), mi = size_beside(w, i, i, j),
-                 mj = size_beside(w, j, i, j);
+    const double det = fabs(a * c - b * b), mi = largest_outside(w, i, i, j),
+                 mj = largest_outside(w, j, i, j);
     const double growth = fmax(fabs(c) * mi + fabs(b) * mj, fabs(b) * mi + fabs(a) * mj);
     struct choice t = {.size = 2, .at = {i, j}, .strength = at_most_one(det / growth)};
     t.tie = later(w->place ? w->place : w->level, i, j);
@@ -207,7 +207,7 @@ static struct choice best_of_row(const struct work *w, int i)
                                .at = {i, i},
                                .cost = w->position ? w->position[i] : per_row((double)l->n - 1),
                                .tie = (w->place ? w->place : w->level)[i],
-                               .strength = at_most_one(d / size_beside(w, i, i, i))};
+                               .strength = at_most_one(d / largest_outside(w, i, i, i))};
     if (d > 0 && is_better(w, &one, &best))
         best = one;
     for (size_t k = 0; k < l->n && !(one.strength >= w->threshold && d > 0); k++)
@@ -269,7 +269,7 @@ static size_t walk(const struct work *w, int first, int *order, size_t n, int *p
 
 // Positions along the system with small bandwidth, from a peripheral row of each connected part.
 // Source: Cuthill and McKee (1969), key cuthill1969.
-static int *place_along(const struct work *w)
+static int *positions_along(const struct work *w)
 {
     int *position = CT_NEWN(w->a, int, w->n + 1), *order = CT_NEWN(w->a, int, w->n + 1);
     size_t n = 0;
@@ -499,7 +499,7 @@ struct ct_kkt *ct_kkt_factor(struct ct_arena *a, struct ct_exs *x,
         w.largest[i] = largest_of(&w.row[i]);
     w.place = order == CT_KKT_POSITIONS ? system->position_along : NULL;
     if (order == CT_KKT_ALONG)
-        w.position = place_along(&w);
+        w.position = positions_along(&w);
     for (size_t done = 0; done < n;) {
         const struct choice c = choose(&w);
         if (!c.size || (x ? (double)x->nnode : w.k->operations) >= most)

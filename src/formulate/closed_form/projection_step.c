@@ -1,9 +1,10 @@
 // See projection_step.h.
 #include "formulate/closed_form/projection_step.h"
 
-// r (rank, out) = -D d of the rows, D d: the change of v by a displacement d (nu) at constant u.
-static void lost_rates(struct ct_arena *a, struct ct_exs *x, const struct ct_equations *e,
-                       const int *row, size_t rank, const ct_ex *d, ct_ex *r)
+// r (rank, out) = -D d of the rows. D d is the change of v by a displacement d (nu) at constant u.
+static void negative_velocity_change(struct ct_arena *a, struct ct_exs *x,
+                                     const struct ct_equations *e, const int *row, size_t rank,
+                                     const ct_ex *d, ct_ex *r)
 {
     ct_ex *q = CT_NEWN(a, ct_ex, e->nq + 1), *dq = CT_NEWN(a, ct_ex, e->nq + 1);
     ct_ex *u = CT_NEWN(a, ct_ex, e->nu + 1), *any = CT_NEWN(a, ct_ex, e->nu + 1);
@@ -38,6 +39,6 @@ void ct_projection_step_derive(struct ct_arena *a, struct ct_exs *x,
     ct_blocks_solve(J_d, r, du);
     if (!shift)
         return;
-    lost_rates(a, x, e, row, m, dq, r);
+    negative_velocity_change(a, x, e, row, m, dq, r);
     ct_blocks_solve(J_d, r, shift);
 }

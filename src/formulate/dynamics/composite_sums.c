@@ -144,7 +144,7 @@ static void find_starts(struct ct_composite_sums *s)
                 s->start[c] = a;
 }
 
-ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int cluster)
+ct_ex3 ct_composite_sums_lever_arm(struct ct_composite_sums *s, int anchor, int cluster)
 {
     if (anchor == 0)
         return zero3;
@@ -152,7 +152,7 @@ ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int clus
     if (known && known->has_g)
         return known->g;
     const struct ct_anchor *a = &s->b->kinematics->anchor[anchor];
-    ct_ex3 g = ct_composite_sums_reach(s, a->parent, cluster);
+    ct_ex3 g = ct_composite_sums_lever_arm(s, a->parent, cluster);
     if (ct_composite_sums_turns_with(s, cluster, a->cluster))
         g = ct_ex3_add(s->b->x, g, ct_composite_sums_link(s, anchor));
     if (ct_ex3_is_zero(g))

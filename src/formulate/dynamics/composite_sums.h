@@ -63,7 +63,7 @@ bool ct_composite_sums_turns_with(const struct ct_composite_sums *s, int cluster
 ct_ex3 ct_composite_sums_body_moment(struct ct_composite_sums *s, int body);
 ct_ex3 ct_composite_sums_link(struct ct_composite_sums *s, int anchor);
 /// Lever arm: sum of the vectors on the path to an anchor that rotate with a cluster.
-ct_ex3 ct_composite_sums_reach(struct ct_composite_sums *s, int anchor, int cluster);
+ct_ex3 ct_composite_sums_lever_arm(struct ct_composite_sums *s, int anchor, int cluster);
 /// First moments outboard of an anchor: of everything, and of what rotates with a cluster.
 ct_ex3 ct_composite_sums_moment(struct ct_composite_sums *s, int anchor);
 ct_ex3 ct_composite_sums_moment_turning(struct ct_composite_sums *s, int anchor, int cluster);

@@ -10,7 +10,7 @@
 static ct_ex beam_energies(struct ct_build *b, struct ct_flexible *f)
 {
     struct ct_exs *x = b->x;
-    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    const struct ct_flexible_state s = ct_flexible_momentum(b, f);
     b->eqs->strain = ct_ex_add(x, b->eqs->strain, ct_flexible_strain(b, f));
     b->eqs->potential = ct_ex_sub(
         x, b->eqs->potential,

@@ -50,7 +50,7 @@ static ct_ex3 augmented_body_torque(struct ct_composite_sums *s, const struct co
     struct ct_build *b = s->b;
     const struct ct_augmented_body *self = &b->dynamics.masses.augmented_body[body];
     ct_ex3 sum = double_cross(b, c, ct_composite_sums_body_moment(s, body),
-                              ct_composite_sums_reach(s, self->anchor, c->cluster));
+                              ct_composite_sums_lever_arm(s, self->anchor, c->cluster));
     for (int k = 0; k < self->nchild; k++) {
         const int child = b->dynamics.masses.child[self->first_child + k];
         sum = ct_ex3_add(b->x, sum,
@@ -70,7 +70,7 @@ static ct_ex3 anchor_torque(struct ct_composite_sums *s, const struct column *c,
         return c->torque[anchor];
     if (ct_composite_sums_turning(s, anchor, c->cluster) != CT_TURNS_SOME)
         return double_cross(b, c, ct_composite_sums_moment(s, anchor),
-                            ct_composite_sums_reach(s, anchor, c->cluster));
+                            ct_composite_sums_lever_arm(s, anchor, c->cluster));
     ct_ex3 sum = zero3;
     for (int i = s->first[anchor]; i >= 0; i = s->next[i]) {
         sum = ct_ex3_add(b->x, sum, augmented_body_torque(s, c, i));
@@ -185,7 +185,7 @@ static void rotation_column(struct ct_composite_sums *s, struct ct_symmetric *M,
             const struct ct_term along = {slide->speed, slide->driver, CT_EX_ONE};
             if (slide->speed < 0)
                 continue;
-            const ct_ex3 g = ct_composite_sums_reach(s, (int)a, c->cluster);
+            const ct_ex3 g = ct_composite_sums_lever_arm(s, (int)a, c->cluster);
             const ct_ex3 moved
                 = ct_ex3_add(b->x, ct_ex3_scale(b->x, b->dynamics.masses.mass[a], g),
                              ct_composite_sums_moment_turning(s, (int)a, c->cluster));

@@ -185,7 +185,8 @@ static void sum_over_trees(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *
 // Is component i of a force in the plane, or of a torque along the normal?
 static bool is_of_plane(const struct ct_build *b, int node, bool is_force, int i)
 {
-    const ct_ex3 n = ct_ex33_apply_t(b->x, &b->topology->upright[node], b->topology->plane[2]);
+    const ct_ex3 n
+        = ct_ex33_apply_t(b->x, &b->topology->reference_axes[node], b->topology->plane[2]);
     const double along = fabs(ct_ex_value(b->x, n.e[i], b->value));
     return is_force ? along < CT_DATA_ROUNDOFF : along > 1 - CT_DATA_ROUNDOFF;
 }
@@ -214,20 +215,20 @@ static bool is_link(const struct ct_build *b, size_t edge)
 
 // Nodes connected with the head of an edge after it is removed; NULL if its tail is one of them, as
 // the edge is then in a loop.
-static const bool *hanging_on(const struct ct_build *b, int edge)
+static const bool *head_side(const struct ct_build *b, int edge)
 {
-    bool *hangs = CT_NEWN(b->arena, bool, b->topology->nnode), grows = true;
-    hangs[b->topology->wiring[edge].head] = true;
+    bool *is_head_side = CT_NEWN(b->arena, bool, b->topology->nnode), grows = true;
+    is_head_side[b->topology->wiring[edge].head] = true;
     while (grows) {
         grows = false;
         for (size_t e = 0; e < b->topology->nedge; e++) {
             const int tail = b->topology->wiring[e].tail, head = b->topology->wiring[e].head;
-            if ((int)e == edge || !is_link(b, e) || hangs[tail] == hangs[head])
+            if ((int)e == edge || !is_link(b, e) || is_head_side[tail] == is_head_side[head])
                 continue;
-            hangs[tail] = hangs[head] = grows = true;
+            is_head_side[tail] = is_head_side[head] = grows = true;
         }
     }
-    return hangs[b->topology->wiring[edge].tail] ? NULL : hangs;
+    return is_head_side[b->topology->wiring[edge].tail] ? NULL : is_head_side;
 }
 
 // Do both trees, cut at branch e, separate everything on its head side? Otherwise chords across the
@@ -258,14 +259,14 @@ static bool is_cut_by_trees(const struct ct_build *b, int edge)
 // Force and torque of an edge in no loop, by the equilibrium of all nodes on its head side,
 // independent of the trees. About the origin P of its head they are sum f and sum (r - P) x f + t,
 // with f and t the net force and torque of a node.
-static void sum_over_side(struct ct_build *b, int edge, const bool *hangs, ct_ex3 *force,
+static void sum_over_side(struct ct_build *b, int edge, const bool *is_head_side, ct_ex3 *force,
                           ct_ex3 *torque)
 {
     const int head = b->topology->wiring[edge].head;
-    const bool is_inboard = hangs[0]; // ground is on the head side: take the other side
+    const bool is_inboard = is_head_side[0]; // ground is on the head side: take the other side
     *force = *torque = zero3;
     for (int node = 1; node < (int)b->topology->nnode; node++) {
-        if (hangs[node] == is_inboard)
+        if (is_head_side[node] == is_inboard)
             continue;
         const ct_ex3 f = own_force(b, node);
         add(b, force, f);
@@ -288,11 +289,11 @@ static ct_ex3 part_along(struct ct_build *b, ct_ex3 v, ct_ex3 n)
 // come from the equilibrium of one side.
 static void complete(struct ct_build *b, int edge, ct_ex3 *force, ct_ex3 *torque)
 {
-    const bool *hangs = hanging_on(b, edge);
+    const bool *is_head_side = head_side(b, edge);
     ct_ex3 f, t;
-    if (!hangs)
+    if (!is_head_side)
         return;
-    sum_over_side(b, edge, hangs, &f, &t);
+    sum_over_side(b, edge, is_head_side, &f, &t);
     const ct_ex3 n = b->topology->plane[2];
     take(b, force, part_along(b, *force, n));
     add(b, force, part_along(b, f, n));
@@ -346,5 +347,5 @@ bool ct_reaction_of_edge_is_known(const struct ct_build *b, int edge, bool is_fo
 {
     return !b->topology->is_planar
         || is_of_plane(b, b->topology->wiring[edge].tail, is_force, i)
-        || is_cut_by_trees(b, edge) || hanging_on(b, edge);
+        || is_cut_by_trees(b, edge) || head_side(b, edge);
 }

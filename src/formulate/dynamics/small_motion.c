@@ -9,8 +9,8 @@ struct small {
     struct ct_seed *seed; // one direction for each coordinate and speed
     ct_ex *symbol, *zero;
     size_t n, seed_cap, symbol_cap;
-    bool *is_small; // by speed
-    bool follows;   // massless rotations of small beams are condensed (beam_dynamics.h)
+    bool *is_small;        // by speed
+    bool has_condensation; // massless rotations of small beams are condensed (beam_dynamics.h)
 };
 
 static void add(struct ct_build *b, struct small *s, ct_ex symbol)
@@ -64,7 +64,7 @@ static bool collect(struct ct_build *b, struct small *s)
         if (ct_flexible_is_small(b, f))
             for (int k = 0; k < f->nelastic; k++) {
                 add_unknown(b, s, f->elastic[k].q, f->elastic[k].u);
-                s->follows |= f->condensation != NULL;
+                s->has_condensation |= f->condensation != NULL;
             }
     }
     s->zero = CT_NEWN(b->ctx->scratch, ct_ex, s->n + 1);
@@ -90,8 +90,8 @@ static size_t expand(struct ct_build *b, const struct small *s, const ct_ex *f, 
 }
 
 // f(0) + sum of df/dx(0) x, x the small symbols, by the entries of the Jacobian.
-static void cut_by_matrix(struct ct_build *b, const struct small *s, const ct_ex *f, size_t n,
-                          ct_ex *out)
+static void truncate_by_matrix(struct ct_build *b, const struct small *s, const ct_ex *f,
+                               size_t n, ct_ex *out)
 {
     struct ct_slope *slope;
     const size_t nslope = expand(b, s, f, n, s->seed, out, &slope);
@@ -102,8 +102,8 @@ static void cut_by_matrix(struct ct_build *b, const struct small *s, const ct_ex
 }
 
 // The same by one directional derivative along x. Recursive sums along a beam stay recursive.
-static void cut_by_direction(struct ct_build *b, const struct small *s, const ct_ex *f,
-                             size_t n, ct_ex *out)
+static void truncate_by_direction(struct ct_build *b, const struct small *s, const ct_ex *f,
+                                  size_t n, ct_ex *out)
 {
     struct ct_seed *seed = CT_NEWN(b->ctx->scratch, struct ct_seed, s->n + 1);
     ct_ex *along = CT_NEWN(b->ctx->scratch, ct_ex, s->n + 1);
@@ -141,12 +141,12 @@ static bool may_be_sparse(struct ct_build *b, const struct small *s, const ct_ex
 static void truncate(struct ct_build *b, const struct small *s, ct_ex *f, size_t n)
 {
     ct_ex *matrix = CT_NEWN(b->ctx->scratch, ct_ex, n + 1),
-          *direction = s->follows ? CT_NEWN(b->ctx->scratch, ct_ex, n + 1) : NULL;
+          *direction = s->has_condensation ? CT_NEWN(b->ctx->scratch, ct_ex, n + 1) : NULL;
     if (direction)
-        cut_by_direction(b, s, f, n, direction);
+        truncate_by_direction(b, s, f, n, direction);
     const bool wants_matrix = !direction || may_be_sparse(b, s, direction, n);
     if (wants_matrix)
-        cut_by_matrix(b, s, f, n, matrix);
+        truncate_by_matrix(b, s, f, n, matrix);
     const bool is_matrix
         = wants_matrix && (!direction || cost_of(b, matrix, n) <= cost_of(b, direction, n));
     memcpy(f, is_matrix ? matrix : direction, n * sizeof *f);

@@ -41,12 +41,13 @@ static void wrench_terms(struct ct_build *b, struct ct_ends n, const struct ct_w
     ct_path_mark(b, n.tail, n.head, b->cache.marked);
     for (size_t r = 0; r < b->kinematics->nrotation_axis; r++) {
         const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[r];
-        ct_ex3 sweep;
+        ct_ex3 velocity;
         ct_ex v = CT_EX_ZERO;
         if (!b->cache.marked[s->cluster])
             continue;
-        if (!ct_ex3_is_zero(w->force) && ct_path_sweep(b, n.tail, n.head, r, carried, &sweep))
-            v = ct_ex3_dot(x, w->force, sweep);
+        if (!ct_ex3_is_zero(w->force)
+            && ct_path_partial_velocity(b, n.tail, n.head, r, carried, &velocity))
+            v = ct_ex3_dot(x, w->force, velocity);
         const int turns = (int)ct_cluster_is_outboard(b, s->cluster, to)
                         - (int)ct_cluster_is_outboard(b, s->cluster, from);
         if (turns && !ct_ex3_is_zero(w->torque)) {
@@ -268,7 +269,8 @@ static void planar_angle_row(struct ct_build *b, int edge)
     const struct ct_edge_info *e = &b->topology->edge[edge];
     const struct ct_ends n = ct_edge_ends(b, edge);
     const struct ct_wrench w = {zero3, b->topology->plane[2]};
-    const ct_ex3 v = ct_ex33_apply_t(x, &b->topology->upright[n.tail], b->topology->plane[0]);
+    const ct_ex3 v
+        = ct_ex33_apply_t(x, &b->topology->reference_axes[n.tail], b->topology->plane[0]);
     // the offset of an angle is not reduced to one turn: its sign gives the direction of rotation
     const ct_ex diff = ct_constraint_offset_subtract(
         b, e, ct_ex_sub(x, ct_angle_in_plane(b, n.head, v), ct_angle_in_plane(b, n.tail, v)));

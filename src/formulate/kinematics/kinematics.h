@@ -77,8 +77,8 @@ ct_ex3 ct_path_acceleration(struct ct_build *b, int tail, int head, enum ct_leve
 /// Relative position and velocity of node `head` in axes of node `tail`. Vectors fixed in the tail
 /// are summed in those axes, so that the round-off of the absolute position of the tail does not
 /// enter.
-ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head);
-ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head);
+ct_ex3 ct_path_position_in_tail(struct ct_build *b, int tail, int head);
+ct_ex3 ct_path_velocity_in_tail(struct ct_build *b, int tail, int head);
 
 /// marked (ncluster, out): clusters whose rotation can change the path from tail to head or the
 /// axes at its ends.
@@ -88,8 +88,8 @@ void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked);
 /// dv_head - dv_tail, and - dw_tail x d if carried (velocity relative to the axes of the tail). It
 /// is axis_r x the sum of the path vectors that rotate with r (relative to the tail, if carried).
 /// False if it is structurally zero.
-bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
-                   ct_ex3 *sweep);
+bool ct_path_partial_velocity(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                              ct_ex3 *velocity);
 /// Branch vectors between the nodes that rotate relative to the other end (relative to the tail, if
 /// carried), each in its own axes. Coefficients of a row are sums over them and may cancel; the sum
 /// of their lengths gives the scale of the round-off.

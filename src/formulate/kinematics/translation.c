@@ -439,7 +439,7 @@ static bool add_own(struct ct_build *b, const struct ct_node_placement *t,
     return true;
 }
 
-ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
+ct_ex3 ct_path_position_in_tail(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
     const struct ct_node_placement *t = &b->kinematics->placement[tail];
@@ -452,7 +452,7 @@ ct_ex3 ct_path_position_seen(struct ct_build *b, int tail, int head)
     return ct_ex3_is_zero(sum) ? own : ct_ex3_add(b->x, own, ct_node_unturn(b, tail, sum));
 }
 
-ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
+ct_ex3 ct_path_velocity_in_tail(struct ct_build *b, int tail, int head)
 {
     const struct path p = find_path(b, tail, head);
     const struct ct_node_placement *t = &b->kinematics->placement[tail];
@@ -474,8 +474,8 @@ ct_ex3 ct_path_velocity_seen(struct ct_build *b, int tail, int head)
 
 // axis x v in axes of the cluster of the axis, for v fixed there. False if no component vanishes:
 // then it is not cheaper.
-static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct_ex3 v,
-                        ct_ex3 *sweep)
+static bool local_partial_velocity(struct ct_build *b, const struct ct_rotation_axis *s,
+                                   ct_ex3 v, ct_ex3 *velocity)
 {
     const ct_ex3 local = ct_ex3_cross(b->x, s->local, v);
     bool any_zero = false;
@@ -483,7 +483,7 @@ static bool local_sweep(struct ct_build *b, const struct ct_rotation_axis *s, ct
         any_zero = any_zero || ct_ex_is_zero(local.e[i]);
     if (b->topology->is_planar || ct_ex3_is_zero(s->local) || !any_zero)
         return false;
-    *sweep = ct_cluster_turn(b, s->cluster, local);
+    *velocity = ct_cluster_turn(b, s->cluster, local);
     return true;
 }
 
@@ -498,8 +498,8 @@ void ct_path_mark(struct ct_build *b, int tail, int head, bool *marked)
             marked[c] = true;
 }
 
-bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carried,
-                   ct_ex3 *sweep)
+bool ct_path_partial_velocity(struct ct_build *b, int tail, int head, size_t r, bool carried,
+                              ct_ex3 *velocity)
 {
     const struct path p = find_path(b, tail, head);
     const struct ct_rotation_axis *s = &b->kinematics->rotation_axis[r];
@@ -507,7 +507,7 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
         = carried
        && ct_cluster_is_outboard(b, s->cluster, b->kinematics->placement[tail].frame);
     bool any = false, is_own = true;
-    ct_ex3 reach = zero3, own = zero3;
+    ct_ex3 lever_arm = zero3, own = zero3;
     for (size_t i = 0; i < p.n; i++) {
         const struct ct_piece *piece = &p.piece[i];
         const int turns = ct_cluster_is_outboard(b, s->cluster, piece->cluster);
@@ -515,17 +515,17 @@ bool ct_path_sweep(struct ct_build *b, int tail, int head, size_t r, bool carrie
             continue;
         any = true;
         const int sign = (turns - base) * piece->sign;
-        reach = accumulate(b, reach, sign, piece_vector(b, piece));
+        lever_arm = accumulate(b, lever_arm, sign, piece_vector(b, piece));
         is_own = is_own && piece->cluster == s->cluster;
         own = accumulate(b, own, sign, piece->local);
     }
-    if (!is_own || !local_sweep(b, s, own, sweep))
-        *sweep = ct_ex3_cross(b->x, s->axis, reach);
+    if (!is_own || !local_partial_velocity(b, s, own, velocity))
+        *velocity = ct_ex3_cross(b->x, s->axis, lever_arm);
     return any;
 }
 
 // Does any rotation axis change a vector of `cluster` in the row?
-static bool is_swept(const struct ct_build *b, int tail, int head, bool carried, int cluster)
+static bool is_rotated(const struct ct_build *b, int tail, int head, bool carried, int cluster)
 {
     const int from = b->kinematics->placement[tail].frame,
               to = b->kinematics->placement[head].frame;
@@ -549,7 +549,7 @@ const ct_ex3 *ct_path_levers(struct ct_build *b, int tail, int head, bool carrie
         int *const k = T->depth[i] > T->depth[j] ? &i : &j;
         const struct ct_edge_info *e = &b->topology->edge[T->parent_edge[*k]];
         const ct_ex3 d = ct_edge_kinematics(b, e)->d;
-        if (!ct_ex3_is_zero(d) && is_swept(b, tail, head, carried, tail_of(b, *k)->frame))
+        if (!ct_ex3_is_zero(d) && is_rotated(b, tail, head, carried, tail_of(b, *k)->frame))
             lever[(*n)++] = d;
         *k = T->parent[*k];
     }

@@ -50,7 +50,7 @@ static void add_to(struct ct_exs *x, ct_ex *sum, ct_ex v)
 
 // Are condensed rotations kept as auxiliary unknowns? Yes in a CHAIN, where elements depend on
 // them, and where one rotates a section that carries members.
-static bool has_followers(const struct ct_articulated *w, size_t i)
+static bool keeps_condensed_rotations(const struct ct_articulated *w, size_t i)
 {
     const struct ct_flexible *f = &w->b->flexible[i];
     if (ct_flexible_is_augmented(f))
@@ -71,8 +71,9 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
     const struct ct_flexible *f = e->f = &b->flexible[i];
     e->n = f->nelastic;
     e->is_augmented = ct_flexible_is_augmented(f);
-    e->nfollow = has_followers(w, i) ? ct_condensation_count(f) : 0;
-    e->nall = e->n + (e->is_augmented || e->nfollow ? f->beam->nelement : 0) + 2 * e->nfollow;
+    e->ncondensed = keeps_condensed_rotations(w, i) ? ct_condensation_count(f) : 0;
+    e->nall
+        = e->n + (e->is_augmented || e->ncondensed ? f->beam->nelement : 0) + 2 * e->ncondensed;
     const size_t n = (size_t)e->nall;
     e->number = CT_NEWN(w->work, int, b->eqs->nu + 1);
     for (size_t k = 0; k < b->eqs->nu; k++)
@@ -88,27 +89,27 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i)
 }
 
 // Index of condensed rotation k among the unknowns; index of its multiplier.
-static int follower(const struct ct_articulated_beam *e, int k)
+static int condensed_index(const struct ct_articulated_beam *e, int k)
 {
     return e->n + e->f->beam->nelement + k;
 }
 
 static int multiplier(const struct ct_articulated_beam *e, int k)
 {
-    return follower(e, k) + e->nfollow;
+    return condensed_index(e, k) + e->ncondensed;
 }
 
 // Is the unknown at this index the foreshortening at the start of an element?
 static bool is_start(const struct ct_articulated_beam *e, int place)
 {
-    return e->is_augmented && place >= e->n && place < follower(e, 0);
+    return e->is_augmented && place >= e->n && place < condensed_index(e, 0);
 }
 
 static int freedom_place(const struct ct_articulated_beam *e, int freedom)
 {
     const struct ct_freedom *d = &e->f->freedom[freedom];
     const int k = ct_condensation_number(e->f, freedom);
-    return k >= 0 ? follower(e, k) : d->npart ? d->part[0].k : -1;
+    return k >= 0 ? condensed_index(e, k) : d->npart ? d->part[0].k : -1;
 }
 
 // Index and sign of dof j of element i; -1: fixed.
@@ -120,7 +121,8 @@ static int dof_place(const struct ct_articulated_beam *e, int i, int j, int *sig
 
 // Adds the mass matrix of the elements in terms of their dofs and c.
 static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k,
-                         struct ct_articulated_beam *e, const ct_ex33 *A, struct ct_columns *c)
+                         struct ct_articulated_beam *e, const ct_ex33 *A,
+                         struct ct_elastic_columns *c)
 {
     struct ct_build *b = w->b;
     struct ct_exs *x = b->x;
@@ -134,8 +136,9 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
             if (at < 0)
                 continue;
             const ct_ex one = ct_ex_const(x, sign);
-            c->moved[at] = ct_ex3_add(x, c->moved[at], ct_ex3_scale(x, one, s[i].moved[j]));
-            c->swept[at] = ct_ex3_add(x, c->swept[at], ct_ex3_scale(x, one, s[i].swept[j]));
+            c->m_rf[at] = ct_ex3_add(x, c->m_rf[at], ct_ex3_scale(x, one, s[i].m_rf[j]));
+            c->m_thetaf[at]
+                = ct_ex3_add(x, c->m_thetaf[at], ct_ex3_scale(x, one, s[i].m_thetaf[j]));
             for (int l = 0; l < CT_DOF; l++) {
                 int other;
                 const int to = dof_place(e, i, l, &other);
@@ -143,7 +146,7 @@ static void add_elements(struct ct_articulated *w, struct ct_articulated_body *k
                     add_entry(x, e, at, to, ct_ex_scale(x, sign * other, s[i].M[j][l]));
             }
             if (i > 0)
-                add_entry(x, e, carried, at, ct_ex_scale(x, sign, s[i].moved[j].e[0]));
+                add_entry(x, e, carried, at, ct_ex_scale(x, sign, s[i].m_rf[j].e[0]));
         }
         if (i == 0)
             continue; // the first element has no predecessor
@@ -167,8 +170,8 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     const struct ct_inertia *I = f->inertia;
     struct ct_articulated_body *k = &w->body[i];
     struct ct_symmetric M = ct_symmetric_create(w->work, b->eqs->nu); // by speed
-    struct ct_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
-                           CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
+    struct ct_elastic_columns c = {CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1),
+                                   CT_NEWN(b->ctx->scratch, ct_ex3, e->nall + 1)};
     const struct ct_base motion = {.w = ct_ex33_apply_t(x, A, w->s->member[i].w)};
     ct_ex3 F, T, lessF, lessT;
     const struct ct_base effective = ct_flexible_effective_base(b, f, &motion, &lessF, &lessT);
@@ -183,10 +186,10 @@ static void add_beam(struct ct_articulated *w, int i, struct ct_articulated_beam
     k->n = ct_ex3_add(x, k->n, ct_ex33_apply(x, A, T));
     k->f = ct_ex3_add(x, k->f, ct_ex33_apply(x, A, F));
     for (int j = 0; j < e->nall; j++) {
-        const ct_ex3 swept = ct_ex33_apply(x, A, c.swept[j]),
-                     moved = ct_ex33_apply(x, A, c.moved[j]);
+        const ct_ex3 m_thetaf = ct_ex33_apply(x, A, c.m_thetaf[j]),
+                     m_rf = ct_ex33_apply(x, A, c.m_rf[j]);
         for (int r = 0; r < CT_SPATIAL_SIZE; r++)
-            k->C[j].e[r] = ct_ex_add(x, k->C[j].e[r], r < 3 ? swept.e[r] : moved.e[r - 3]);
+            k->C[j].e[r] = ct_ex_add(x, k->C[j].e[r], r < 3 ? m_thetaf.e[r] : m_rf.e[r - 3]);
     }
     for (int j = 0; j < e->n; j++) {
         const struct ct_symmetric_row *row = &M.row[f->elastic[j].u];
@@ -245,8 +248,8 @@ static void reduce_body(struct ct_exs *x, struct ct_articulated_body *k,
 }
 
 // Eliminates the elastic acceleration e_j''.
-static void free_coordinate(struct ct_articulated *w, struct ct_articulated_body *k,
-                            struct ct_articulated_beam *e, int j)
+static void eliminate_coordinate(struct ct_articulated *w, struct ct_articulated_body *k,
+                                 struct ct_articulated_beam *e, int j)
 {
     struct ct_exs *x = w->b->x;
     const int speed = e->f->elastic[j].u;
@@ -298,11 +301,12 @@ static const size_t *columns_of(const struct ct_articulated *w,
 
 // Eliminates a condensed rotation together with its multiplier, block [h p; p q]. It is regular: h
 // >= 0 is an inertia and q <= 0 belongs to multipliers, so that h q <= 0 < p^2.
-static void free_follower(struct ct_articulated *w, struct ct_articulated_body *k,
-                          struct ct_articulated_beam *e, int number)
+static void eliminate_condensed_rotation(struct ct_articulated *w,
+                                         struct ct_articulated_body *k,
+                                         struct ct_articulated_beam *e, int number)
 {
     struct ct_exs *x = w->b->x;
-    const int at[2] = {follower(e, number), multiplier(e, number)};
+    const int at[2] = {condensed_index(e, number), multiplier(e, number)};
     const ct_ex h = entry_of(e, at[0], at[0]), p = entry_of(e, at[0], at[1]),
                 q = entry_of(e, at[1], at[1]),
                 g
@@ -347,8 +351,8 @@ static void free_follower(struct ct_articulated *w, struct ct_articulated_body *
 
 // c of element i as a weighted sum of unknowns: indices and weights (CT_AXIS_DOF + 1 of each).
 // Returns their number.
-static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam *e, int i,
-                      int *place, ct_ex *weight)
+static int start_as_sum(struct ct_articulated *w, const struct ct_articulated_beam *e, int i,
+                        int *place, ct_ex *weight)
 {
     int n = 0, sign;
     if (i > 1) {
@@ -366,14 +370,14 @@ static int carried_by(struct ct_articulated *w, const struct ct_articulated_beam
 }
 
 // Substitutes c of element i by its sum, after everything beyond its start is eliminated.
-static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
-                   struct ct_articulated_beam *e, int i)
+static void substitute_start(struct ct_articulated *w, struct ct_articulated_body *k,
+                             struct ct_articulated_beam *e, int i)
 {
     struct ct_exs *x = w->b->x;
     const int p = e->n + i;
     int place[CT_AXIS_DOF + 1];
     ct_ex weight[CT_AXIS_DOF + 1];
-    const int n = carried_by(w, e, i, place, weight);
+    const int n = start_as_sum(w, e, i, place, weight);
     const ct_ex own = entry_of(e, p, p);
     const struct ct_symmetric_row *row = &e->M.row[p];
     e->is_done[p] = true;
@@ -394,36 +398,39 @@ static void put_in(struct ct_articulated *w, struct ct_articulated_body *k,
     }
 }
 
-static void free_followers(struct ct_articulated *w, struct ct_articulated_body *k,
-                           struct ct_articulated_beam *e, int node)
+static void eliminate_condensed_rotations(struct ct_articulated *w,
+                                          struct ct_articulated_body *k,
+                                          struct ct_articulated_beam *e, int node)
 {
     for (int j = FREEDOMS; j-- > 0;) {
         const int number = ct_condensation_number(e->f, FREEDOMS * node + j);
         if (number >= 0)
-            free_follower(w, k, e, number);
+            eliminate_condensed_rotation(w, k, e, number);
     }
 }
 
 // Adds the equilibrium equations of the condensed rotations, with their multipliers.
-static void add_laws(struct ct_exs *x, struct ct_articulated_beam *e)
+static void add_equilibrium(struct ct_exs *x, struct ct_articulated_beam *e)
 {
-    for (int k = 0; k < e->nfollow; k++) {
+    for (int k = 0; k < e->ncondensed; k++) {
         int n;
-        const struct ct_condensation_term *law = ct_condensation_law(e->f, k, &n);
+        const struct ct_condensation_term *equilibrium
+            = ct_condensation_equilibrium(e->f, k, &n);
         const size_t row = (size_t)multiplier(e, k);
-        *ct_symmetric_at(&e->M, row, (size_t)follower(e, k)) = CT_EX_ONE;
+        *ct_symmetric_at(&e->M, row, (size_t)condensed_index(e, k)) = CT_EX_ONE;
         for (int i = 0; i < n; i++)
-            *ct_symmetric_at(&e->M, row, (size_t)freedom_place(e, law[i].freedom))
-                = ct_ex_const(x, law[i].by);
+            *ct_symmetric_at(&e->M, row, (size_t)freedom_place(e, equilibrium[i].freedom))
+                = ct_ex_const(x, equilibrium[i].by);
     }
 }
 
 // Does any force act on the condensed rotations? None does if they only rotate sections with
 // revolute or spherical joints.
-static bool feels_followers(struct ct_articulated_beam *e, const struct ct_spatial_vector *C)
+static bool loads_condensed_rotations(struct ct_articulated_beam *e,
+                                      const struct ct_spatial_vector *C)
 {
-    for (int k = 0; k < e->nfollow; k++) {
-        const int at = follower(e, k);
+    for (int k = 0; k < e->ncondensed; k++) {
+        const int at = condensed_index(e, k);
         if (e->is_augmented || !ct_ex_is_zero(e->row[at]) || !is_zero(C[at].e))
             return true;
         for (size_t i = 0; i < e->M.row[at].n; i++)
@@ -443,28 +450,29 @@ static void eliminate_beam(struct ct_articulated *w, int i, struct ct_articulate
         e->row[j] = ct_ex_neg(x, e->row[j]);
     if (e->is_augmented)
         e->is_done[e->n] = true; // c of the first element is zero
-    e->follows = feels_followers(e, k->C);
-    if (e->follows)
-        add_laws(x, e);
+    e->has_condensed_rotations = loads_condensed_rotations(e, k->C);
+    if (e->has_condensed_rotations)
+        add_equilibrium(x, e);
     int next = e->n;
-    for (int node = e->f->beam->nelement; node > 0 && (e->is_augmented || e->follows); node--) {
+    for (int node = e->f->beam->nelement;
+         node > 0 && (e->is_augmented || e->has_condensed_rotations); node--) {
         int first = next; // coordinates are numbered node by node
         for (int j = 0; j < FREEDOMS; j++) {
             const int at = freedom_place(e, FREEDOMS * node + j);
             if (at >= 0 && at < first)
                 first = at;
         }
-        if (e->follows)
-            free_followers(w, k, e, node);
+        if (e->has_condensed_rotations)
+            eliminate_condensed_rotations(w, k, e, node);
         while (next > first)
-            free_coordinate(w, k, e, --next);
+            eliminate_coordinate(w, k, e, --next);
         if (node > 1 && e->is_augmented)
-            put_in(w, k, e, node - 1);
+            substitute_start(w, k, e, node - 1);
     }
-    if (e->follows)
-        free_followers(w, k, e, 0);
+    if (e->has_condensed_rotations)
+        eliminate_condensed_rotations(w, k, e, 0);
     while (next > 0)
-        free_coordinate(w, k, e, --next);
+        eliminate_coordinate(w, k, e, --next);
 }
 
 void ct_articulated_beam_sum(struct ct_articulated *w, int i)
@@ -516,18 +524,19 @@ static void find_accelerations(struct ct_articulated *w, const struct ct_articul
         } else {
             int place[CT_AXIS_DOF + 1];
             ct_ex weight[CT_AXIS_DOF + 1];
-            const int n = carried_by(w, e, j - e->n, place, weight);
+            const int n = start_as_sum(w, e, j - e->n, place, weight);
             for (int t = 0; t < n; t++)
                 add_to(x, &e->a[j], ct_ex_mul(x, weight[t], e->a[place[t]]));
         }
         e->is_done[j] = true;
     }
-    for (int i = 0; i < CT_NODE_FREEDOM * (e->f->beam->nelement + 1) && !e->follows; i++)
-        if (ct_condensation_number(e->f, i) >= 0 && e->nfollow)
+    for (int i = 0;
+         i < CT_NODE_FREEDOM * (e->f->beam->nelement + 1) && !e->has_condensed_rotations; i++)
+        if (ct_condensation_number(e->f, i) >= 0 && e->ncondensed)
             e->a[freedom_place(e, i)] = sum_of_parts(x, e, &e->f->freedom[i]);
 }
 
-void ct_articulated_beam_hand(struct ct_articulated *w, int i)
+void ct_articulated_beam_transfer(struct ct_articulated *w, int i)
 {
     const struct ct_articulated_beam *e = &w->elastic[w->s->member[i].beam - 1];
     struct ct_exs *x = w->b->x;

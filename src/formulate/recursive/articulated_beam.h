@@ -42,11 +42,11 @@ struct ct_articulated_body {
 /// (static_condensation.h).
 struct ct_articulated_beam {
     const struct ct_flexible *f;
-    int n, nall, nfollow;
+    int n, nall, ncondensed;
     bool is_augmented; // c of the elements are unknowns
-    // follows: condensed rotations are eliminated with their multipliers; else they are computed
+    // has_condensed_rotations: condensed rotations are eliminated with their multipliers; else they are computed
     // afterwards
-    bool follows;
+    bool has_condensed_rotations;
     int *number;                 // by speed: its index, or -1
     struct ct_symmetric M;       // between unknowns; after elimination divided by the pivot
     ct_ex *row;                  // right side; after elimination divided by the pivot
@@ -83,7 +83,7 @@ void ct_articulated_beam_start(struct ct_articulated *w, size_t i);
 /// the root.
 void ct_articulated_beam_sum(struct ct_articulated *w, int i);
 /// Transforms C to the parent of member i and adds known accelerations to the rows.
-void ct_articulated_beam_hand(struct ct_articulated *w, int i);
+void ct_articulated_beam_transfer(struct ct_articulated *w, int i);
 /// Adds the elastic part of the acceleration of member i. At the root it finds the elastic
 /// accelerations; they are stored in out by speed.
 void ct_articulated_beam_accelerate(struct ct_articulated *w, int i, ct_ex *out);

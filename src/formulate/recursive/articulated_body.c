@@ -176,13 +176,13 @@ static void shift(struct ct_articulated *w, struct ct_articulated_body *k, ct_ex
     k->B = C;
 }
 
-static void hand_inwards(struct ct_articulated *w, int i)
+static void transfer_inwards(struct ct_articulated *w, int i)
 {
     struct ct_exs *x = w->b->x;
     const struct ct_member *m = &w->s->member[i];
     struct ct_articulated_body k = w->body[i], *p = &w->body[m->parent];
     if (m->beam && i != w->s->beam[m->beam - 1].root)
-        ct_articulated_beam_hand(w, i);
+        ct_articulated_beam_transfer(w, i);
     add_bias(x, &k, m->al_relative, zero3);
     if (m->is_absolute) { // the torque acts on ground
         k.n = zero3;
@@ -255,7 +255,7 @@ ct_ex *ct_articulated_solve(struct ct_build *b, const struct ct_members *s, cons
         for (int k = 0; k < m->nfree && !m->beam; k++)
             eliminate(&w, &w.body[i], k, &m->screw[k]);
         if (m->parent)
-            hand_inwards(&w, (int)i);
+            transfer_inwards(&w, (int)i);
     }
     w.body[0].a = ct_members_gravity_acceleration(b);
     for (size_t i = 1; i < s->n; i++)

@@ -13,8 +13,8 @@ struct wrench {
     ct_ex3 n, f;
 };
 
-static struct wrench hand_inwards(struct ct_build *b, const struct ct_member *m,
-                                  struct wrench w)
+static struct wrench transfer_inwards(struct ct_build *b, const struct ct_member *m,
+                                      struct wrench w)
 {
     struct ct_exs *x = b->x;
     w.n = m->is_absolute ? zero3 : ct_member_out(b, m, w.n);
@@ -50,7 +50,7 @@ static void add_rates(struct ct_build *b, const struct ct_member *m, ct_ex3 *al,
 }
 
 // U + al~
-static ct_ex33 carrying_matrix(struct ct_exs *x, const ct_ex33 *U, ct_ex3 al)
+static ct_ex33 acceleration_matrix(struct ct_exs *x, const ct_ex33 *U, ct_ex3 al)
 {
     ct_ex33 A = *U;
     for (int i = 0; i < 3; i++) {
@@ -73,11 +73,11 @@ static void accelerate(struct ct_build *b, const struct ct_members *s, int i, st
     w->a[i] = ct_member_in(b, m, ct_ex3_add(x, w->a[p], shift));
     if (w->level == CT_FULL)
         add_rates(b, m, &w->al[i], &w->a[i]);
-    w->A[i] = carrying_matrix(x, &m->U, w->al[i]);
+    w->A[i] = acceleration_matrix(x, &m->U, w->al[i]);
 }
 
-static struct wrench need(struct ct_build *b, const struct ct_member *m, ct_ex3 al, ct_ex3 a,
-                          const ct_ex33 *A)
+static struct wrench inertia_wrench(struct ct_build *b, const struct ct_member *m, ct_ex3 al,
+                                    ct_ex3 a, const ct_ex33 *A)
 {
     struct ct_exs *x = b->x;
     struct wrench w;
@@ -103,14 +103,14 @@ static void find_efforts(struct ct_build *b, const struct ct_members *s, enum ct
         accelerate(b, s, (int)i, &f);
     for (size_t i = s->n; i-- > 1;) {
         const struct ct_member *m = &s->member[i];
-        const struct wrench own = need(b, m, f.al[i], f.a[i], &f.A[i]);
+        const struct wrench own = inertia_wrench(b, m, f.al[i], f.a[i], &f.A[i]);
         w[i].n = ct_ex3_add(x, w[i].n, own.n);
         w[i].f = ct_ex3_add(x, w[i].f, own.f);
         for (int k = 0; k < m->nfree; k++)
             out[m->screw[k].speed] = power(b, &m->screw[k], &w[i]);
         if (!m->parent)
             continue;
-        const struct wrench up = hand_inwards(b, m, w[i]);
+        const struct wrench up = transfer_inwards(b, m, w[i]);
         w[m->parent].n = ct_ex3_add(x, w[m->parent].n, up.n);
         w[m->parent].f = ct_ex3_add(x, w[m->parent].f, up.f);
     }
@@ -160,8 +160,8 @@ static void shift_inertia(struct ct_build *b, ct_ex33 *J, ct_ex3 r, ct_ex3 h)
 }
 
 // Adds the composite inertia of a member to its parent.
-static void gather(struct ct_build *b, const struct ct_member *m, const struct composite *own,
-                   struct composite *parent)
+static void add_to_parent(struct ct_build *b, const struct ct_member *m,
+                          const struct composite *own, struct composite *parent)
 {
     struct ct_exs *x = b->x;
     ct_ex33 J = {{{0}}};
@@ -192,7 +192,7 @@ static void column(struct ct_build *b, const struct ct_members *s, const struct 
             *ct_symmetric_at(M, (size_t)f->speed, (size_t)m->screw[k].speed)
                 = power(b, &m->screw[k], &w);
         }
-        w = hand_inwards(b, m, w);
+        w = transfer_inwards(b, m, w);
     }
 }
 
@@ -203,7 +203,7 @@ static void find_masses(struct ct_build *b, const struct ct_members *s, struct c
         const struct ct_member *m = &s->member[i];
         add(b, &body[i], m->mass, m->moment, &m->J);
         if (m->parent)
-            gather(b, m, &body[i], &body[m->parent]);
+            add_to_parent(b, m, &body[i], &body[m->parent]);
     }
     for (size_t i = 1; i < s->n; i++)
         for (int k = 0; k < s->member[i].nfree; k++)

@@ -20,7 +20,7 @@ static ct_ex33 base_axes(struct ct_build *b, const struct ct_flexible *f)
     if (!b->topology->is_planar)
         return b->kinematics->placement[f->base].S;
     const ct_ex3 n
-        = ct_ex33_apply_t(b->x, &b->topology->upright[f->base], b->topology->plane[2]);
+        = ct_ex33_apply_t(b->x, &b->topology->reference_axes[f->base], b->topology->plane[2]);
     ct_ex33 A = {{{0}}};
     double v[3]; // one of the axes of the beam, up to round-off
     for (int i = 0; i < 3; i++) {

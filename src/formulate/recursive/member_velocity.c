@@ -72,7 +72,7 @@ void ct_member_turn_tensor(struct ct_build *b, const struct ct_member *m, ct_ex3
 // ---- velocities ---------------------------------------------------------------------------------
 
 // w w' - (w . w) 1
-static ct_ex33 swing_matrix(struct ct_exs *x, ct_ex3 w)
+static ct_ex33 centripetal_matrix(struct ct_exs *x, ct_ex3 w)
 {
     ct_ex33 U;
     ct_ex square[3];
@@ -131,6 +131,6 @@ void ct_members_turn(struct ct_build *b, struct ct_members *s)
         m->w = ct_ex3_add(b->x, carried, m->w_relative);
         m->al_relative
             = ct_ex3_add(b->x, m->al_relative, ct_ex3_cross(b->x, carried, m->w_relative));
-        m->U = swing_matrix(b->x, m->w);
+        m->U = centripetal_matrix(b->x, m->w);
     }
 }

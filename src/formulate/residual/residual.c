@@ -98,9 +98,9 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
         return;
     ct_ex *by_members = CT_NEWN(b->ctx->scratch, ct_ex, n + 1);
     ct_composite_residual(b, s, b->loads->effort, by_members);
-    const struct ct_tape_counts swept = ct_ex_count(b->ctx->scratch, b->x, r, n),
+    const struct ct_tape_counts recursive = ct_ex_count(b->ctx->scratch, b->x, r, n),
                                 other = ct_ex_count(b->ctx->scratch, b->x, by_members, n);
-    for (size_t k = 0; k < n && ct_counted_cost(&other) < ct_counted_cost(&swept); k++)
+    for (size_t k = 0; k < n && ct_counted_cost(&other) < ct_counted_cost(&recursive); k++)
         r[k] = by_members[k];
 }
 

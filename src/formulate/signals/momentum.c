@@ -29,7 +29,7 @@ ct_ex3 ct_beam_total_vector(struct ct_build *b, struct ct_flexible *f,
 {
     struct ct_exs *x = b->x;
     ct_flexible_inertia_derive(b, f);
-    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    const struct ct_flexible_state s = ct_flexible_momentum(b, f);
     const ct_ex3 r = ct_node_position(b, f->base);
     if (property == CT_SUM_CENTRE)
         return ct_ex3_add(x, ct_ex3_scale(x, s.mass, r), s.moment);

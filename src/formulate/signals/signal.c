@@ -311,7 +311,7 @@ static ct_ex3 body_com(struct ct_build *b, int body)
     if (!f)
         return r;
     ct_flexible_inertia_derive(b, f);
-    const struct ct_flexible_state s = ct_flexible_moving(b, f);
+    const struct ct_flexible_state s = ct_flexible_momentum(b, f);
     return ct_ex3_add(b->x, r,
                       ct_ex3_scale(b->x, ct_ex_div(b->x, CT_EX_ONE, s.mass), s.moment));
 }

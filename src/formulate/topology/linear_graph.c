@@ -398,7 +398,7 @@ void ct_linear_graph_derive(struct ct_build *b, bool planar_allowed)
     for (size_t e = 0; e < t->nedge; e++)
         if (t->edge[e].kind == CT_EDGE_BODY) {
             if (t->is_planar && !t->node[t->wiring[e].head].is_particle)
-                t->edge[e].S = t->upright[t->wiring[e].head];
+                t->edge[e].S = t->reference_axes[t->wiring[e].head];
             add_coordinates(b, t, (int)e);
         }
     t->graph = (struct ct_graph){(int)t->nnode, (int)t->nedge, t->wiring};

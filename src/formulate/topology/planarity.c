@@ -83,7 +83,7 @@ static int *spread_axes(struct ct_build *b, bool with_rotation, bool *known, int
 
 // Rotation from the axes of each node to ground axes with all joint coordinates at zero. Rotations
 // about the normal do not change its components. NULL: no joint connects the node to ground.
-static ct_ex33 **upright_axes(struct ct_build *b)
+static ct_ex33 **axes_at_rest(struct ct_build *b)
 {
     ct_ex33 **U = CT_NEWN(b->arena, ct_ex33 *, b->topology->nnode);
     bool *known = CT_NEWN(b->arena, bool, b->topology->nnode);
@@ -184,14 +184,14 @@ static bool is_plane(struct ct_build *b, struct ct_topology *t, ct_ex33 *const *
 
 // Stores the node rotations; identity for nodes where the normal has the same components as in
 // ground.
-static void keep_uprights(struct ct_build *b, struct ct_topology *t, ct_ex33 **U)
+static void keep_reference_axes(struct ct_build *b, struct ct_topology *t, ct_ex33 **U)
 {
     double g[3], n[3];
     value3(b, t->plane[2], g);
-    t->upright = CT_NEWN(b->arena, ct_ex33, t->nnode);
+    t->reference_axes = CT_NEWN(b->arena, ct_ex33, t->nnode);
     for (size_t i = 0; i < t->nnode; i++) {
         value3(b, ct_ex33_apply_t(b->x, U[i], t->plane[2]), n);
-        t->upright[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
+        t->reference_axes[i] = is_same(n, g) ? ct_ex33_identity() : *U[i];
     }
 }
 
@@ -205,7 +205,7 @@ static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U,
     t->plane[2] = n[most] < 0 ? ct_ex3_neg(b->x, axis) : axis;
     if (!is_plane(b, t, U) || !ct_deformation_keeps_plane(b, U, &t->is_spatial_for_beams))
         return false;
-    keep_uprights(b, t, U);
+    keep_reference_axes(b, t, U);
     return true;
 }
 
@@ -213,7 +213,7 @@ static bool takes_normal(struct ct_build *b, struct ct_topology *t, ct_ex33 **U,
 // components; if there is none, a bending axis of a beam.
 static bool find_normal(struct ct_build *b, struct ct_topology *t)
 {
-    ct_ex33 **U = upright_axes(b);
+    ct_ex33 **U = axes_at_rest(b);
     for (size_t i = 0; i < t->nedge; i++) {
         const struct ct_edge_info *e = &t->edge[i];
         const ct_ex33 *A = U[t->wiring[i].tail];

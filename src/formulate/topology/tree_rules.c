@@ -27,7 +27,7 @@ static int *node_depths(struct ct_build *b, bool by_rotation)
 // Is an end of the edge at a beam section whose rotation may be condensed statically because it has
 // no inertia? Such a rotation depends on all nodes of the beam, so that a body attached there fills
 // the mass matrix. The start of a clamped beam is fixed.
-static bool turns_follower(const struct ct_build *b, size_t i)
+static bool rotates_condensed_section(const struct ct_build *b, size_t i)
 {
     const int end[2] = {b->topology->wiring[i].tail, b->topology->wiring[i].head};
     for (int k = 0; k < 2; k++) {
@@ -98,7 +98,8 @@ static int tie_rank(const struct ct_build *b, size_t i, const int *depth, const 
         return b->topology->is_planar && choice == CT_TREE_AUTO ? 1 : last;
     const bool enters = enters_section(b, i, depth),
                is_first = turned[tail] == 0 || turned[head] == 0 || enters;
-    if ((is_first && !(b->topology->is_planar && turns_follower(b, i) && !(enters && fills)))
+    if ((is_first
+         && !(b->topology->is_planar && rotates_condensed_section(b, i) && !(enters && fills)))
         || (e->kind == CT_EDGE_JOINT && ct_joint_is_active(e->self)))
         return 0;
     return 2 + (depth[tail] < depth[head] ? depth[tail] : depth[head]);

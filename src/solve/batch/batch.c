@@ -204,7 +204,7 @@ static bool is_allowed(const struct ct_batch *s)
                 && s->solver[0]->solver->operations < LARGE_PROGRAM));
 }
 
-// The order of pivots is sought at the start with the file's own values, so that the solver does
+// The order of pivots is chosen at the start with the file's own values, so that the solver does
 // not depend on the member that needs it first.
 static struct ct_lane_solver *make_solver(struct ct_batch *s, const struct ct_partition_sets *p)
 {

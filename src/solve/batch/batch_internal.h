@@ -150,7 +150,7 @@ struct ct_batch {
     double *origin;        // the evaluator's input there; NULL: there are no symbolic solvers
     bool solver_has_power; // in addition to the accelerations
     set needs_refinement;  // the last check found the solver not accurate enough
-    set near_singular; // near a singular configuration: pivots are sought at every evaluation,
+    set near_singular; // near a singular configuration: pivots are chosen at every evaluation,
     set alike;         // if strength and sigma are not known to fall alike
     vec low, high, strength; // of solvers: bounds of validity, and the present strength
     vec slope;               // sigma over strength where both fall alike, else 0

@@ -88,14 +88,14 @@ struct ct_evaluator {
     double *phi, *v;                // of the last ct_evaluator_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_evaluator_measure_rows; 1 before
     double rank_tolerance;          // a row with a smaller relative remainder is dependent
-    // If loops close only to the tolerance of the data: rows keep their initial residual, phi -
-    // open = 0; rows left out, as they depend on others to that tolerance, are 0.
+    // If loops close only to the tolerance of the data: rows keep their initial residual `open`,
+    // phi - open = 0; rows that depend on others to that tolerance are left out and are 0.
     bool is_inexact, *left_out; // (nrow)
     size_t most_rank;           // of J; nrow if the data are exact
     double *open;               // (nrow)
     double *symbol_value;       // workspace, by symbol of e->x
     double *g[2];               // values of root functions, for switches (nswitch)
-    // (nswitch) > 0: g and its rate are zero; g counts as zero up to this times
+    // (nswitch) positive if g and its rate are zero; g then counts as zero up to this times
     // ct_switches_size
     double *at_rest;
     bool has_rest;                  // some at_rest was positive when the sides were set

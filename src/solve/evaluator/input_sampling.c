@@ -8,8 +8,8 @@
 // Times in a step near which methods have stages, those of order 2 the first one only: dop853,
 // dopri5 and radau5 leave no wider gaps.
 static const double stage_times[] = {1, 0.25, 0.65, 0.85};
-// Between these points a polynomial of degree four is at most this times as far from its
-// initial value as at them. Methods resolve that; a pulse that they miss is larger.
+// Bound for a polynomial of degree four: its largest distance from its initial value in the step,
+// over that at these points. Methods resolve such a polynomial; a pulse that they miss exceeds it.
 // Derived: 2.36, the Lebesgue constant of these points and the start.
 static const double pulse_ratio = 2.4;
 

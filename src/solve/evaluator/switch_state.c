@@ -126,8 +126,8 @@ int ct_switches_find_contradicted(struct ct_evaluator *m, double t, const double
                                   const double *dy)
 {
     const double *side = m->input + m->at_switch;
-    // near: fraction of the change of g meanwhile. Derived: events are located to a thousandth
-    // of ahead
+    // near: fraction of the change of g in the time `ahead`. Derived: events are located to a
+    // thousandth of it
     const double ahead = ahead_of(t), near = 1e-3;
     evaluate(m, t, y, dy, 0, m->g[0]);
     evaluate(m, t, y, dy, ahead, m->g[1]);

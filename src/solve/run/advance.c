@@ -6,8 +6,8 @@
 #include <float.h>
 #include <string.h>
 
-// Time events are sought for so many calls ahead. Chosen: a search evaluates thousands of times,
-// that is a few times a call.
+// Number of calls ahead for which time events are computed. Chosen: a search takes thousands of
+// evaluations, that is a few for each call.
 static const double steps_ahead = 1024;
 
 struct ct_advance {
@@ -19,7 +19,7 @@ struct ct_advance {
     struct ct_arena *events; // the list of time events
     bool has_time_events, is_assembled;
     double horizon; // up to which they are known
-    double *side;   // sides of switches, while they are sought
+    double *side;   // sides of switches, saved during that search
     double h;
 };
 

@@ -20,8 +20,8 @@ struct ct_advance *ct_advance_create(struct ct_arena *a, struct ct_run *r,
 /// is_assembled: it is the state of ct_run_begin or ct_run_restart, at t = 0.
 /// Errors: CT_E_STUCK, CT_E_SINGULAR, CT_E_STEP_OPEN, into the run's context.
 bool ct_advance_start(struct ct_advance *s, double t, const double *y, bool is_assembled);
-/// To be called after a change of parameters at t: sides of switches and time events are found
-/// anew. Errors: CT_E_STUCK, into the run's context.
+/// To be called after a change of parameters at t: determines the sides of switches and the time
+/// events again. Errors: CT_E_STUCK, into the run's context.
 bool ct_advance_refresh(struct ct_advance *s, double t);
 /// Integrates from t0, the time of the state, exactly to t1 > t0. *t (out): the time that was
 /// reached. False with a diagnostic in the context of the run or in `said`, whose texts live until

@@ -192,7 +192,7 @@ static enum ct_eval apply_impulse(struct ct_run *r, double t, double *y,
 
 // Reports that on both sides of switch i the force leads back to it (dry friction at rest): f
 // describes no such motion.
-static enum ct_eval report_held(struct ct_run *r, double t, int i)
+static enum ct_eval report_stuck(struct ct_run *r, double t, int i)
 {
     const struct ct_switch *held = &r->e->switches[i];
     ct_error(
@@ -204,10 +204,10 @@ static enum ct_eval report_held(struct ct_run *r, double t, int i)
     return CT_EVAL_FATAL;
 }
 
-// The sides were chosen for the derivative before they changed. A switch that the derivative with
-// the new sides contradicts goes to the other side; if it is contradicted there, too, it holds the
-// motion. A switch that has just crossed has come from its other side, from where the motion leads
-// here.
+// The sides were chosen for the derivative before they changed. If the derivative with the new
+// sides leads a switch back, the switch changes its side again. If the derivative leads it back
+// from that side, too, the motion is stuck: an error. A switch that has just crossed its root is
+// known to be led back from its previous side.
 enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
                                     const signed char *crossed)
 {
@@ -226,7 +226,7 @@ enum ct_eval ct_run_settle_switches(struct ct_run *r, double t, const double *y,
         if (i < 0)
             return CT_EVAL_OK;
         if (++r->visits[i] == VISITS)
-            return report_held(r, t, i);
+            return report_stuck(r, t, i);
         ct_switches_follow(r->m, (size_t)i);
     }
 }
@@ -235,7 +235,7 @@ enum ct_eval ct_run_resumed(void *user, double t, const double *y, const double 
 {
     struct ct_run *r = user;
     const int i = ct_switches_find_contradicted(r->m, t, y, dy);
-    return i < 0 ? CT_EVAL_OK : report_held(r, t, i);
+    return i < 0 ? CT_EVAL_OK : report_stuck(r, t, i);
 }
 
 // Predict the next singular configuration again after a jump of speeds.

@@ -65,8 +65,8 @@ static void find_quadratic_form(struct ct_evaluator *m, double *W, const double 
 }
 
 // w (nu) = before - after, of the gradient that begins at `first`, + W u.
-static void find_aim(const struct ct_evaluator *m, double *w, size_t first,
-                     const double *before, const double *W, const double *u)
+static void find_right_side(const struct ct_evaluator *m, double *w, size_t first,
+                            const double *before, const double *W, const double *u)
 {
     for (size_t i = 0; i < m->nu; i++)
         w[i] = before[first + i] - m->momentum.out[first + i];
@@ -83,15 +83,15 @@ static enum ct_eval apply_continuous(struct ct_run *r, const double *before, dou
     const double all = trace(m->M, n);
     const double share = all > 0 ? share_of_momentum * trace(j->W, n) / all : 0;
     double *w = j->w, *momentum = j->first;
-    find_aim(m, momentum, 0, before, m->M, u);
-    find_aim(m, w, n, before, j->W, u);
+    find_right_side(m, momentum, 0, before, m->M, u);
+    find_right_side(m, w, n, before, j->W, u);
     for (size_t i = 0; i < n * n; i++)
         j->W[i] += share * m->M[i];
     for (size_t i = 0; i < n; i++)
         momentum[i] = w[i] + share * momentum[i];
     enum ct_eval e = ct_partition_impulse(r->s, j->W, momentum, u);
     for (int i = 1; i < TIMES && e == CT_EVAL_OK;
-         i++) { // the right side of the first iteration is kept
+         i++) { // the right side of the first iteration is used in all of them
         memcpy(momentum, w, n * sizeof *w);
         add_product(momentum, share, m->M, u, n);
         e = ct_partition_impulse(r->s, j->W, momentum, u);
@@ -106,6 +106,6 @@ enum ct_eval ct_impulse_apply(struct ct_run *r, const double *before, double *u)
     if (m->momentum.nout > m->nu)
         return apply_continuous(r, before, u);
     ct_program_run(&m->momentum, m->input);
-    find_aim(m, r->impulse->w, 0, before, m->M, u);
+    find_right_side(m, r->impulse->w, 0, before, m->M, u);
     return ct_partition_impulse(r->s, m->M, r->impulse->w, u);
 }

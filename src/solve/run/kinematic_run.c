@@ -41,9 +41,9 @@ static void find_basis(struct ct_run *r, double t, const double *y, struct ct_ta
     ct_tangent_basis_find(r->s, v);
 }
 
-// Has a step of this length [rad or m] led to another way of assembly? Between two of them the test
-// function of singular configurations changes its sign. Steps that are shorter than a mechanism
-// needs to pass a singular configuration, and not to lead through it, cross it.
+// Has a step of this length [rad or m] led to another assembly mode? The test function of singular
+// configurations has different signs in two modes. If it changes its sign over a shorter step, the
+// mechanism moves through a singular configuration, which is allowed.
 static bool has_jumped(struct ct_run *r, double t1, const double *y1, double length)
 {
     find_basis(r, t1, y1, r->basis[1]);
@@ -53,11 +53,11 @@ static bool has_jumped(struct ct_run *r, double t1, const double *y1, double len
 
 // One step of kinematic analysis, from y at t to t1: extrapolation to second order, then projection
 // onto the constraints. False if the step is too long, the correction too large, or the end belongs
-// to another way of assembly.
+// to another assembly mode.
 static bool advance_step(struct ct_run *r, double t, double t1, const double *y, double *out)
 {
-    // Largest change of a coordinate [rad or m]. Default: steps against a jump to another way of
-    // assembly. Test: kinematic_steps
+    // Largest change of a coordinate [rad or m]. Default: number of steps against a jump to another
+    // assembly mode. Test: kinematic_steps
     const double longest = 0.3;
     // Part of the step that the projection may correct. Default: as above. Test: rate_jumps
     const double part = 0.25;
@@ -144,8 +144,8 @@ static bool advance_with_work(struct ct_run *r, double t, double t1, double *y)
     return true;
 }
 
-// Sides after an event; the motions must not jump there. Their rates may: an impulse, whose work is
-// booked.
+// Sides after an event. The driven coordinates must not jump there. Their rates may: that is an
+// impulse, whose work is added.
 static bool pass_event(struct ct_run *r, double t, double *y)
 {
     struct ct_evaluator *m = r->m;

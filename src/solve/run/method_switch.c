@@ -12,7 +12,7 @@
 #include <string.h>
 
 // A vibration with a smaller part in all outputs does not limit the steps.
-// Derived: steps that lose 50 T of a vibration over 2e5 rad, as measured, then leave half of T in
+// Derived: measured steps lose 50 T of a vibration over 2e5 rad; with this part that is half of T in
 // outputs.
 static const double noticed = 0.01;
 
@@ -356,7 +356,7 @@ bool ct_run_integrate(struct ct_run *r, struct ct_problem *p, struct ct_integrat
             r->resolves_vibrations = false;
             p->longest_step = accurate_step;
             io.first_step = io.t0 - r->t_before;
-            r->stiffness->window_evaluations = 0; // count anew from the next step
+            r->stiffness->window_evaluations = 0; // the count restarts at the next step
         } else {
             consider_explicit(r, p, &io);
             add_stats(&r->report->stats, &r->stats);

@@ -16,8 +16,9 @@ bool ct_quad_can_run(const struct ct_evaluator *m);
 
 /// out (nsample x nresult) = results at equally spaced times from 0 to the duration, both included,
 /// from y (q, u, work) at
-/// 0. Steps err by `tolerance`, relative to the larger of 1 and the state. False if `go_on` says so
-/// (it is asked before every step) or if steps become too small. Workspace is taken from a.
+/// 0. The error of a step is below `tolerance`, relative to the larger of 1 and the state. False if
+/// `go_on`, which is called before every step, returns false, or if steps become too small.
+/// Workspace is taken from a.
 bool ct_quad_run(struct ct_arena *a, const struct ct_evaluator *m, const double *y,
                  double duration, size_t nsample, double tolerance, bool (*go_on)(void *user),
                  void *user, double *out);

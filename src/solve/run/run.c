@@ -246,7 +246,7 @@ bool ct_run_begin(struct ct_run *r, const struct ct_initial_state *start)
     r->s->sigma_best = 0;
     r->s->scale = find_scale(r->model);
     ct_evaluator_measure_rows(r->m);
-    if (r->m->is_inexact) // symbolic solvers do not know the gaps of inexact data
+    if (r->m->is_inexact) // symbolic solvers do not support initial residuals of inexact data
         ct_partition_use_solver(
             r->s, r->m->nu + r->m->nrow < CT_FEWEST_SPARSE_UNKNOWNS ? NULL : &ct_solver_sparse);
     ct_partition_find_units(r->s);

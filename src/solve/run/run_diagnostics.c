@@ -16,7 +16,7 @@ static struct ct_mark mark_of_row(const struct ct_run *r, size_t row)
 }
 
 // Add a note if steps became too short near a singular configuration.
-static void name_singular(struct ct_run *r, const char *advice)
+static void note_singular(struct ct_run *r, const char *advice)
 {
     enum { MOST_NAMES = 5 }; // Limit: of a message; dots stand for the others
     bool *row = CT_NEWN(r->arena, bool, r->m->nrow + 1);
@@ -47,7 +47,7 @@ static const double small_part = 1e-3;
 
 // If steps ended as the constraints could not be closed: name the row that is open most a little
 // later.
-static void name_open_row(struct ct_run *r)
+static void note_open_row(struct ct_run *r)
 {
     if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
         return;
@@ -67,48 +67,50 @@ static void name_open_row(struct ct_run *r)
             r->e->row[worst].name, fabs(r->m->phi[worst]), t);
 }
 
-// left (nu, out): inertia of each speed at the evaluator's input, with the others free to follow.
-static bool find_left(struct ct_run *r, double *left)
+// inertia (nu, out): effective inertia of each speed at the evaluator's input, with all other
+// speeds free.
+static bool find_inertias(struct ct_run *r, double *inertia)
 {
     ct_evaluator_constraint(r->m);
     ct_evaluator_dynamics(r->m);
-    return ct_partition_inertias(r->s, r->e->is_small, left);
+    return ct_partition_inertias(r->s, r->e->is_small, inertia);
 }
 
-// The speed whose inertia has decreased most from its value with all small coordinates at zero;
-// *part (out) of it is left. -1: none has decreased much.
-static int lost_speed(struct ct_run *r, double *part)
+// The speed whose effective inertia has decreased most from its value with all small coordinates at
+// zero. *part (out): the remaining fraction. -1: none has decreased to less than a tenth.
+static int find_lost_inertia(struct ct_run *r, double *part)
 {
     const size_t nu = r->m->nu;
     double *now = CT_NEWN(r->arena, double, nu + 1),
            *straight = CT_NEWN(r->arena, double, nu + 1);
-    int lost = -1;
-    *part = 0.1; // with more the run does not stop: steps shorten with the root of the inertia
+    int speed = -1;
+    // above this fraction a run does not end: steps decrease with the square root of the inertia
+    *part = 0.1;
     ct_evaluator_set(r->m, r->stats.last_time, r->y);
-    if (!find_left(r, now))
+    if (!find_inertias(r, now))
         return -1;
     for (size_t k = 0; k < nu; k++)
         if (r->e->is_small[k] && r->e->u[k].q >= 0)
             r->m->input[r->m->at_q + (size_t)r->e->u[k].q] = 0;
-    if (!find_left(r, straight))
+    if (!find_inertias(r, straight))
         return -1;
     for (size_t k = 0; k < nu; k++)
         if (straight[k] > 0 && now[k] < *part * straight[k]) {
             *part = now[k] / straight[k];
-            lost = (int)k;
+            speed = (int)k;
         }
-    return lost;
+    return speed;
 }
 
-// Note if equations that are cut to first order have lost an inertia, so that steps become too
-// short: whose, and the cure.
-static bool name_lost(struct ct_run *r)
+// Adds a note if equations that are truncated to first order have lost the inertia of a speed, so
+// that steps become too short: the speed, and the cure.
+static bool note_lost_inertia(struct ct_run *r)
 {
     double part;
-    const int lost = lost_speed(r, &part);
-    if (lost < 0)
+    const int speed = find_lost_inertia(r, &part);
+    if (speed < 0)
         return false;
-    const struct ct_u *u = &r->e->u[lost];
+    const struct ct_u *u = &r->e->u[speed];
     const struct ct_mark mark
         = u->joint >= 0 ? r->model->joint[u->joint].mark
         : u->beam > 0 || u->body > 0
@@ -116,10 +118,9 @@ static bool name_lost(struct ct_run *r)
             : (struct ct_mark){0};
     ct_note(
         r->ctx, mark,
-        "at t = %.9g the inertia that '%s' moves, with what it carries free to follow, is %.2g "
-        "of what it is "
-        "undeformed: equations that are cut to first order, by 'stretch-linear' or 'small', "
-        "lose masses as deflections grow; 'foreshortening', or no 'small', has all terms",
+        "at t = %.9g the effective inertia of '%s' is %.2g of its undeformed value: equations "
+        "truncated to first order, by 'stretch-linear' or 'small', lose inertia as deflections "
+        "grow; 'foreshortening', or no 'small', keeps all terms",
         r->stats.last_time, u->q >= 0 ? r->e->q[u->q].name : u->name, part);
     return true;
 }
@@ -136,7 +137,7 @@ const char *ct_run_singular_joints(const struct ct_run *r)
 
 // Add a note if the run began in a bifurcation: J has a lower rank there than on each of the
 // possible motions, and none of them was taken.
-static void name_singular_start(struct ct_run *r)
+static void note_singular_start(struct ct_run *r)
 {
     // a run that has moved by more than a unit, 1 rad or 1 m, has another cause
     const double way = r->stats.last_time * ct_vector_max_norm(r->y + r->m->nq, r->m->nu);
@@ -178,7 +179,7 @@ void ct_run_note_drivers(struct ct_run *r, double t, const double *y)
 
 // Steps of a method of order 2 are so short that round-off ends them long before those of others,
 // near singular configurations first.
-static void advise_order(struct ct_run *r)
+static void note_order(struct ct_run *r)
 {
     if (r->method->order == 2)
         ct_note(
@@ -197,7 +198,7 @@ static bool has_switched(const struct ct_run *r)
     return t - r->last_event <= near || r->pending - t <= near;
 }
 
-static const char *const let_pass
+static const char *const driver_advice
     = ", where a driver may not rest: let it move through, or rest near it";
 
 // Have drivers come to rest, compared with the largest speed of the run?
@@ -215,13 +216,13 @@ static bool is_driven_to_rest(const struct ct_run *r)
 
 // Advice for a run that ended near a singular configuration. If round-off ended it, that is a
 // tolerance which is larger than the round-off there.
-static const char *advise_there(struct ct_run *r)
+static const char *singular_advice(struct ct_run *r)
 {
     if (has_switched(r))
         return "; a switch changes there: let switches change, and drivers rest, a little "
                "before or after it";
     if (is_driven_to_rest(r))
-        return let_pass;
+        return driver_advice;
     // Definition: the largest tolerance that 'accuracy' compares, docs/cli.md; no advice above it
     const double most = 1e-2;
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part);
@@ -239,29 +240,29 @@ void ct_run_explain_end(struct ct_run *r)
     const enum ct_code code = n ? r->ctx->diagnostic[n - 1].code : 0;
     const bool is_stuck
         = code == CT_E_STEP_COUNT || code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR;
-    if (is_stuck && r->e->is_small && name_lost(r))
+    if (is_stuck && r->e->is_small && note_lost_inertia(r))
         return;
     if (code == CT_E_STEP_COUNT)
         ct_run_explain_count(r);
     if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
-        advise_order(r);
+        note_order(r);
     if (!r->m->nrow)
         return;
     if (code == CT_E_LOCKED) {
         ct_run_note_drivers(r, r->stats.last_time, r->y);
-        name_singular(r, "");
+        note_singular(r, "");
     } else if (code == CT_E_STEP_OPEN) {
-        name_open_row(r);
-        name_singular(r, has_switched(r) ? advise_there(r) : let_pass);
+        note_open_row(r);
+        note_singular(r, has_switched(r) ? singular_advice(r) : driver_advice);
     } else if (code == CT_E_SAMPLE_REFUSED) {
-        name_open_row(r);
+        note_open_row(r);
         if (r->ctx->ndiagnostic == n)
-            name_singular(r, "");
+            note_singular(r, "");
         ct_run_note_drivers(r, r->stats.last_time, r->y);
     } else if (code == CT_E_STEP_SMALL || code == CT_E_STEP_SINGULAR)
-        name_singular(r, advise_there(r));
+        note_singular(r, singular_advice(r));
     else if (code == CT_E_STEP_REFUSED)
-        name_singular(r, ", which steps are not fitted to: leave out 'step'");
+        note_singular(r, ", which steps are not fitted to: leave out 'step'");
     if (is_stuck || code == CT_E_STEP_OPEN)
-        name_singular_start(r);
+        note_singular_start(r);
 }

@@ -38,7 +38,7 @@ struct ct_run {
     size_t nevent;
     int *root_of; // switches of the state, in order (nroot)
     int nroot;
-    signed char *crossed;      // by switch: as `crossed` of an event (nswitch)
+    signed char *crossed;      // by switch: as `crossed` of ct_switches_start (nswitch)
     int *visits;               // of ct_run_settle_switches (nswitch)
     bool needs_lam, has_power; // needs_lam: the power does
     bool has_turns;            // angles or rotations found from their last values

@@ -2,8 +2,8 @@
 // motion. See run_internal.h.
 #include "solve/run/run_internal.h"
 
-// Limit: steps of a run about whose length nothing is said; they take some minutes for most
-// systems, and no shipped system needs as many.
+// Limit: number of steps from which a forecast is printed. So many steps take some minutes for most
+// systems; no shipped system needs as many.
 const double ct_run_many_steps = 1e6;
 
 // The coordinate with the largest part in the fastest motion at t, y, and the rate of that motion;
