@@ -161,24 +161,6 @@ static double first_step(struct ct_driver *r, double limit)
 
 // --- one step --------------------------------------------------------------------------------
 
-// Has the projection moved y1 so far that its derivative must be evaluated again? The derivative at
-// y1 differs from that at the projected state by df/dy times the displacement. Steps of fixed
-// length never evaluate it again: only their first stage uses it, and its error is one order higher
-// than that of the step.
-static bool has_moved(struct ct_driver *r)
-{
-    // A displacement up to this part of the tolerance is ignored. With h |df/dy| < 1, as explicit
-    // steps are, the next step then errs by less than this part of what it may. Chosen: evaluations
-    // against accuracy.
-    const double negligible = 0.01;
-    const struct ct_problem *p = r->p;
-    if (r->o->step > 0)
-        return false;
-    for (int i = 0; i < p->ny; i++)
-        r->point[i] = r->end[i] - r->y1[i];
-    return !(ct_stepper_norm(p, &r->tolerance, r->y, r->y1, r->point) <= negligible);
-}
-
 // Steps of fixed length end on samples, so without root functions and `over_step` there is no dense
 // output.
 static bool is_never_interpolated(const struct ct_driver *r)
@@ -186,7 +168,9 @@ static bool is_never_interpolated(const struct ct_driver *r)
     return r->o->step > 0 && r->p->nroot == 0 && !r->o->over_step;
 }
 
-// end, dend (out) = y1, dy1 projected onto the constraints. Implicit methods need no projection.
+// end (out) = y1 projected onto the constraints, dend (out) = dy1. The derivative at `end` differs from
+// dy1 by df/dy times the displacement, which adds to the next step an error one order higher than
+// that of this step. Implicit methods need no projection.
 static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *method, double t1)
 {
     const struct ct_problem *p = r->p;
@@ -197,14 +181,8 @@ static enum ct_eval project_end(struct ct_driver *r, const struct ct_method *met
     if (is_never_interpolated(r))
         return p->project(p->user, t1, r->end);
     r->end = r->moved;
-    r->dend = r->dmoved;
     ct_stepper_copy(r->end, r->y1, p->ny);
-    ct_stepper_copy(r->dend, r->dy1, p->ny);
-    const enum ct_eval e = p->project(p->user, t1, r->end);
-    if (e != CT_EVAL_OK || !has_moved(r))
-        return e;
-    return ct_stepper_finite(r->end, p->ny) ? ct_stepper_rhs(p, t1, r->end, r->dend, r->stats)
-                                            : CT_EVAL_RETRY;
+    return p->project(p->user, t1, r->end);
 }
 
 // Ends a crossing at t1, within it: end, dend (out).

@@ -51,7 +51,7 @@ struct ct_cost {
     double factorization; // of the matrix of an iteration
 };
 
-/// The work of a usual step of the implicit method with new derivatives and factors.
+/// The least work of a step of the implicit method with new derivatives and factors.
 double ct_cost_step(const struct ct_cost *cost);
 
 /// A trial: a few steps of an implicit method, to measure the time gained for its work.

@@ -6,9 +6,9 @@
 #include <float.h>
 #include <string.h>
 
-// Number of calls ahead for which time events are computed. Chosen: a search takes thousands of
-// evaluations, that is a few for each call.
-static const double steps_ahead = 1024;
+// A search for time events goes so many calls ahead. Derived: a call is then a piece of the search,
+// so that a change is missed only if it is undone within a call.
+static const double steps_ahead = CT_TIME_EVENT_PIECES;
 
 struct ct_advance {
     struct ct_run *r;
