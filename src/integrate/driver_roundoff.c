@@ -21,30 +21,8 @@
 // order.
 static const double order_between = 3;
 // Round-off is measured after each of so many steps, too, since it may keep steps short without a
-// refusal. Chosen: a measurement takes nu + 8 evaluations for nu speeds, less than 1 % of those of
-// the steps for up to 50 speeds.
+// refusal. Default: round-off found late against seven evaluations. Test: far_from_origin.
 enum { STEPS_BETWEEN = 1000 };
-
-// Sets the round-off error of damped speeds to zero, so that it is not subtracted: damping removes
-// the errors of earlier steps, and those of the last steps must count. A vibration with the damping
-// ratio zeta answers a change x of position by the acceleration omega^2 x, and a change omega x of
-// speed by 2 zeta times that. Each speed is changed alone by du, as gyroscopic forces, which do not
-// damp, act on the other speeds.
-static void exclude_damped_speeds(struct ct_driver *r, double du)
-{
-    const struct ct_problem *p = r->p;
-    // 2 zeta. Chosen: with zeta = 0.01 and steps of some 1/omega, errors fall by 1/e in a tenth of
-    // the steps between two measurements.
-    const double damped = 0.02;
-    ct_stepper_copy(r->point, r->y, p->ny);
-    for (int i = p->nq; i < p->nq + p->nu; i++) {
-        r->point[i] += du;
-        const enum ct_eval e = ct_stepper_rhs(p, r->t, r->point, r->dmoved, r->stats);
-        r->point[i] = r->y[i];
-        if (e == CT_EVAL_OK && r->dy[i] - r->dmoved[i] > damped * r->roundoff[i])
-            r->roundoff[i] = 0;
-    }
-}
 
 // dy (ny, out) = f where position i is changed by `part` times a factor in [1, 2). The factors
 // differ between positions and with k.
@@ -96,7 +74,6 @@ static void measure_roundoff(struct ct_driver *r, double h)
     r->problem.roundoff_step = sqrt(CT_PERTURBATION * largest / most);
     if (h > r->problem.roundoff_step)
         return;
-    exclude_damped_speeds(r, CT_PERTURBATION * largest / r->problem.roundoff_step);
     find_arithmetic_roundoff(r, CT_PERTURBATION * largest);
     for (int i = p->nq; i < p->nq + p->nu; i++)
         r->roundoff[i] = r->roundoff[i] > 0
