@@ -50,7 +50,7 @@ static void find_solution(struct ct_exported *w)
     const struct ct_evaluator *m = s->m;
     w->x.rank = (size_t)s->rank;
     w->x.row = s->row;
-    w->x.weakest = ct_solver_least_strength;
+    w->x.weakest = CT_LEAST_STRENGTH;
     if (m->solved.nout) {
         w->x.solved = m->solved.listing;
         w->x.nfree = m->nu;

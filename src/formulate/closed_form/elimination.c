@@ -12,11 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Pivot threshold. M is positive definite and -J M^-1 J' negative definite, so that most orders are
-// stable even with large multipliers. The run checks the residual of the equations. Chosen: fewer
-// operations against digits.
-static const double pivot_threshold = 0.001;
-
 struct elimination {
     struct ct_arena *a;
     struct ct_exs *x;
@@ -514,7 +509,7 @@ struct ct_pivot_order *ct_pivot_order_find(struct ct_arena *a, const struct ct_e
     enum ct_kkt_order order = CT_KKT_DEGREE;
     struct ct_pivot_order *found = NULL;
     read_matrices(&s, M, J);
-    const struct ct_kkt_system plain = {s.M, s.J, e->nu, p->rank, pivot_threshold, NULL};
+    const struct ct_kkt_system plain = {s.M, s.J, e->nu, p->rank, CT_LEAST_STRENGTH, NULL};
     const struct ct_kkt *k = predict(&plain, scratch, most, &order);
     struct ct_pivot_order t = {.operations = most};
     if (k) {
@@ -554,7 +549,7 @@ struct ct_closed *ct_closed_derive(struct ct_arena *a, struct ct_exs *x,
         s.is_augmented = found->is_augmented;
         s.system = s.is_augmented
                      ? read_augmented(&s)
-                     : (struct ct_kkt_system){s.M, s.J, nu, m, pivot_threshold, NULL};
+                     : (struct ct_kkt_system){s.M, s.J, nu, m, CT_LEAST_STRENGTH, NULL};
         s.whole = ct_kkt_factor(a, x, &s.system, found->way, (double)most);
         if (!s.whole)
             return NULL;

@@ -18,6 +18,12 @@
 #include "formulate/equations.h"
 #include "formulate/closed_form/kkt.h"
 
+/// Pivots below this part of the largest entry of their rows are not used: where the order of pivots
+/// is found others are taken, if there are any; in a run the solution is found in another way. As
+/// many digits may be lost as the reciprocal has.
+/// Default: digits against operations and the time of dense matrices. Test: partition_conditioning
+#define CT_LEAST_STRENGTH 1e-3
+
 /// The partition: kept rows (rank), as many dependent columns, and the independent columns (nfree).
 struct ct_partition_sets {
     const int *row, *dependent, *independent;

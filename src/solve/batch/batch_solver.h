@@ -98,7 +98,7 @@ static inline void check_solvers(struct ct_batch *s, set wanted)
             continue;
         ct_lane_run(&f->checked, s->input);
         const vec *out = f->checked.out, *B = out + 3 * n + s->nu + s->rank;
-        const set is_strong = set_of(s->strength > ct_solver_least_strength);
+        const set is_strong = set_of(s->strength > CT_LEAST_STRENGTH);
         const set is_plain
             = set_of(weigh_left(s, f, out + n) <= ct_refinement_residual) & is_strong;
         const set is_known
@@ -173,7 +173,7 @@ static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *be
         const double scale = s->lane[l].scale;
         const bool is_closed
             = ct_is_projected(s->sigma[l], size[l] / scale, (*before)[l] / scale);
-        if (is_closed || ct_is_diverging(i, size[l], (*before)[l]))
+        if (is_closed || ct_is_diverging(i, size[l]))
             active &= ~(1u << l);
         if (!is_closed && !ct_has_lane(active, l))
             *wanted &= ~(1u << l);

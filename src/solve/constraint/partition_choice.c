@@ -19,15 +19,14 @@ static int order_rows(struct ct_partition *s)
 // very much: then a column has the weight 1/sqrt(M_kk), so that speeds of small inertia become
 // dependent. A dependent speed of large inertia would bring the round-off of its forces, eps
 // M_large, into the equations of independent ones. Elastic coordinates always have small
-// inertia and are not compared. Speeds preferred as independent have a small weight.
+// inertia and are not compared. Speeds preferred as independent have the smallest weight with
+// which entries of B, at most 1 without it, remain below ct_kappa_largest.
 static void find_column_weights(struct ct_partition *s, double *w)
 {
     // Weights are used where the largest inertia is more than this many times the smallest.
     // Derived: the square of ct_kappa_largest; round-off of the heavy equations is 1e6 eps = 2e-10
     // of the light ones, which then have ten digits.
     const double inertia_ratio = 1e6;
-    // Chosen: entries of B may become 33 times larger, the root of ct_kappa_largest.
-    const double preferred_weight = 0.03;
     const size_t n = s->m->nu;
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
@@ -40,7 +39,7 @@ static void find_column_weights(struct ct_partition *s, double *w)
     for (size_t j = 0; j < n && most > inertia_ratio * least; j++)
         w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
     for (size_t j = 0; j < n && s->prefers_independent; j++)
-        w[j] *= s->prefers_independent[j] ? preferred_weight : 1;
+        w[j] /= s->prefers_independent[j] ? ct_kappa_largest : 1;
 }
 
 static void take_columns(struct ct_partition *s)
@@ -557,8 +556,6 @@ static bool choose_at_present_state(struct ct_partition *s)
 // present one: this avoids a second choice, which costs more than many steps.
 static bool choose_with_preview(struct ct_partition *s)
 {
-    // Chosen: conditioning now against a choice that lasts.
-    const double nearly_as_good = 0.5;
     if (!choose_at_present_state(s) || ct_partition_is_large(s) || s->rank == (int)s->m->nu
         || s->m->e->solution)
         return true;
@@ -567,8 +564,8 @@ static bool choose_with_preview(struct ct_partition *s)
     if (ct_partition_accelerate(s) != CT_EVAL_OK)
         return false;
     choose_at_later_state(s);
-    return (ct_partition_factor(s) && s->sigma >= nearly_as_good * sigma
-            && nearly_as_good * s->kappa <= kappa)
+    return (ct_partition_factor(s) && s->sigma >= ct_small_pivot * sigma
+            && ct_small_pivot * s->kappa <= kappa)
         || choose_at_present_state(s);
 }
 

@@ -109,11 +109,10 @@ static inline bool ct_is_remainder_below_roundoff(double sigma, double dq, doubl
     return dq * dq <= least && dq * du <= least * (u > 1 ? u : 1);
 }
 
-/// Does Newton's iteration number i (from 0) diverge?
-static inline bool ct_is_diverging(int i, double size, double before)
+/// Does Newton's iteration number i (from 0) end without a solution?
+static inline bool ct_is_diverging(int i, double size)
 {
-    // Chosen: growth that large steps may have before they converge
-    return i == CT_MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
+    return i == CT_MOST_NEWTON || !isfinite(size);
 }
 
 /// Strength of a solver now, and strength and sigma where sigma was last computed by dense
@@ -128,7 +127,7 @@ static inline void ct_strength_range(const struct ct_strength *s, double *low, d
 {
     const double most = s->is_alike ? ct_most_extrapolated_change : ct_most_strength_change;
     const double least = s->at_sigma / most;
-    *low = least > ct_solver_least_strength ? least : ct_solver_least_strength;
+    *low = least > CT_LEAST_STRENGTH ? least : CT_LEAST_STRENGTH;
     *high = s->at_sigma * most;
 }
 

@@ -22,10 +22,6 @@ static const double all_programs_ratio = 4;
 // Default: the time to make it against the time that it saves. Test: solvers
 static const double kkt_cost_ratio = 0.9;
 
-// See solver.h. Default: a loss of three digits against the time of dense matrices.
-// Test: partition_conditioning
-const double ct_solver_least_strength = 1e-3;
-
 static int ascending(const void *a, const void *b)
 {
     return *(const int *)a - *(const int *)b;

@@ -88,10 +88,6 @@ void ct_solver_check(struct ct_solver *f, struct ct_evaluator *m);
 /// Fill the results of close at the evaluator's input. Returns the strength.
 double ct_solver_close(struct ct_solver *f, struct ct_evaluator *m);
 
-/// Below this strength a solver is not used: its result may lose as many digits as the
-/// reciprocal has.
-extern const double ct_solver_least_strength;
-
 /// The programs of a symbolic solver.
 ///
 ///     solved    u' (nu), q' (nq), pivots of B' M B (nfree, positive) and of J_d (npivot); sizes of
