@@ -10,18 +10,11 @@
 #include <math.h>
 #include <string.h>
 
-// Displacement h of the states in the test (8.41) [m, rad, m/s, rad/s]. It is so large that an
-// output also changes where its derivative is zero, as at a dead centre or on the straight line
-// of Watt's linkage. It is reduced if loops cannot be closed there.
-// Chosen: outputs with zero derivatives against loops that do not close.
-static const double first_displacement = 0x1p-4, displacement_reduction = 0.25;
-// Derived: the last displacement is 2^-4 2^-24 = 2^-28, about the root of the unit round-off.
-enum { TRIES = 13 };
-// An output counts as constrained only if errors of states change it by less than this fraction
-// of its tolerance. Chosen: an error that is negligible.
-static const double negligible_part = 0.25;
-// Chosen: calls without a test, their time against an output that is no longer constrained.
-enum { MOST_BETWEEN = 7 };
+// Displacement h of the states in the test (8.41) [m, rad, m/s, rad/s]. Derived: an output that
+// changes by c h^5, as at a dead centre (h^2) or on the straight line of Watt's linkage, exceeds
+// the first bound of (8.41), 1e6 eps, if c > 1e6 eps/h^5 = 2e-4. The displacement is squared, to
+// 2^-8 and 2^-16, if loops cannot be closed there.
+static const double first_displacement = 0x1p-4;
 
 struct ct_constrained_output {
     struct ct_controlled_outputs *outputs;
@@ -82,7 +75,6 @@ void ct_constrained_output_clear(const struct ct_constrained_output *p,
     const unsigned others
         = 1u << CT_SYM_SWITCH
         | (violates_velocity_constraints ? 1u << CT_SYM_U : 0); // not covered by the test
-    r->skip = r->between = 0;
     for (size_t i = 0; i < r->n; i++) {
         r->is_found[i] = false;
         r->is_settled[i] = !p || p->kinds[i] & others;
@@ -110,8 +102,8 @@ static double displace_along_constraints(struct ct_constrained_output *p, double
 {
     struct ct_partition *s = p->outputs->s;
     const size_t nfree = s->m->nu - (size_t)s->rank;
-    double distance = first_displacement;
-    for (int i = 0; i < TRIES; i++, distance *= displacement_reduction) {
+    for (double distance = first_displacement; distance > CT_HALF_DIGITS;
+         distance *= distance) {
         move_states(p, s->independent, nfree, distance);
         if (ct_partition_close_loops(s, t, p->y))
             return distance;
@@ -141,7 +133,7 @@ static bool is_constrained(double at, double along, double across, double distan
     const double change = fabs(along - at),
                  roundoff = DBL_EPSILON * fabs(across - at) / distance;
     return change <= ct_output_error_least_size * roundoff
-        && change <= negligible_part * distance * (fabs(at) + small);
+        && change <= CT_NEGLIGIBLE_RATIO * distance * (fabs(at) + small);
 }
 
 static void test_outputs(struct ct_constrained_output *p,
@@ -150,10 +142,8 @@ static void test_outputs(struct ct_constrained_output *p,
 {
     const size_t nstate = p->ny - 1;
     const double distance = evaluate_both(p, t, y), size = ct_vector_largest(p->closed, nstate);
-    bool any = false;
     if (!(distance > 0)) {
         memset(r->is_found, 0, r->n * sizeof *r->is_found);
-        r->between = MOST_BETWEEN;
         return;
     }
     move_states(p, p->all, p->outputs->s->m->nu, distance);
@@ -163,23 +153,18 @@ static void test_outputs(struct ct_constrained_output *p,
                       && is_constrained(p->at[i], p->along[i], across[i],
                                         distance / ct_larger(1, size + small), small);
         r->is_settled[i] = !r->is_found[i];
-        any |= r->is_found[i];
     }
-    r->between = any ? 2 * r->between + 1 : 0;
-    r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
 }
 
 bool ct_constrained_output_find(struct ct_constrained_output *p,
                                 struct ct_constrained_output_record *r, double t,
                                 const double *y, const struct ct_tolerance *tolerance)
 {
-    if (!p || !(tolerance->rtol > 0 && tolerance->atol > 0) || p->outputs->s->is_crossing
-        || r->skip-- > 0)
+    if (!p || !(tolerance->rtol > 0 && tolerance->atol > 0) || p->outputs->s->is_crossing)
         return false;
     test_outputs(p, r, t, y, tolerance->atol / tolerance->rtol);
     if (p->outputs->kind == CT_OUTPUTS_OF_SOLUTIONS)
         ct_controlled_outputs_at(p->outputs, t,
                                  y); // restore the solution at y
-    r->skip = r->between;
     return true;
 }

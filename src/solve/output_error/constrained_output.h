@@ -22,8 +22,6 @@ struct ct_constrained_output_record {
     size_t n;
     bool *is_found;   // (n) determined by the constraints at the last test
     bool *is_settled; // (n) not constrained, and not tested again
-    int skip;         // calls left without a test
-    int between;      // such calls planned at the last test
 };
 
 struct ct_constrained_output;
@@ -40,8 +38,8 @@ struct ct_constrained_output_record ct_constrained_output_record(struct ct_arena
 void ct_constrained_output_clear(const struct ct_constrained_output *p,
                                  struct ct_constrained_output_record *r,
                                  bool violates_velocity_constraints);
-/// Test which outputs the constraints determine at y (ny). While some are determined, only every
-/// second, fourth, then eighth call tests. Outputs that are not determined are not tested again.
+/// Test which outputs the constraints determine at y (ny). Outputs that are not determined are not
+/// tested again.
 /// Nothing is found if the loops at y' cannot be closed. True: outputs were evaluated at another
 /// state.
 bool ct_constrained_output_find(struct ct_constrained_output *p,

@@ -14,6 +14,10 @@ enum ct_output_kind { CT_OUTPUTS_OF_STATES, CT_OUTPUTS_OF_SOLUTIONS, CT_OUTPUT_K
 /// Definition: of what docs/accuracy.md promises.
 #define CT_PROMISED_ERROR 10
 
+/// The error of an output does not matter if, in tolerances, it is at most this part of that of the
+/// states. Default: time of estimates and tests against errors of outputs. Test: output_error
+#define CT_NEGLIGIBLE_RATIO 0.25
+
 /// An output need not be more accurate than this many round-off errors. Derived: the difference
 /// of two values, which its error is, has the round-off of both.
 #define CT_FEWEST_ROUNDOFF_ERRORS 2

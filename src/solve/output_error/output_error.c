@@ -8,10 +8,9 @@
 #include <string.h>
 
 // The ratio is the error of outputs over the error of states, both in their tolerances. At a ratio
-// of at most `negligible_ratio` the error of outputs is not estimated in the next STEPS_BETWEEN
+// of at most CT_NEGLIGIBLE_RATIO the error of outputs is not estimated in the next STEPS_BETWEEN
 // steps.
 // Default: time of estimates against errors in between. Test: output_error
-static const double negligible_ratio = 0.25;
 enum { STEPS_BETWEEN = 7 };
 // If the ratio changes by at most this fraction between two estimates, it is used for twice as
 // many steps as before, up to MOST_BETWEEN. For outputs of accelerations an estimate costs two
@@ -20,7 +19,7 @@ enum { STEPS_BETWEEN = 7 };
 // Test: output_error
 static const double steady_change[CT_OUTPUT_KINDS] = {0.02, 0.5};
 enum { MOST_BETWEEN = 15 }; // Default: as above. Test: output_error
-// Steps without an estimate after one with an error of outputs of at most `negligible_ratio` of
+// Steps without an estimate after one with an error of outputs of at most CT_NEGLIGIBLE_RATIO of
 // the tolerance.
 static const int fewest_between[CT_OUTPUT_KINDS] = {0, 3};
 // Estimates without a new measurement of round-off, after one in which it did not matter. An error
@@ -181,7 +180,7 @@ bool ct_output_error_is_due(struct ct_output_error_record *r)
 
 double ct_output_error_extrapolated(const struct ct_output_error_record *r, double states)
 {
-    return r->ratio > negligible_ratio ? r->ratio * states : 0;
+    return r->ratio > CT_NEGLIGIBLE_RATIO ? r->ratio * states : 0;
 }
 
 // After an estimate: plan the number of steps that use the ratio of both errors.
@@ -190,12 +189,12 @@ static void plan_checks(struct ct_output_error_record *r, double error, double s
     const double before = r->ratio, ratio = states >= least_state_error ? error / states : 0;
     const bool is_steady = fabs(ratio - before) <= steady_change[r->kind] * before;
     r->ratio = ratio;
-    if (states >= least_state_error && ratio <= negligible_ratio)
+    if (states >= least_state_error && ratio <= CT_NEGLIGIBLE_RATIO)
         r->between = STEPS_BETWEEN;
     else
-        r->between = is_steady && ratio > 0    ? 2 * r->between + 1
-                   : error <= negligible_ratio ? fewest_between[r->kind]
-                                               : 0;
+        r->between = is_steady && ratio > 0       ? 2 * r->between + 1
+                   : error <= CT_NEGLIGIBLE_RATIO ? fewest_between[r->kind]
+                                                  : 0;
     r->between = r->between < MOST_BETWEEN ? r->between : MOST_BETWEEN;
     r->skip = r->between;
 }
@@ -242,7 +241,7 @@ bool ct_output_error_limits_step(const struct ct_output_error_record *r, const d
                                  const double *off, const struct ct_tolerance *tolerance,
                                  double states)
 {
-    const double least = negligible_ratio * ct_smaller(states, 1);
+    const double least = CT_NEGLIGIBLE_RATIO * ct_smaller(states, 1);
     bool any = false;
     for (size_t i = 0; i < r->n; i++) {
         const double size = ct_larger(fabs(at[i]), r->largest[i]);

@@ -8,13 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-// Calls without a test after one that found no sensitive output. Chosen: time against late
-// detection.
-enum { CALLS_BETWEEN = 7 };
-// Sensitivities change slowly. Those of accelerations are used at this number of further
-// states.
-// Chosen: as above.
-static const int states_between[CT_OUTPUT_KINDS] = {0, 7};
+// Sensitivities change slowly. Those of accelerations are used at this number of further states.
+// Default: two evaluations for each of them against late detection. Test: output_sensitivity
+enum { STATES_BETWEEN = 7 };
 
 struct ct_output_sensitivity {
     struct ct_controlled_outputs *outputs;
@@ -28,8 +24,8 @@ struct ct_output_sensitivity {
     bool *is_sensitive; // (n)
     double *y;          // (ny) workspace
     double t_at, *y_at; // time and state of `at`, (ny)
-    int skip;           // calls left without a test
     int between;        // states left at which the last sensitivities are used
+    bool has_sensitive; // at the last test
 };
 
 struct ct_output_sensitivity *
@@ -61,8 +57,8 @@ void ct_output_sensitivity_start(struct ct_output_sensitivity *p)
 {
     memset(p->largest, 0, p->n * sizeof *p->largest);
     memset(p->is_sensitive, 0, p->n * sizeof *p->is_sensitive);
-    p->skip = p->between = 0;
     p->t_at = NAN;
+    p->between = 0;
 }
 
 bool ct_output_sensitivity_is_sensitive(const struct ct_output_sensitivity *p, size_t i)
@@ -95,7 +91,7 @@ static void evaluate(struct ct_output_sensitivity *p, double t, const double *y,
     ct_evaluator_copy(p->y_at, y, p->ny);
     if (p->between-- > 0)
         return;
-    p->between = states_between[p->outputs->kind];
+    p->between = is_solved ? STATES_BETWEEN : 0;
     find_sensitivity(p, t, y, 0, p->sensitivity);
     if (is_solved && tolerance->rtol > 0)
         find_sensitivity(p, t, y, tolerance->atol / tolerance->rtol, p->scaled_sensitivity);
@@ -170,14 +166,15 @@ double ct_output_sensitivity_error(struct ct_output_sensitivity *p, double t, co
 {
     double sum = 0;
     size_t n = 0;
-    if (p->skip-- > 0)
-        return 0;
-    p->skip = 0;
     update_largest(p, largest);
-    if (!find_sensitive(p, t, y, p->scaled_sensitivity, tolerance)) {
-        p->skip = CALLS_BETWEEN;
+    if (p->between > 0
+        && !p->has_sensitive) { // sensitivities are the same, and sizes only grow
+        p->between--;
         return 0;
     }
+    p->has_sensitive = find_sensitive(p, t, y, p->scaled_sensitivity, tolerance);
+    if (!p->has_sensitive)
+        return 0;
     for (size_t i = 0; i < p->ny; i++)
         p->y[i] = y[i] + e[i];
     const double *off = ct_controlled_outputs_at(p->outputs, t, p->y);

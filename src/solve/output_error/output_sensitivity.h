@@ -25,8 +25,8 @@ ct_output_sensitivity_create(struct ct_arena *a, struct ct_controlled_outputs *o
 void ct_output_sensitivity_start(struct ct_output_sensitivity *p);
 /// Root mean square of the errors of the sensitive outputs at y (ny) for errors e (ny) of the
 /// states. 1 is the tolerance, relative to the largest value so far or `largest` (n), and not less
-/// than two round-off errors of states allow. 0 if no output is sensitive; then only every eighth
-/// call tests.
+/// than two round-off errors of states allow. 0 if no output is sensitive. Sensitivities of outputs
+/// of accelerations are found at every eighth state.
 double ct_output_sensitivity_error(struct ct_output_sensitivity *p, double t, const double *y,
                                    const double *e, const double *largest,
                                    const struct ct_tolerance *tolerance);
