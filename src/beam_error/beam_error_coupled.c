@@ -387,10 +387,9 @@ static double relative_change(const struct ct_beam_error_coupled *p, int n,
 static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal *s, int model,
                  double t, double h)
 {
-    // Chosen: converged; far below the errors of interest.
-    const double converged = 1e-5;
-    // Default: accepted without convergence; a tenth of their limit. Test: beam_error_coupled
-    const double allowed = 1e-3;
+    // Default: a tenth of the error from which a linear beam is not valid, against further passes.
+    // Test: beam_error_coupled
+    const double converged = 1e-3;
     const struct ct_beam_error_coupled *p = r->p;
     double *q = r->q + model * p->nq, *u = r->u + model * p->nu, q_mid[2 * MOST],
            left = INFINITY;
@@ -434,7 +433,7 @@ static bool step(struct ct_beam_error_coupled_run *r, struct ct_beam_error_modal
         x[i][0] += h * m.x[i][1];
         x[i][1] += h * m.dv[i];
     }
-    return left <= allowed;
+    return left <= converged;
 }
 
 // How far the base yields to the shapes: sum of p' B M^-1 B' p, which is near 1 for a light base.
