@@ -255,6 +255,17 @@ static double cost_along(struct ct_build *b, const struct ct_directional *along,
          * (generation_cost + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
 }
 
+// Entries of the longest row of a list sorted by row.
+static double longest_row(const struct ct_slope *s, size_t n)
+{
+    size_t most = 0;
+    for (size_t first = 0, i = 0; i < n; i++) {
+        first = s[i].row == s[first].row ? first : i;
+        most = i - first >= most ? i - first + 1 : most;
+    }
+    return (double)most;
+}
+
 // Derives along directions if that is requested or cheaper than entry by entry. True: done.
 static bool try_along(struct ct_build *b, struct ct_residual *f, const struct slopes *s,
                       enum ct_slope_form form)
@@ -266,9 +277,12 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n,
                              (uint32_t)ndirection, &all, &operations);
     const double entries = operations * (generation_cost + expected_evaluations);
-    // the cost of a single colour is a bound of the gain
+    // the derivative along a direction takes no fewer operations than r, for as many colours as
+    // the longest row has entries
     const struct ct_tape_counts c = ct_ex_count(scratch, b->x, s->r, s->nu);
-    if (form == CT_SLOPES_AUTO && entries < 2 * generation_cost * ct_counted_cost(&c))
+    const double executions = expected_evaluations * CT_LANE_COST * longest_row(all, n);
+    if (form == CT_SLOPES_AUTO
+        && entries < (2 * generation_cost + executions) * ct_counted_cost(&c))
         return false;
     struct ct_directional *along = derive_along(b, s);
     sort_out(b, f, all, n);
