@@ -21,6 +21,7 @@ struct sharing {
     size_t n;
     uint32_t *root; // places (nroot)
     size_t nroot;
+    double *own;          // characters of the operator
     double *size, *times; // length of the text, occurrences in the print
     const char **meaning; // a name by meaning, NULL
     double *saving;       // of chosen nodes, else 0
@@ -78,7 +79,7 @@ static void measure(struct sharing *s)
 {
     for (size_t k = 0; k < s->n; k++) {
         s->times[k] = 0;
-        s->size[k] = own_length(s, s->id[k]);
+        s->size[k] = s->own[k];
         for (int i = noperand(s, k); i-- > 0;)
             s->size[k] += shown_length(s, s->arg[k][i]);
     }
@@ -225,9 +226,10 @@ static void list_nodes(struct sharing *s, const ct_ex *root)
     memcpy(s->id, x->stack, s->n * sizeof *s->id);
     // children have smaller ids, so this is an order for both sweeps
     ct_sort(s->work, s->id, s->n, sizeof *s->id, by_id, NULL);
-    uint32_t *place = CT_NEWN(s->work, uint32_t, x->nnode); // by id
+    ct_ex *place = x->memo; // by id; no further walk starts in this loop
     s->arg = ct_arena_calloc(s->work, s->n + 1, sizeof *s->arg);
     s->root = CT_NEWN(s->work, uint32_t, s->nroot + 1);
+    s->own = CT_NEWN(s->work, double, s->n + 1);
     s->size = CT_NEWN(s->work, double, s->n + 1);
     s->times = CT_NEWN(s->work, double, s->n + 1);
     s->saving = CT_NEWN(s->work, double, s->n + 1);
@@ -235,13 +237,16 @@ static void list_nodes(struct sharing *s, const ct_ex *root)
     for (size_t k = 0; k < s->n; k++) {
         const struct ct_exnode *n = &x->node[s->id[k]];
         const uint32_t arg[3] = {n->a, n->b, n->c};
-        place[s->id[k]] = (uint32_t)k;
+        place[s->id[k]].id = (uint32_t)k;
         for (int i = 0; i < noperand(s, k); i++)
-            s->arg[k][i] = place[arg[i]];
-        s->meaning[k] = name(s->o.data, x, (ct_ex){s->id[k]});
+            s->arg[k][i] = place[arg[i]].id;
     }
     for (size_t k = 0; k < s->nroot; k++)
-        s->root[k] = place[root[k].id];
+        s->root[k] = place[root[k].id].id;
+    for (size_t k = 0; k < s->n; k++) {
+        s->own[k] = own_length(s, s->id[k]);
+        s->meaning[k] = name(s->o.data, x, (ct_ex){s->id[k]});
+    }
 }
 
 // Name all labelled nodes with two users. This keeps the lengths finite: the unfolded text of a
