@@ -457,7 +457,9 @@ static void accelerate(struct ct_linear *l, double *w, const double *v)
     const int f = l->nfree;
     double *M = l->Mr, *scale = l->d, *value = l->r;
     memset(M, 0, (size_t)f * (size_t)f * sizeof *M);
-    add_reduced(l, M, l->m->M, l->Z);
+    memset(l->M, 0, (size_t)l->nu * (size_t)l->nu * sizeof *l->M);
+    ct_evaluator_fill_mass(l->m, l->M, (size_t)l->nu);
+    add_reduced(l, M, l->M, l->Z);
     for (int i = 0; i < f; i++)
         scale[i] = M[i + f * i] > 0 ? 1 / sqrt(M[i + f * i]) : 1;
     for (int j = 0; j < f; j++)

@@ -78,8 +78,7 @@ static void find_motion(struct ct_data *d)
         return;
     ct_data_enter(d);
     ct_evaluator_dynamics(m);
-    for (size_t k = 0; k < d->nu; k++) // M is symmetric
-        memcpy(d->M + d->nu * k, m->M + m->nu * k, d->nu * sizeof *d->M);
+    ct_evaluator_fill_mass(m, d->M, d->nu);
     for (size_t i = 0; i < d->nrow; i++)
         for (size_t k = 0; k < d->nu; k++)
             d->J[i * d->nu + k] = m->J[i + d->nrow * k];

@@ -725,11 +725,11 @@ static void the_pendulum_beam_has_the_equations_of_its_source(void **state)
             v.y[k] = 2 * chance();
         variant_renew(&v, 0);
         source_equations(v.y, v.y + 7, M, Q);
+        const double *got = ct_partition_mass(v.s);
         for (int i = 0; i < 7; i++) {
             ok &= agree(s.name, name[i], v.m->Q[i], Q[i], 1 + fabs(Q[i]), 1e-13);
             for (int j = 0; j < 7; j++)
-                ok &= agree(s.name, name[i], v.m->M[i + 7 * j], M[i][j], 1 + fabs(M[i][j]),
-                            1e-13);
+                ok &= agree(s.name, name[i], got[i + 7 * j], M[i][j], 1 + fabs(M[i][j]), 1e-13);
         }
     }
     variant_close(&v);

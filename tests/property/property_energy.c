@@ -21,6 +21,7 @@ static bool mass_matrix_agrees(struct system *s, struct variant *v)
     const size_t n = m->nu;
     double *u = CT_NEWN(v->arena, double, n + 1), *own = CT_NEWN(v->arena, double, n + 1);
     double *kept = CT_NEWN(v->arena, double, n + 1), largest = 0;
+    const double *M = ct_partition_mass(v->s);
     bool ok = true;
     memcpy(kept, m->input + m->at_u, n * sizeof *kept);
     const double rest = kinetic(v, u);
@@ -28,7 +29,7 @@ static bool mass_matrix_agrees(struct system *s, struct variant *v)
         u[k] = 1;
         own[k] = kinetic(v, u);
         u[k] = 0;
-        largest = fmax(largest, fabs(m->M[k + n * k]));
+        largest = fmax(largest, fabs(M[k + n * k]));
     }
     for (size_t k = 0; k < n; k++)
         for (size_t l = 0; l <= k; l++) {
@@ -38,7 +39,7 @@ static bool mass_matrix_agrees(struct system *s, struct variant *v)
             u[k] = u[l] = 0;
             ok &= agree(
                 s->name, text_of(v->arena, "M of %s and %s", v->e.u[k].name, v->e.u[l].name),
-                m->M[k + n * l], both - own[k] - own[l] + rest, largest + fabs(rest), exact);
+                M[k + n * l], both - own[k] - own[l] + rest, largest + fabs(rest), exact);
         }
     memcpy(m->input + m->at_u, kept, n * sizeof *kept);
     return ok;
@@ -51,13 +52,14 @@ static bool mass_is_positive(struct system *s, struct variant *v)
     const size_t n = m->nu, r = m->nrow;
     double *A = CT_NEWN(v->arena, double, n *n + 1), *w = CT_NEWN(v->arena, double, n + 1);
     double *work = CT_NEWN(v->arena, double, ct_symmetric_eigenvalues_work((int)n + 1));
+    const double *M = ct_partition_mass(v->s);
     double scale = 0;
     for (size_t k = 0; k < n; k++)
-        scale = fmax(scale, m->M[k + n * k]);
+        scale = fmax(scale, M[k + n * k]);
     // M + scale J'J is positive definite iff M is so on null(J), M being at least semidefinite
     for (size_t k = 0; k < n; k++)
         for (size_t l = 0; l < n; l++) {
-            A[k + n * l] = m->M[k + n * l] / scale;
+            A[k + n * l] = M[k + n * l] / scale;
             for (size_t i = 0; i < r; i++)
                 A[k + n * l] += m->J[i + r * k] * m->J[i + r * l];
         }
@@ -67,7 +69,7 @@ static bool mass_is_positive(struct system *s, struct variant *v)
         print_error("%s: smallest eigenvalue %g\n", s->name, w[0]);
         return false;
     }
-    memcpy(A, m->M, n * n * sizeof *A);
+    memcpy(A, M, n * n * sizeof *A);
     if (n)
         ct_symmetric_eigenvalues(w, A, (int)n, (int)n, work);
     return !n || w[0] > -1e-12 * scale;
@@ -89,11 +91,12 @@ static bool power_agrees(struct system *s, struct variant *v, double t)
         power = m->power.out[0];
     }
     memcpy(dy, v->s->a, m->nu * sizeof *dy);
+    const double *M = ct_partition_mass(v->s);
     double most = 0, flow = 0;
     for (size_t k = 0; k < m->nu; k++) {
         double inertia = 0;
         for (size_t l = 0; l < m->nu; l++)
-            inertia += m->M[k + m->nu * l] * dy[l];
+            inertia += M[k + m->nu * l] * dy[l];
         flow += fabs(inertia * v->y[m->nq + k]);
         most = fmax(most, fabs(dy[k]));
     }

@@ -134,17 +134,18 @@ static double check_residual(struct job *j, const struct ct_dae *dae, const stru
                              const double *r, int m)
 {
     struct ct_evaluator *machine = ct_run_evaluator(j->run);
-    const struct ct_partition *s = ct_run_partition(j->run);
+    struct ct_partition *s = ct_run_partition(j->run);
     const size_t nu = machine->nu;
     memcpy(machine->input + machine->at_q, p->q, machine->nq * sizeof *p->q);
     memcpy(machine->input + machine->at_u, p->u, nu * sizeof *p->u);
     ct_evaluator_dynamics(machine);
+    const double *M = ct_partition_mass(s);
     double worst = 0, size = 1e-300;
     for (size_t i = 0; i < nu; i++) {
         double want = -machine->Q[i];
         size = fmax(size, fabs(want));
         for (size_t k = 0; k < nu; k++) {
-            const double term = machine->M[i + nu * k] * p->a[k];
+            const double term = M[i + nu * k] * p->a[k];
             want += term;
             size = fmax(size, fabs(term));
         }

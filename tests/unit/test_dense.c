@@ -1,5 +1,6 @@
 // Dense kernels against their definitions: residuals, orthogonality, ranks.
 #include "numeric/dense.h"
+#include "numeric/envelope.h"
 #include "numeric/inverse.h"
 
 #include <complex.h>
@@ -128,6 +129,39 @@ static void cholesky_refuses_indefinite_and_nonfinite(void **unused)
     assert_false(ct_cholesky(indefinite, 2, 2));
     double nonfinite[] = {1, 0, 0, NAN};
     assert_false(ct_cholesky(nonfinite, 2, 2));
+}
+
+// Each row starts anywhere: the factor equals that of the full matrix, entry by entry.
+static void cholesky_stays_in_the_envelope(void **unused)
+{
+    (void)unused;
+    struct ct_arena *a = ct_arena_create();
+    for (int n = 0; n <= MOST; n++) {
+        double A[LDA * MOST], full[LDA * MOST];
+        int first[MOST + 1];
+        fill_definite(A, full, n);
+        for (int i = 0; i < n; i++)
+            first[i] = (int)(fabs(uniform()) * (i + 1)) % (i + 1);
+        struct ct_envelope e = ct_envelope_create(a, first, n);
+        for (int j = 0; j < n; j++)
+            for (int i = j; i < n; i++)
+                if (j < first[i])
+                    A[i + LDA * j] = 0;
+                else
+                    *ct_envelope_at(&e, i, j) = A[i + LDA * j] += i == j ? n * n : 0;
+        assert_true(ct_cholesky(A, n, LDA));
+        assert_int_equal(ct_envelope_cholesky(&e), n);
+        for (int j = 0; j < n; j++)
+            for (int i = j; i < n; i++)
+                assert_true((j < first[i] ? 0 : *ct_envelope_at(&e, i, j)) == A[i + LDA * j]);
+    }
+    const double pivot[] = {4, 9, -1, 1};
+    struct ct_envelope e = ct_envelope_create(a, (const int[]){0, 1, 2, 3}, 4);
+    for (int i = 0; i < 4; i++)
+        *ct_envelope_at(&e, i, i) = pivot[i];
+    assert_int_equal(ct_envelope_cholesky(&e), 2);
+    assert_true(*ct_envelope_at(&e, 1, 1) == 3 && *ct_envelope_at(&e, 2, 2) == -1);
+    ct_arena_destroy(a);
 }
 
 static void lu_solves_both_ways(void **unused)
@@ -400,6 +434,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cholesky_solves_definite_matrices),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nonfinite),
+        cmocka_unit_test(cholesky_stays_in_the_envelope),
         cmocka_unit_test(lu_solves_both_ways),
         cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(inverses_solve),

@@ -31,6 +31,7 @@ struct ct_partition *ct_partition_create(struct ct_arena *arena, struct ct_ctx *
     s->unit = CT_NEWN(arena, double, r + 1);
     s->a = CT_NEWN(arena, double, n + 1);
     s->lam = CT_NEWN(arena, double, r + 1);
+    s->M = CT_NEWN(arena, double, (m->e->has_dynamics ? n * n : 0) + 1);
     s->Jd = CT_NEWN(arena, double, r *r + 1);
     s->B = CT_NEWN(arena, double, r *kk + 1);
     s->S = CT_NEWN(arena, double, kk *kk);
@@ -97,6 +98,12 @@ bool ct_partition_factor_only(struct ct_partition *s)
     s->sigma = sigma;
     s->kappa = kappa;
     return is_factored;
+}
+
+const double *ct_partition_mass(struct ct_partition *s)
+{
+    ct_evaluator_fill_mass(s->m, s->M, s->m->nu);
+    return s->M;
 }
 
 void ct_partition_reduce_mass(struct ct_partition *s, const double *M)
@@ -167,6 +174,7 @@ static enum ct_eval reduce_and_expand(struct ct_partition *s, const double *M, d
 enum ct_eval ct_partition_accelerate(struct ct_partition *s)
 {
     const int n = (int)s->m->nu, r = s->rank;
+    const double *M = ct_partition_mass(s);
     if (r && !ct_partition_factor(s))
         return CT_EVAL_RETRY;
     for (int k = 0; k < r; k++)
@@ -176,19 +184,16 @@ enum ct_eval ct_partition_accelerate(struct ct_partition *s)
     for (int i = 0; i < n; i++) { // Q - M c
         s->r[i] = s->m->Q[i];
         for (int k = 0; k < r; k++)
-            s->r[i] -= s->m->M[i + n * s->dependent[k]] * s->c[k];
+            s->r[i] -= M[i + n * s->dependent[k]] * s->c[k];
     }
-    return reduce_and_expand(s, s->m->M, s->a);
+    return reduce_and_expand(s, M, s->a);
 }
 
 double ct_partition_cancellation(const struct ct_partition *s)
 {
-    const int n = (int)s->m->nu, r = s->rank, i = s->independent[0];
-    double size = s->m->M[i + n * i];
-    for (int k = 0; k < r; k++) {
-        const int d = s->dependent[k];
-        size += s->B[k] * s->B[k] * s->m->M[d + n * d];
-    }
+    double size = ct_evaluator_inertia(s->m, (size_t)s->independent[0]);
+    for (int k = 0; k < s->rank; k++)
+        size += s->B[k] * s->B[k] * ct_evaluator_inertia(s->m, (size_t)s->dependent[k]);
     return s->S[0] * s->S[0] / size; // S is the Cholesky factor
 }
 
@@ -198,6 +203,7 @@ void ct_partition_multipliers(struct ct_partition *s)
     if (!m || ct_partition_solver_multipliers(s))
         return;
     ct_evaluator_dynamics(s->m);
+    const double *M = ct_partition_mass(s);
     for (int i = 0; i < m; i++)
         for (int j = 0; j < n; j++)
             s->A[j + n * i] = *ct_partition_J(s, i, j);
@@ -205,7 +211,7 @@ void ct_partition_multipliers(struct ct_partition *s)
     for (int i = 0; i < n; i++) {
         s->d[i] = -s->m->Q[i];
         for (int j = 0; j < n; j++)
-            s->d[i] += s->m->M[i + n * j] * s->a[j];
+            s->d[i] += M[i + n * j] * s->a[j];
     }
     ct_lstsq_of_rank(s->d, s->A, n, m, n, ct_rank_tolerance, s->rank, s->iwork, s->work);
     memcpy(s->lam, s->d, (size_t)m * sizeof *s->lam);
@@ -218,7 +224,7 @@ void ct_partition_retained_multipliers(struct ct_partition *s, double *lam)
         const int d = s->dependent[i];
         lam[i] = -s->m->Q[d];
         for (int j = 0; j < n; j++)
-            lam[i] += s->m->M[d + n * j] * s->a[j];
+            lam[i] += s->M[d + n * j] * s->a[j];
     }
     if (r)
         ct_lu_solve(lam, s->Jd, s->pivot, r, r, 1, r, true);

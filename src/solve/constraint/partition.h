@@ -76,7 +76,7 @@ struct ct_partition {
     struct ct_solve_counts solves;
     double *a, *lam; // results: u' (nu), lam (nrow)
     // workspace
-    double *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before;
+    double *M, *Jd, *B, *c, *r, *S, *MB, *A, *b, *work, *d, *q, *before;
     int *pivot, *iwork, *column;
 };
 
@@ -100,6 +100,8 @@ bool ct_partition_choose(struct ct_partition *s);
 enum ct_eval ct_partition_solve(struct ct_partition *s);
 /// The same at t, y; u' goes into the evaluator's input too. CT_EVAL_RETRY if it is not finite.
 enum ct_eval ct_partition_accelerate_at(struct ct_partition *s, double t, const double *y);
+/// M (nu x nu) of the last ct_evaluator_dynamics.
+const double *ct_partition_mass(struct ct_partition *s);
 /// u' into s->a from M, Q, J, gam of the last ct_evaluator_dynamics, by dense matrices.
 enum ct_eval ct_partition_accelerate(struct ct_partition *s);
 /// Pivots of B' M B when the speeds in `follows` (nu) are eliminated first: inertia (nu, out)

@@ -2,6 +2,7 @@
 #include "solve/constraint/partition_internal.h"
 
 #include "numeric/dense.h"
+#include "numeric/envelope.h"
 #include "numeric/roundoff.h"
 
 #include <float.h>
@@ -31,13 +32,13 @@ static void find_column_weights(struct ct_partition *s, double *w)
     double least = INFINITY, most = 0;
     for (size_t j = 0; j < n; j++) {
         const bool is_light = s->m->e->u[j].beam > 0 || ct_speed_is_state(s->m->e, j);
-        const double inertia = is_light ? 0 : s->m->M[j + n * j];
+        const double inertia = is_light ? 0 : ct_evaluator_inertia(s->m, j);
         least = inertia > 0 ? fmin(least, inertia) : least;
         most = fmax(most, inertia);
         w[j] = 1;
     }
     for (size_t j = 0; j < n && most > inertia_ratio * least; j++)
-        w[j] = 1 / sqrt(fmax(s->m->M[j + n * j], least));
+        w[j] = 1 / sqrt(fmax(ct_evaluator_inertia(s->m, j), least));
     for (size_t j = 0; j < n && s->prefers_independent; j++)
         w[j] /= s->prefers_independent[j] ? ct_kappa_largest : 1;
 }
@@ -83,10 +84,9 @@ static bool choose_sparse_columns(struct ct_partition *s)
 // The speed with the smallest diagonal entry of M; the first one if the equations have no M.
 static size_t lightest(const struct ct_partition *s)
 {
-    const size_t n = s->m->nu;
     size_t least = 0;
-    for (size_t i = 1; i < n && s->m->e->has_dynamics; i++)
-        if (s->m->M[i + n * i] < s->m->M[least + n * least])
+    for (size_t i = 1; i < s->m->nu; i++)
+        if (ct_evaluator_inertia(s->m, i) < ct_evaluator_inertia(s->m, least))
             least = i;
     return least;
 }
@@ -236,46 +236,68 @@ static const double roundoff_pivot = 16 * DBL_EPSILON;
 // message names it, as the beam whose sections have no inertia is the cause.
 static size_t equivalent_elastic_speed(const struct ct_partition *s, size_t k)
 {
-    const size_t n = s->m->nu;
-    const double *M = s->m->M;
-    if (!s->m->e->has_dynamics)
+    const struct ct_equations *e = s->m->e;
+    const double own = ct_evaluator_inertia(s->m, k);
+    size_t found = k;
+    if (!e->has_dynamics)
         return k;
     ct_evaluator_dynamics(s->m);
-    for (size_t i = 0; i < n && !s->m->e->u[k].beam; i++) {
-        const double both = M[i + n * k] * M[i + n * k], each = M[i + n * i] * M[k + n * k];
+    for (size_t l = 0; l < e->nM && !e->u[k].beam; l++) {
+        const size_t row = (size_t)e->M[l].row, column = (size_t)e->M[l].column;
+        const size_t i = row == k ? column : row;
+        const double both = s->m->M[l] * s->m->M[l], each = ct_evaluator_inertia(s->m, i) * own;
         // the cosine of both motions is one to half of its digits
-        if (s->m->e->u[i].beam > 0 && each > 0 && both > (1 - CT_HALF_DIGITS) * each)
-            return i;
+        if ((row == k || column == k) && e->u[i].beam > 0 && each > 0
+            && both > (1 - CT_HALF_DIGITS) * each && (found == k || i < found))
+            found = i;
     }
-    return k;
+    return found;
+}
+
+// M of the n speeds in `speed`, factored in that order up to the first pivot that is not positive:
+// the number of pivots before it. The factor lives in scratch.
+static int factor_in_order(struct ct_partition *s, struct ct_arena *scratch, const int *speed,
+                           int n, struct ct_envelope *L)
+{
+    const struct ct_equations *e = s->m->e;
+    int *place = CT_NEWN(scratch, int, e->nu + 1), *first = CT_NEWN(scratch, int, n + 1);
+    for (size_t k = 0; k < e->nu; k++)
+        place[k] = -1;
+    for (int i = 0; i < n; i++)
+        place[speed[i]] = first[i] = i;
+    for (int again = 0; again < 2; again++) {
+        for (size_t l = 0; l < e->nM; l++) {
+            const int r = place[e->M[l].row], c = place[e->M[l].column];
+            const int i = r > c ? r : c, j = r > c ? c : r;
+            if (j >= 0 && again)
+                *ct_envelope_at(L, i, j) = s->m->M[l];
+            else if (j >= 0 && j < first[i])
+                first[i] = j;
+        }
+        if (!again)
+            *L = ct_envelope_create(scratch, first, n);
+    }
+    return ct_envelope_cholesky(L);
 }
 
 // Is the motion of speed k, of a joint or body, a sum of elastic motions of beams? Then only
 // round-off of M_kk remains after elimination of the elastic coordinates.
 static bool is_elastic_motion(struct ct_partition *s, size_t k)
 {
-    const size_t n = s->m->nu;
-    const double *M = s->m->M;
     const struct ct_u *u = s->m->e->u;
-    int ne = 0;
-    if (u[k].beam > 0)
-        return false;
-    for (size_t i = 0; i < n; i++)
+    int ne = 0, *speed = s->column;
+    for (size_t i = s->m->nu; i-- > 0;)
         if (u[i].beam > 0)
-            s->iwork[ne++] = (int)i;
-    for (int j = 0; j < ne; j++) {
-        const size_t row = (size_t)s->iwork[j];
-        for (int i = j; i < ne; i++)
-            s->S[i + ne * j] = M[(size_t)s->iwork[i] + n * row];
-        s->b[j] = s->r[j] = M[row > k ? row + n * k : k + n * row];
-    }
-    if (!ne || !ct_cholesky(s->S, ne, ne))
+            speed[ne++] = (int)i;
+    speed[ne] = (int)k;
+    if (u[k].beam > 0 || !ne)
         return false;
-    ct_cholesky_solve(s->r, s->S, ne, ne, 1, ne);
-    double inertia = M[k + n * k];
-    for (int i = 0; i < ne; i++)
-        inertia -= s->b[i] * s->r[i];
-    return inertia <= roundoff_pivot * M[k + n * k];
+    struct ct_arena *scratch = ct_arena_create_under(s->arena);
+    struct ct_envelope L;
+    const int npivot = factor_in_order(s, scratch, speed, ne + 1, &L);
+    const double last = *ct_envelope_at(&L, ne, ne), pivot = last > 0 ? last * last : 0;
+    ct_arena_destroy(scratch);
+    return npivot >= ne && pivot <= roundoff_pivot * ct_evaluator_inertia(s->m, k);
 }
 
 // ---- motions without inertia --------------------------------------------------------------------
@@ -288,16 +310,17 @@ static void add_motion(const struct ct_partition *s, int j, double x, double *mo
         motion[s->dependent[k]] += fabs(s->B[k + s->rank * j] * x);
 }
 
-// The motion (nu, out) whose inertia is pivot i of B' M B = L L' (f x f). Independent speed i is 1,
-// later ones are at rest, and earlier ones follow from L' x = L_ii e_i. x (f, out)
-static void find_pivot_motion(const struct ct_partition *s, int f, int i, double *x,
-                              double *motion)
+// The motion (nu, out) whose inertia is pivot i of B' M B = L L'. Independent speed i is 1, later
+// ones are at rest, and earlier ones follow from L' x = L_ii e_i. x (i + 1, out)
+static void find_pivot_motion(const struct ct_partition *s, const struct ct_envelope *L, int i,
+                              double *x, double *motion)
 {
+    memset(x, 0, (size_t)i * sizeof *x);
     x[i] = 1;
-    for (int j = i - 1; j >= 0; j--) {
-        x[j] = 0;
-        for (int k = j + 1; k <= i; k++)
-            x[j] -= s->S[k + f * j] * x[k] / s->S[j + f * j];
+    for (int k = i; k >= 0; k--) {
+        x[k] /= k < i ? *ct_envelope_at(L, k, k) : 1;
+        for (int j = L->first[k]; j < k; j++)
+            x[j] -= *ct_envelope_at(L, k, j) * x[k];
     }
     memset(motion, 0, s->m->nu * sizeof *motion);
     for (int j = 0; j <= i; j++)
@@ -308,13 +331,14 @@ static void find_pivot_motion(const struct ct_partition *s, int f, int i, double
 static double sum_of_inertia_terms(const struct ct_partition *s, const double *z,
                                    bool with_beams)
 {
-    const size_t n = s->m->nu;
-    const struct ct_u *u = s->m->e->u;
+    const struct ct_equations *e = s->m->e;
     double sum = 0;
-    for (size_t j = 0; j < n; j++)
-        for (size_t i = j; i < n && z[j] > 0; i++)
-            if (with_beams || !(u[i].beam > 0 || u[j].beam > 0))
-                sum += (i > j ? 2 : 1) * z[i] * z[j] * fabs(s->m->M[i + n * j]);
+    for (size_t i = 0; i < e->nu; i++)
+        for (int k = s->m->mass_row[i]; z[i] > 0 && k < s->m->mass_row[i + 1]; k++) {
+            const size_t j = (size_t)e->M[k].column;
+            if (with_beams || !(e->u[i].beam > 0 || e->u[j].beam > 0))
+                sum += (i > j ? 2 : 1) * z[i] * z[j] * fabs(s->m->M[k]);
+        }
     return sum;
 }
 
@@ -328,7 +352,7 @@ static int largest_section_rotation(const struct ct_partition *s, const double *
     int named = k;
     for (size_t i = 0; i < n && !beam_without_inertia_of(s->m->model, &u[k]); i++)
         if (u[i].beam > 0 && beam_without_inertia_of(s->m->model, &u[i])
-            && !(s->m->M[i + n * i] > 0) && z[i] > most) {
+            && !(ct_evaluator_inertia(s->m, i) > 0) && z[i] > most) {
             most = z[i];
             named = (int)i;
         }
@@ -344,7 +368,7 @@ static int speed_without_inertia(const struct ct_partition *s, const double *z, 
     double most = CT_HALF_DIGITS * sum_of_inertia_terms(s, z, true);
     int named = k;
     for (size_t i = 0; i < n && !beam_without_inertia_of(s->m->model, &u[k]); i++) {
-        const double moved = z[i] * z[i] * s->m->M[i + n * i];
+        const double moved = z[i] * z[i] * ct_evaluator_inertia(s->m, i);
         if (beam_without_inertia_of(s->m->model, &u[i]) && moved > most) {
             most = moved;
             named = (int)i;
@@ -363,24 +387,25 @@ static double rotation_inertia(const struct ct_partition *s, size_t k)
     double most = 0;
     for (size_t i = 0; i < n && u[k].q < 0; i++)
         if (u[i].q < 0 && u[i].joint == u[k].joint && u[i].body == u[k].body)
-            most = fmax(most, s->m->M[i + n * i]);
+            most = fmax(most, ct_evaluator_inertia(s->m, i));
     return most;
 }
 
 // The first independent speed whose pivot of B' M B is round-off of the terms that cancel in
-// it; -1: none. s->S is the Cholesky factor, up to the first pivot that is not positive.
+// it; -1: none. L: the Cholesky factor, up to the first pivot that is not positive.
 // of_beams: only motions in which elastic coordinates contribute at least half of the terms.
-static int roundoff_pivot_speed(struct ct_partition *s, int f, bool of_beams)
+static int roundoff_pivot_speed(struct ct_partition *s, const struct ct_envelope *L,
+                                bool of_beams)
 {
-    double *const x = s->work, *const motion = x + f;
-    for (int i = 0; i < f; i++) {
-        const double root = s->S[i + f * i], pivot = root > 0 ? root * root : 0;
+    double *const x = s->work, *const motion = x + L->n;
+    for (int i = 0; i < L->n; i++) {
+        const double root = *ct_envelope_at(L, i, i), pivot = root > 0 ? root * root : 0;
         memset(motion, 0, s->m->nu * sizeof *motion);
         add_motion(s, i, 1, motion);
         const double turned = rotation_inertia(s, (size_t)s->independent[i]);
         if (pivot > CT_HALF_DIGITS * fmax(sum_of_inertia_terms(s, motion, true), turned))
             continue;
-        find_pivot_motion(s, f, i, x, motion);
+        find_pivot_motion(s, L, i, x, motion);
         const double rigid = sum_of_inertia_terms(s, motion, false),
                      gross = sum_of_inertia_terms(s, motion, true);
         if (pivot <= roundoff_pivot * turned
@@ -397,12 +422,27 @@ static int roundoff_pivot_speed(struct ct_partition *s, int f, bool of_beams)
 // The first speed in the order of s->independent (nu) whose pivot of M is round-off; -1: none.
 static int roundoff_pivot_in_order(struct ct_partition *s, bool of_beams)
 {
-    const int f = (int)s->m->nu, *speed = s->independent;
+    struct ct_arena *scratch = ct_arena_create_under(s->arena);
+    struct ct_envelope L;
+    factor_in_order(s, scratch, s->independent, (int)s->m->nu, &L);
+    const int speed = roundoff_pivot_speed(s, &L, of_beams);
+    ct_arena_destroy(scratch);
+    return speed;
+}
+
+// The same for the Cholesky factor of B' M B in s->S.
+static int roundoff_pivot_of_reduced(struct ct_partition *s)
+{
+    const int f = (int)s->m->nu - s->rank;
+    struct ct_arena *scratch = ct_arena_create_under(s->arena);
+    memset(s->iwork, 0, (size_t)f * sizeof *s->iwork);
+    const struct ct_envelope L = ct_envelope_create(scratch, s->iwork, f);
     for (int j = 0; j < f; j++)
         for (int i = j; i < f; i++)
-            s->S[i + f * j] = s->m->M[speed[i] + f * speed[j]];
-    ct_cholesky(s->S, f, f); // up to the first pivot that is not positive
-    return roundoff_pivot_speed(s, f, of_beams);
+            *ct_envelope_at(&L, i, j) = s->S[i + f * j];
+    const int speed = roundoff_pivot_speed(s, &L, false);
+    ct_arena_destroy(scratch);
+    return speed;
 }
 
 static void reverse(int *list, int n)
@@ -431,8 +471,8 @@ static int roundoff_pivot_of_solution(struct ct_partition *s, const double *pivo
         if (beam_without_inertia_of(s->m->model, &s->m->e->u[i])
             && pivot[i] <= roundoff_pivot * rotation_inertia(s, i))
             return (int)i;
-        is_doubtful |= pivot[i] <= CT_HALF_DIGITS * s->m->M[i + n * i];
-        if (pivot[i] <= roundoff_pivot * s->m->M[i + n * i]
+        is_doubtful |= pivot[i] <= CT_HALF_DIGITS * ct_evaluator_inertia(s->m, i);
+        if (pivot[i] <= roundoff_pivot * ct_evaluator_inertia(s->m, i)
             && !(is_exact && equivalent_elastic_speed(s, i) == i && !is_elastic_motion(s, i)))
             return (int)i;
     }
@@ -475,8 +515,8 @@ static void warn_of_one_point_mass(struct ct_partition *s)
     if (!ct_partition_inertias(s, follows, inertia))
         return;
     for (size_t k = 0; k < n; k++)
-        if (inertia[k] <= part * s->m->M[k + n * k]) {
-            part = inertia[k] / s->m->M[k + n * k];
+        if (inertia[k] <= part * ct_evaluator_inertia(s->m, k)) {
+            part = inertia[k] / ct_evaluator_inertia(s->m, k);
             found = one_point_beam(s, k);
         }
     if (found)
@@ -588,7 +628,7 @@ bool ct_partition_choose(struct ct_partition *s)
         return has_inertia(s);
     ct_evaluator_dynamics(s->m);
     const bool is_regular = ct_partition_accelerate(s) == CT_EVAL_OK;
-    const int massless_speed = roundoff_pivot_speed(s, (int)s->m->nu - s->rank, false);
+    const int massless_speed = roundoff_pivot_of_reduced(s);
     if (massless_speed >= 0 || !is_regular)
         return report_no_inertia(s, massless_speed >= 0 ? (size_t)massless_speed : lightest(s));
     warn_of_one_point_mass(s);

@@ -22,7 +22,7 @@ bool ct_partition_inertias(struct ct_partition *s, const bool *follows, double *
         inertia[k] = NAN;
     if (s->rank && !ct_partition_factor(s))
         return false;
-    ct_partition_reduce_mass(s, s->m->M);
+    ct_partition_reduce_mass(s, ct_partition_mass(s));
     for (int j = 0; j < f; j++)
         for (int i = 0; i < j; i++)
             S[i + f * j] = S[j + f * i];

@@ -91,7 +91,12 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
     start_input(m);
 
     ct_programs_compile(a, m);
-    m->M = CT_NEWN(a, double, (e->has_dynamics ? m->nu * m->nu : 0) + 1);
+    m->mass_row = CT_NEWN(a, int, m->nu + 1);
+    for (size_t i = 0; i < e->nM; i++)
+        m->mass_row[e->M[i].row + 1] = (int)i + 1;
+    for (size_t k = 0; k < m->nu; k++) // of an empty row, the end of the one before
+        if (!m->mass_row[k + 1])
+            m->mass_row[k + 1] = m->mass_row[k];
     m->J = CT_NEWN(a, double, m->nrow * m->nu + 1);
     m->row_size = CT_NEWN(a, double, m->nrow + 1);
     m->speed_size = CT_NEWN(a, double, m->nu + 1);
@@ -110,7 +115,8 @@ struct ct_evaluator *ct_evaluator_create(struct ct_arena *a, const struct ct_mod
     m->turned = CT_NEWN(a, double, e->nmemory + 1);
     m->ahead = CT_NEWN(a, double, e->nq + e->nu + 1);
     m->moved = CT_NEWN(a, double, e->nu + 1);
-    m->Q = m->motion.out + e->nM;
+    m->M = m->motion.out;
+    m->Q = m->M + e->nM;
     m->gam = m->Q + e->nu + e->nJ;
     m->rate = m->gam + e->nrow;
     m->phi = m->constraint.out;
@@ -197,14 +203,18 @@ static void scatter_J(struct ct_evaluator *m, const double *value)
 
 void ct_evaluator_dynamics(struct ct_evaluator *m)
 {
-    const struct ct_equations *e = m->e;
     m->evaluations++;
     ct_program_run(&m->motion, m->input);
-    for (size_t i = 0; i < e->nM; i++) {
-        const size_t r = (size_t)e->M[i].row, c = (size_t)e->M[i].column;
-        m->M[r + m->nu * c] = m->M[c + m->nu * r] = m->motion.out[i];
+    scatter_J(m, m->Q + m->nu);
+}
+
+void ct_evaluator_fill_mass(const struct ct_evaluator *m, double *M, size_t n)
+{
+    for (size_t i = 0; i < m->e->nM; i++) {
+        const size_t r = (size_t)m->e->M[i].row, c = (size_t)m->e->M[i].column;
+        if (r < n && c < n)
+            M[r + n * c] = M[c + n * r] = m->M[i];
     }
-    scatter_J(m, m->Q + e->nu);
 }
 
 bool ct_evaluator_solved(struct ct_evaluator *m, double *a)

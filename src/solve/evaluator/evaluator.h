@@ -4,8 +4,7 @@
 //     input   t | parameters | q | u | u' | lam | sides of switches | memories | work
 //
 // What always holds: an evaluator belongs to one run; the equations it was made from are constant.
-// Evaluation allocates nothing. M is kept full (both triangles), J by rows (nrow x nu),
-// column-major.
+// Evaluation allocates nothing. M is kept by its entries, J full (nrow x nu), column-major.
 #ifndef CT_SOLVE_EVALUATOR_EVALUATOR_H
 #define CT_SOLVE_EVALUATOR_EVALUATOR_H
 
@@ -84,7 +83,8 @@ struct ct_evaluator {
     double *auxiliary; // workspace (inner values x nu)
     size_t nslope;
 
-    double *M, *Q, *J, *gam, *rate; // of the last ct_evaluator_dynamics
+    double *M, *Q, *J, *gam, *rate; // of the last ct_evaluator_dynamics; M as e->M lists it
+    int *mass_row;                  // (nu + 1) first entry of each row of M, its lower triangle
     double *phi, *v;                // of the last ct_evaluator_constraint (J as well)
     double *row_size, *speed_size;  // of the last ct_evaluator_measure_rows; 1 before
     double rank_tolerance;          // a row with a smaller relative remainder is dependent
@@ -158,6 +158,14 @@ static inline void ct_evaluator_copy(double *out, const volatile double *v, size
 void ct_evaluator_set(struct ct_evaluator *m, double t, const double *y);
 /// M, Q, J, gam and q' at the input. Without dynamics in the equations M and Q are zero.
 void ct_evaluator_dynamics(struct ct_evaluator *m);
+/// M_kk of the last ct_evaluator_dynamics.
+static inline double ct_evaluator_inertia(const struct ct_evaluator *m, size_t k)
+{
+    const int last = m->mass_row[k + 1] - 1;
+    return last >= m->mass_row[k] && m->e->M[last].column == (int)k ? m->M[last] : 0;
+}
+/// Full M of the first n speeds: both triangles of M (n x n, in: zeros or an earlier M, out).
+void ct_evaluator_fill_mass(const struct ct_evaluator *m, double *M, size_t n);
 /// u' (nu, out) and q' at the input by the closed-form solution; false if there is none. M, Q
 /// do not change.
 bool ct_evaluator_solved(struct ct_evaluator *m, double *a);

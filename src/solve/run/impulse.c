@@ -80,20 +80,20 @@ static enum ct_eval apply_continuous(struct ct_run *r, const double *before, dou
     const size_t n = m->nu;
     find_quadratic_form(m, j->W, u);
     ct_program_run(&m->momentum, m->input);
-    const double all = trace(m->M, n);
+    const double *M = ct_partition_mass(r->s), all = trace(M, n);
     const double share = all > 0 ? share_of_momentum * trace(j->W, n) / all : 0;
     double *w = j->w, *momentum = j->first;
-    find_right_side(m, momentum, 0, before, m->M, u);
+    find_right_side(m, momentum, 0, before, M, u);
     find_right_side(m, w, n, before, j->W, u);
     for (size_t i = 0; i < n * n; i++)
-        j->W[i] += share * m->M[i];
+        j->W[i] += share * M[i];
     for (size_t i = 0; i < n; i++)
         momentum[i] = w[i] + share * momentum[i];
     enum ct_eval e = ct_partition_impulse(r->s, j->W, momentum, u);
     for (int i = 1; i < TIMES && e == CT_EVAL_OK;
          i++) { // the right side of the first iteration is used in all of them
         memcpy(momentum, w, n * sizeof *w);
-        add_product(momentum, share, m->M, u, n);
+        add_product(momentum, share, M, u, n);
         e = ct_partition_impulse(r->s, j->W, momentum, u);
     }
     return e;
@@ -106,6 +106,7 @@ enum ct_eval ct_impulse_apply(struct ct_run *r, const double *before, double *u)
     if (m->momentum.nout > m->nu)
         return apply_continuous(r, before, u);
     ct_program_run(&m->momentum, m->input);
-    find_right_side(m, r->impulse->w, 0, before, m->M, u);
-    return ct_partition_impulse(r->s, m->M, r->impulse->w, u);
+    const double *M = ct_partition_mass(r->s);
+    find_right_side(m, r->impulse->w, 0, before, M, u);
+    return ct_partition_impulse(r->s, M, r->impulse->w, u);
 }
