@@ -9,7 +9,7 @@
 static const struct ct_key keys[] = {
     {"coordinates", CT_VALUE_NAMES, CT_KEY_REQUIRED, NULL, 1, 6, "names of the coordinates"},
     {"translate", CT_VALUE_VEC3, CT_KEY_LOCAL, NULL, 3, 3,
-     "place of `to` in axes of `from` as expressions of the coordinates (0)"},
+     "position of `to` in axes of `from` as expressions of the coordinates (0)"},
     {"rotate", CT_VALUE_TURNS, CT_KEY_LOCAL, NULL, 0, CT_MAX_COORD,
      "successive rotations [axis, expression] (none)"},
 };

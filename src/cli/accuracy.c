@@ -130,7 +130,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
 
 const struct cli_command cli_accuracy = {
     .name = "accuracy",
-    .summary = "speed against error: methods x tolerances against a reference",
+    .summary = "computing time against error, for several methods and tolerances",
     .use = CLI_ACCURACY,
     .takes_model = true,
     .more

@@ -44,7 +44,7 @@ const struct cli_command cli_kinematics = {
 
 const struct cli_command cli_inverse = {
     .name = "inverse",
-    .summary = "the efforts that motions need, and the reactions of all joints",
+    .summary = "efforts that produce given motions, and the reactions of all joints",
     .use = CLI_INVERSE,
     .takes_model = true,
     .more

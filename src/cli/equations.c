@@ -23,7 +23,7 @@ static int run(struct ct_ctx *ctx, const struct cli_args *args)
 
 const struct cli_command cli_equations = {
     .name = "equations",
-    .summary = "prints the equations of motion and how they come about",
+    .summary = "prints the equations of motion and their derivation",
     .use = CLI_EQUATIONS,
     .takes_model = true,
     .more = "\n"

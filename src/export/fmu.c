@@ -72,7 +72,7 @@ bool ct_fmu_write(struct ct_exported *w, int version, const char *path)
                 .why_not = "there is no name for this platform, or cotree does not know it"};
     if (!binary.b)
         ct_warning(w->ctx, (struct ct_mark){0}, CT_E_NO_BINARY,
-                   "'%s' has no binary, but its sources alone: %s", path, binary.why_not);
+                   "'%s' contains sources only, no binary: %s", path, binary.why_not);
     struct ct_outfile file;
     if (!ct_outfile_open(w->ctx, &file, path))
         return false;

@@ -29,7 +29,7 @@ static void put_ledger(struct ct_html *h)
     const struct ct_run_report *r = &sim->report;
     fputs("<div class=\"wide\"><table>\n", h->out);
     if (!(sim->run_options.step > 0))
-        put_row(h, "error asked for, relative", sim->tolerance, "");
+        put_row(h, "tolerance, relative", sim->tolerance, "");
     if (sim->estimate.output)
         put_row(h, "error estimated, of the worst output", sim->estimate.worst, "");
     put_row(h, "change of the energy balance, of the largest energy", r->energy_drift, "");
@@ -89,13 +89,13 @@ static void put_work(struct ct_html *h)
     put_count(h, "operations of one evaluation", ct_sim_operations(sim));
     fputs("</table></div>\n", h->out);
     if (sim->run_options.step > 0)
-        fprintf(h->out, "<p>Steps have the fixed size %g s: nothing limits them.</p>\n",
+        fprintf(h->out,
+                "<p>Steps have the fixed size %g s; their error is not controlled.</p>\n",
                 sim->run_options.step);
     else
         fprintf(h->out, "<p>%s</p>\n",
-                r->stats.inaccurate_steps
-                    ? "Steps were limited by the error that was asked for."
-                    : "No step was refused for its error.");
+                r->stats.inaccurate_steps ? "Steps were limited by the tolerance."
+                                          : "No step was rejected because of its error.");
 }
 
 static void put_work_precision(struct ct_html *h)

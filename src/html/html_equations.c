@@ -172,7 +172,7 @@ static void put_data(struct ct_html *h)
 static void put_note(struct ct_html *h)
 {
     const struct ct_terms_recording *t = h->terms;
-    fputs("<p class=\"note\">The number beside a term is its value at <span "
+    fputs("<p class=\"note\">The number next to a term is its value at <span "
           "class=\"clock\">t = 0 s</span>.",
           h->out);
     if (t->stride > 1)

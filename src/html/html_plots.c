@@ -74,7 +74,7 @@ void ct_html_plots(struct ct_html *h)
     }
     fprintf(
         h->out,
-        "<p class=\"note\">Values beside the names are those at <span class=\"clock\">t = 0 "
+        "<p class=\"note\">Values next to the names are those at <span class=\"clock\">t = 0 "
         "s</span>. "
         "Click in a plot to go to a time, drag to zoom, double-click for all of it.");
     if (r->stride > 1)

@@ -92,7 +92,7 @@ static void put_error_light(struct ct_html *h)
         fputs(" in ", h->out);
         ct_html_put_name(h->out, h->sys->equations.result[e->which].name);
         if (!(sim->run_options.step > 0)) {
-            fputs("; asked for: ", h->out);
+            fputs("; tolerance: ", h->out);
             ct_html_put_number(h->out, tolerance);
         }
     } else {

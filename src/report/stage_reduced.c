@@ -167,12 +167,13 @@ static bool shows(struct ct_derivation *d, const struct group g[NGROUP],
 }
 
 // Explains the symbols of switches and memories.
-static void put_held(struct ct_derivation *d, const struct group g[NGROUP],
-                     const struct ct_reduced *r)
+static void put_switches(struct ct_derivation *d, const struct group g[NGROUP],
+                         const struct ct_reduced *r)
 {
     const struct ct_equations *e = d->e;
     if (e->nswitch) {
-        ct_page_heading(&d->page, "held between events: 1 where it holds, else 0");
+        ct_page_heading(&d->page,
+                        "switches, constant between events: 1 if the relation holds, else 0");
         ct_page_equations(&d->page);
     }
     for (size_t i = 0; i < e->nswitch; i++) {
@@ -233,7 +234,7 @@ void ct_derivation_put_matrices(struct ct_derivation *d, const struct ct_reduced
 {
     const struct ct_equations *e = d->e;
     const char **row = CT_NEWN(d->a, const char *, e->nu + e->nrow + 1);
-    static const char larger[] = "%zu x %zu, larger than a page; its entries stand in the "
+    static const char larger[] = "%zu x %zu, too wide to print; its entries are in the "
                                  "equations below";
     const size_t nu = e->nmotion;
     if (nu < 2)
@@ -433,8 +434,8 @@ static void explain_blocks(struct ct_derivation *d, const struct ct_beam_blocks 
     ct_page_sentence(
         &d->page, "s, i, m_rf, m_thetaf, m_ff, K_f, Q_vf, F_v, T_v and V_q of a beam: its "
                   "matrices, printed by --show terminal; m_rf_B.x: the entries along x of all "
-                  "coordinates of beam B, as a row, ' as a column; Q_B: what joints, loads and "
-                  "bodies farther out do along them, zero where it is not listed");
+                  "coordinates of beam B, as a row, ' as a column; Q_B: generalised forces of "
+                  "joints, loads and outboard bodies along these, zero where not listed");
 }
 
 // Rows of blocks, and the lines that belong to one below it.
@@ -457,14 +458,14 @@ static const char *legend(struct ct_derivation *d, const struct ct_definitions *
            {"R_", "R: rotation of a body"},
            {"w_", "w: angular velocity"},
            {"al_", "al: angular acceleration"},
-           {"d_", "d: vector to a point from the one before"},
+           {"d_", "d: vector to a point from the preceding one"},
            {"v_", "v: rate of d"},
-           {"a_", "a: acceleration of a point less gravity"},
-           {"m_", "m: mass of all that hangs on a point"},
-           {"h_", "h: first moment of a body with these masses on its points"},
-           {"I_", "I: its inertia with them"},
-           {"F_", "F: force that what hangs on a point needs beyond m*a"},
-           {"T_", "T: torque that a body and what hangs on it need"}};
+           {"a_", "a: acceleration of a point minus gravity"},
+           {"m_", "m: mass of the bodies outboard of a point"},
+           {"h_", "h: first moment of a body with these masses at its points"},
+           {"I_", "I: its inertia with these masses"},
+           {"F_", "F: force on the bodies outboard of a point, minus m*a"},
+           {"T_", "T: torque on a body and the bodies outboard of it"}};
     struct ct_growing_text s = {0};
     for (size_t k = 0; k < COUNT(name); k++)
         for (size_t i = 0; i < list->n; i++)
@@ -526,10 +527,11 @@ void ct_stage_reduced(struct ct_derivation *d)
     if (!has_blocks && !r.is_recursive)
         ct_derivation_put_matrices(d, &r);
     if (e->nmotion) {
-        ct_page_heading(&d->page, r.is_recursive
-                                      ? "motion: what each branch carries = its effort"
-                                  : e->nrow ? "motion: M u' = Q + J' lambda"
-                                            : "motion: M u' = Q");
+        ct_page_heading(&d->page,
+                        r.is_recursive
+                            ? "motion: load of each branch along its motion = its effort"
+                        : e->nrow ? "motion: M u' = Q + J' lambda"
+                                  : "motion: M u' = Q");
         if (has_blocks)
             put_blocks(d, &blocks);
         else
@@ -547,7 +549,7 @@ void ct_stage_reduced(struct ct_derivation *d)
     }
     if (g[EFFORT].n)
         put_efforts(d, &g[EFFORT], p);
-    put_held(d, g, &r);
+    put_switches(d, g, &r);
     if (g[KINEMATIC].n)
         put_kinematic(d, &g[KINEMATIC]);
 }

@@ -53,7 +53,7 @@ static void put_matrix(struct ct_derivation *d, const struct ct_incidence *S,
             value[rows.row[k]] = 0;
     }
     if (!ct_page_matrix_end(&d->page))
-        ct_page_sentence(&d->page, "%d x %d, larger than a page; it is in --format json",
+        ct_page_sentence(&d->page, "%d x %d, too wide to print; it is in --format json",
                          S->nrow, g->nedge);
 }
 

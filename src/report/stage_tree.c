@@ -81,10 +81,10 @@ static const char *meaning_of(struct ct_derivation *d, const struct ct_coordinat
                                ct_derivation_axis(d, m->about));
     }
     if (e->kind == CT_EDGE_BODY && d->m->body[e->index].beam)
-        return ct_arena_printf(d->a, "place of the frame of beam %s along %s", e->name,
+        return ct_arena_printf(d->a, "position of the frame of beam %s along %s", e->name,
                                ct_derivation_axis(d, m->along));
     return e->kind == CT_EDGE_BODY
-             ? ct_arena_printf(d->a, "place of the centre of mass of %s along %s", what,
+             ? ct_arena_printf(d->a, "position of the centre of mass of %s along %s", what,
                                ct_derivation_axis(d, m->along))
              : ct_arena_printf(d->a, "displacement of %s along %s", what,
                                ct_derivation_axis(d, m->along));

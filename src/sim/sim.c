@@ -125,7 +125,7 @@ static bool choose_method(struct ct_sim *sim, const char *option)
 {
     const char *name = option ? option : sim->system->model.simulation.method;
     struct ct_run_options *o = &sim->run_options;
-    sim->method_why = option ? "as asked" : "as the model says";
+    sim->method_why = option ? "as requested" : "as the model says";
     o->method = ct_method_find(name);
     if (!o->method && strcmp(name, "auto") != 0)
         return no_method(sim, name, option != NULL);

@@ -414,7 +414,7 @@ static void print_solver(FILE *out, const struct ct_sim *sim)
     static const char *const name[] = {"unrolled", "as one system", "sparse", "dense"};
     fprintf(out, "solver       %s", ct_sim_solver(sim));
     if (sim->solver)
-        fputs(", as asked", out);
+        fputs(", as requested", out);
     else if (c->dense > 0) {
         fputs("; predicted costs in operations:", out);
         for (size_t i = 0; i < COUNT(cost); i++) {

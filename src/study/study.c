@@ -119,7 +119,7 @@ static bool choose_way(struct ct_study *s, const struct ct_study_options *o)
     s->method = probe->run_options.method->name;
     s->tolerance = probe->tolerance;
     s->backend = ct_run_evaluator(probe->run)->backend;
-    s->alone_by = o->lanes == 1 ? "as asked" : ct_sim_refuses_batch(probe);
+    s->alone_by = o->lanes == 1 ? "as requested" : ct_sim_refuses_batch(probe);
     if (s->is_derived)
         s->alone_by = ct_arena_printf(s->own.model, "the equations depend on the value of '%s'",
                                       s->derived_by);

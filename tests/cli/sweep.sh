@@ -21,7 +21,7 @@ sweep -o b.csv --backend tape # settings of the rows before go with them
 ls b.csv*
 difference a.csv b.csv | awk '{ print ($1 < 1e-8) ? "the same numbers" : $0 }'
 "$COTREE" sweep "$m" --until 0.2 --vary torque=0.1:0.5:3 --vary r=0.14:0.16:3 -o alone.csv --lanes 1 2>alone.log
-grep -o 'as asked' alone.log
+grep -o 'as requested' alone.log
 
 # rows against runs of their own, at a tolerance of 1e-8
 sed 1d a.csv | while IFS=, read -r run torque r values; do
