@@ -125,11 +125,6 @@ void ct_partition_update_sigma(struct ct_partition *s)
         s->sigma = ct_strength_sigma(&s->strength);
 }
 
-// A solver compares each inertia with its largest value so far; it does not know the terms that
-// cancel in it. Dense matrices do; they are used from this factor above the limit.
-// Chosen: the time of dense matrices against cancellation that is missed.
-static const double cancellation_margin = 10;
-
 static bool has_one_freedom(const struct ct_partition *s)
 {
     return s->least_cancellation > 0 && (size_t)s->rank + 1 == s->m->nu;
@@ -139,7 +134,8 @@ static bool has_one_freedom(const struct ct_partition *s)
 static bool use_solver(struct ct_partition *s)
 {
     struct ct_solver *f = s->solver[0];
-    f->least_part = has_one_freedom(s) ? cancellation_margin * s->least_cancellation : 0;
+    // the solver does not know the terms that cancel in an inertia, but its largest value so far
+    f->least_part = has_one_freedom(s) ? s->least_cancellation : 0;
     s->strength.now = ct_solver_solve(f, s->m, s->a);
     if (!ct_partition_is_sound(s) || f->has_fallen)
         return false;
