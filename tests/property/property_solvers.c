@@ -331,6 +331,43 @@ static const struct ct_solver_kind *cheapest_for_chain(int n)
     return kind;
 }
 
+// Is a sparse solver of a chain of n links, with 5 n unknowns, considered? cost (out): its
+// predicted one over that of the best other solver.
+static bool is_sparse_considered(int n, double *cost)
+{
+    struct system s;
+    struct variant v;
+    struct ct_arena *a = ct_arena_create();
+    system_open_text(&s, "chain", chain_text(a, n));
+    variant_open(&s, &by_bodies, &v);
+    variant_set(&v, &s.start, 0);
+    assert_true(ct_partition_choose(v.s));
+    const struct ct_solver_costs c = v.s->costs;
+    struct ct_solver *f = form_of(&v, &ct_solver_sparse);
+    *cost = f->cost / fmin(c.dense, fmin(c.symbolic, c.symbolic_kkt));
+    print_message("%d links: sparse %.0f, symbolic %.0f, one system %.0f, dense %.0f\n", n,
+                  f->cost, c.symbolic, c.symbolic_kkt, c.dense);
+    ct_solver_destroy(v.m, f);
+    variant_close(&v);
+    system_close(&s);
+    ct_arena_destroy(a);
+    return !isnan(c.sparse);
+}
+
+// Of fewer than a hundred unknowns it would cost several times the others.
+static void small_systems_are_not_sparse(void **state)
+{
+    (void)state;
+    if (!CT_HAS_KLU)
+        skip();
+    double cost;
+    assert_false(is_sparse_considered(4, &cost));
+    assert_true(cost > 2);
+    assert_false(is_sparse_considered(12, &cost));
+    assert_true(cost > 2);
+    assert_true(is_sparse_considered(40, &cost));
+}
+
 static void the_cheapest_solver_is_chosen(void **state)
 {
     (void)state;
@@ -483,6 +520,7 @@ int main(void)
            cmocka_unit_test(projections_end_on_rows),
            cmocka_unit_test(runs_refine_solutions_and_reorder_pivots),
            cmocka_unit_test(the_cheapest_solver_is_chosen),
+           cmocka_unit_test(small_systems_are_not_sparse),
            cmocka_unit_test(cost_grows_with_the_number_of_loops),
            cmocka_unit_test(cost_grows_with_the_number_of_elements),
            cmocka_unit_test(back_ends_agree)};

@@ -49,7 +49,8 @@ struct ct_solver_kind {
 };
 
 /// Smallest number of unknowns of [M J'; J 0] for sparse matrices.
-/// Chosen: the time of the analysis; smaller systems are not cheaper as sparse matrices.
+/// Default: the time of the analysis; smaller systems are not cheaper as sparse matrices.
+/// Test: solvers
 enum { CT_FEWEST_SPARSE_UNKNOWNS = 100 };
 extern const struct ct_solver_kind ct_solver_symbolic, ct_solver_symbolic_kkt, ct_solver_sparse;
 
