@@ -206,7 +206,8 @@ static bool simulate_modes(struct ct_build *b, const struct ct_validity *v, int 
 
 static bool is_alike(double a, double b)
 {
-    // Chosen: estimates are good to about a third
+    // Default: estimates of long runs against those whose instants miss peaks.
+    // Test: beam_error_estimate
     const double factor = 1.5;
     return (isnan(a) && isnan(b)) || (a <= factor * b && b <= factor * a)
         || (a > CT_ESTIMATED_ERROR_LIMIT && b > CT_ESTIMATED_ERROR_LIMIT);

@@ -27,7 +27,8 @@
 #include "graph/graph.h"
 
 /// A path with more pieces than this is computed through the positions of its intermediate nodes.
-/// Chosen: a large value gives equations that read as one sum, but longer programs.
+/// Limit: of the time of derivation, which otherwise grows with the square of the length. Programs
+/// are as long with either form; sums alone are for readers.
 enum { CT_LONG_PATH = 40 };
 
 enum ct_edge_kind { CT_EDGE_BODY, CT_EDGE_ARM, CT_EDGE_JOINT, CT_EDGE_CLOSURE, CT_EDGE_FORCE };

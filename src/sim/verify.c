@@ -26,7 +26,8 @@
 // which the error often does not decrease enough, and a hundredth, which costs more and is not
 // better.
 static const double tolerance_reduction = 1. / 30;
-// Chosen: errors that differ by less cannot be distinguished by a difference.
+// Tolerance of a looser run, and least ratio of a tighter one, as errors follow tolerances roughly.
+// Default: errors that a difference shows against errors of another kind. Test: error_estimates
 static const double least_tolerance_ratio = 5;
 // A second run may have a tolerance this much below the smallest one of an ordinary run. In
 // motions with many turns truncation errors decrease until there. An explicit step has

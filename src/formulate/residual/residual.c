@@ -106,10 +106,9 @@ static void derive_rows(struct ct_build *b, ct_ex *r)
 
 // ---- derivatives --------------------------------------------------------------------------------
 
-// expected_evaluations: predicted number of evaluations in a run. generation_cost: that of
-// generating one operation (nodes, listing, machine code), in executions of it. Chosen: time to
-// make a program against its use.
-static const double expected_evaluations = 300, generation_cost = 1500;
+// Time of the predicted evaluations of a run over that of generating a program (nodes, listing,
+// machine code). Chosen: 300 evaluations, where generation takes as long as 1500.
+static const double expected_use = 0.2;
 
 // Common input of both ways: r followed by the auxiliary unknowns, v, and the seeds.
 struct slopes {
@@ -251,8 +250,7 @@ static void colour(struct ct_build *b, struct ct_directional *along, const struc
 static double cost_along(struct ct_build *b, const struct ct_directional *along, size_t nrate)
 {
     const struct ct_tape_counts c = ct_ex_count(b->ctx->scratch, b->x, along->rate, nrate);
-    return ct_counted_cost(&c)
-         * (generation_cost + expected_evaluations * CT_LANE_COST * (double)along->ncolour);
+    return ct_counted_cost(&c) * (1 + expected_use * CT_LANE_COST * (double)along->ncolour);
 }
 
 // Entries of the longest row of a list sorted by row.
@@ -276,13 +274,12 @@ static bool try_along(struct ct_build *b, struct ct_residual *f, const struct sl
     const size_t ndirection = NLEVEL * s->nu + s->ninner;
     size_t n = ct_ex_pattern(b->x, scratch, scratch, s->r, s->nr, s->all.e, s->all.n,
                              (uint32_t)ndirection, &all, &operations);
-    const double entries = operations * (generation_cost + expected_evaluations);
+    const double entries = operations * (1 + expected_use);
     // the derivative along a direction takes no fewer operations than r, for as many colours as
     // the longest row has entries
     const struct ct_tape_counts c = ct_ex_count(scratch, b->x, s->r, s->nu);
-    const double executions = expected_evaluations * CT_LANE_COST * longest_row(all, n);
-    if (form == CT_SLOPES_AUTO
-        && entries < (2 * generation_cost + executions) * ct_counted_cost(&c))
+    const double executions = expected_use * CT_LANE_COST * longest_row(all, n);
+    if (form == CT_SLOPES_AUTO && entries < (2 + executions) * ct_counted_cost(&c))
         return false;
     struct ct_directional *along = derive_along(b, s);
     sort_out(b, f, all, n);

@@ -196,7 +196,8 @@ void ct_lane_put(vec *v, int l, const double *in, size_t n)
 // only the choice of the start gets one.
 static bool is_allowed(const struct ct_batch *s)
 {
-    // Chosen: time to compile against time to run.
+    // Limit: of the time to make solvers, 0.04 s each (docs/performance.md, Solvers). Beyond it the
+    // others are dense matrices, which give the same accelerations.
     enum { LARGE_PROGRAM = 20000 }; // operations
     return s->origin
         && (!s->nsolver

@@ -499,9 +499,11 @@ static void warn_of_one_point_mass(struct ct_partition *s)
 {
     const size_t n = s->m->nu;
     const struct ct_body *found = NULL;
-    // Fraction of the coordinate's own inertia that remains while the others are free.
-    // Chosen: at 1e-6 the motion is a thousand times, the root, faster.
-    double part = 1e-6;
+    // Fraction of the coordinate's own inertia that remains while the others are free; the motion
+    // is faster by its root. Default: advice against motions as fast as intended.
+    // Test: massless_beams
+    const double little = 1e-6;
+    double part = little;
     for (size_t k = 0; k < n; k++)
         found = found ? found : one_point_beam(s, k);
     if (!found || s->switches != 1 || !s->m->e->has_dynamics)

@@ -57,7 +57,7 @@ void ct_partition_find_units(struct ct_partition *s)
     const double one_unit_ratio = 4;
     // Fraction of the largest lever arm below which a row has none, as its points coincide
     // initially.
-    // Chosen: coincidence to the precision of the data against short links.
+    // Default: coincidence to the precision of the data against short links. Test: singular
     const double zero_lever = 1e-4;
     const double most = find_levers(s, s->unit);
     double largest = 0, least = INFINITY;
