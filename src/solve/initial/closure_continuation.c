@@ -303,7 +303,8 @@ static bool close_gaps(struct ct_static_residual *s, struct ct_arena *a, double 
                        bool *buckles)
 {
     // Smallest fraction of the offsets that one step removes; below it the energy is minimised.
-    // Chosen: small steps of continuation against the slower minimisation.
+    // Default: small steps of continuation against the slower minimisation.
+    // Test: closure_by_bending_elastica
     const double least = 1.0 / 16;
     struct saved_state at = saved_state(s, a);
     double open = 1, step = 1;
