@@ -100,7 +100,7 @@ outputs: [x.q, y.q]
 simulation: {duration: 1, samples: 2}
 END
 say inverse geared.yaml --quiet -o - | cut -d, -f1-3
-say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+say kinematics geared.yaml --quiet --set r=2.1 | sed 's/t = .*: it/t = T: it/; s/open at .*/open/'
 echo '-- a crank that turns farther than its rod reaches: the row is named'
 cat >reach.yaml <<'END'
 cotree: 1
@@ -116,7 +116,7 @@ joints:
 outputs: [guide.q]
 simulation: {duration: 2, samples: 11}
 END
-say kinematics reach.yaml --quiet | sed 's/t = .*: it/t = T: it/; s/open by .*/open/'
+say kinematics reach.yaml --quiet | sed 's/t = .*: it/t = T: it/; s/open at .*/open/'
 echo '-- a method of order 2 at a tolerance that its steps come to rounding with: what goes on is named'
 "$COTREE" simulate "$SYSTEMS/n_four_bar/model.yaml" --method generalized-alpha-index3 --tolerance 1e-8 --quiet -o out.csv 2>&1 | sed -n "s/^cotree: note: \(steps of .*, of order 2\), .*\('method: .*\)/\1 ... \2/p"
 echo '-- a force that is not a number behind a wall: implicit methods, whose derivatives end there, too, do not try for ever'

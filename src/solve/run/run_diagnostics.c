@@ -63,8 +63,8 @@ static void note_open_row(struct ct_run *r)
     for (size_t i = 1; i < r->m->nrow; i++)
         if (fabs(r->m->phi[i]) > fabs(r->m->phi[worst]))
             worst = i;
-    ct_note(r->ctx, mark_of_row(r, worst), "'%s' stays open by %.3g at t = %.9g",
-            r->e->row[worst].name, fabs(r->m->phi[worst]), t);
+    ct_note(r->ctx, mark_of_row(r, worst), "'%s' stays open at t = %.9g", r->e->row[worst].name,
+            t);
 }
 
 // inertia (nu, out): effective inertia of each speed at the evaluator's input, with all other
