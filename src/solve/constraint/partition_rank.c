@@ -149,16 +149,6 @@ double ct_partition_pivot(struct ct_partition *s)
     return pivot;
 }
 
-double ct_partition_retained_pivot(struct ct_partition *s)
-{
-    double least = INFINITY;
-    if (ct_partition_is_large(s) || !ct_partition_factor_only(s))
-        return least;
-    for (int i = 0; i < s->rank; i++)
-        least = fmin(least, fabs(s->Jd[i + s->rank * i]));
-    return least;
-}
-
 // Logarithm of the product of the largest `rank` singular values of J. With redundant rows the
 // retained ones may lose more rank than J.
 static double log_volume(struct ct_partition *s)

@@ -257,8 +257,6 @@ static void consider_explicit(struct ct_run *r, struct ct_problem *p,
     if (was_implicit || !switch_to_implicit(r, p, io)) {
         if (was_implicit)
             r->report->returned_at = io->t0;
-        // close the constraints, which the implicit method or its trial may have left open
-        ct_rank_monitor_forget_motion(r->singular);
         r->method = r->o->method;
         io->rtol = r->o->rtol;
         io->atol = r->o->atol;

@@ -133,7 +133,6 @@ static enum ct_eval accepted(void *user, double t, const double *y, const double
     }
     if (!ct_run_turns_are_followed(r, t, y))
         return CT_EVAL_RETRY;
-    r->singular->retains_rows = r->method->is_implicit && (size_t)r->s->rank < r->m->nrow;
     const struct ct_rank_monitor_step step = {r->o->step > 0, is_across};
     if (!ct_rank_monitor_predict(r->singular, t, y, dy, &step)) {
         r->angle_rate = angle_rate_before;
@@ -168,7 +167,6 @@ static void find_needs(struct ct_run *r)
         r->has_lam_results |= uses(e, e->result[i].value, CT_SYM_LAM);
     for (size_t i = 0; i < e->nvalidity; i++)
         r->has_lam_results |= uses(e, e->validity[i].eta, CT_SYM_LAM);
-    r->singular->has_poles = r->has_lam_results;
     r->root_of = CT_NEWN(r->arena, int, e->nswitch + 1);
     r->visits = CT_NEWN(r->arena, int, e->nswitch + 1);
     r->crossed = CT_NEWN(r->arena, signed char, e->nswitch + 1);
@@ -643,7 +641,6 @@ bool ct_run_start_steps(struct ct_run *r)
                                       .atol = r->o->atol,
                                       .output_rtol = r->o->output_rtol,
                                       .is_fixed = r->o->step > 0,
-                                      .is_implicit = r->method->is_implicit,
                                       .y = r->y,
                                       .dy = r->dy,
                                       .stage = r->stage,

@@ -40,15 +40,11 @@ static void note_singular(struct ct_run *r, const char *advice)
         n ? " (" : "", names, n > MOST_NAMES ? ", ..." : "", n ? ")" : "", advice);
 }
 
-// Times up to this part of the duration apart are close to each other, and speeds below this part
-// of the largest are rest. Default: causes that are named though they lie elsewhere against causes
-// that are not named. Test: mistakes
-static const double small_part = 1e-3;
-
 // If steps ended as the constraints could not be closed: name the row that is open most a little
 // later.
 static void note_open_row(struct ct_run *r)
 {
+    const double small_part = 1e-3; // Definition: of the run, docs/messages.md, E312
     if (ct_run_rhs(r, r->stats.last_time, r->y, r->dy))
         return;
     const double dt = small_part * r->o->duration, t = r->stats.last_time + dt;
@@ -190,48 +186,36 @@ static void note_order(struct ct_run *r)
             r->method->name, r->method->order);
 }
 
-// Is there an event at the singular configuration or very near it? After an event there, no step
-// leaves the configuration.
-static bool has_switched(const struct ct_run *r)
+static bool is_driven(const struct ct_run *r)
 {
-    const double t = r->stats.last_time, near = small_part * r->o->duration;
-    return t - r->last_event <= near || r->pending - t <= near;
-}
-
-static const char *const driver_advice
-    = ", where a driver may not rest: let it move through, or rest near it";
-
-// Have drivers come to rest, compared with the largest speed of the run?
-static bool is_driven_to_rest(const struct ct_run *r)
-{
-    bool is_driven = false;
     for (size_t i = 0; i < r->model->njoint; i++) {
         const struct ct_instance *joint = &r->model->joint[i];
-        is_driven |= joint->cls->motion && ct_instance_value(joint, "motion")->given;
+        if (joint->cls->motion && ct_instance_value(joint, "motion")->given)
+            return true;
     }
-    return is_driven
-        && ct_vector_largest(r->y + r->m->nq, r->m->nu)
-               < small_part * r->singular->largest_speed;
+    return false;
 }
 
-// Advice for a run that ended near a singular configuration. If round-off ended it, that is a
-// tolerance which is larger than the round-off there.
+// Advice for a run that ended near a singular configuration. The motion of drivers that rest there,
+// or whose acceleration jumps there, is not determined. If round-off ended the run a tolerance
+// which is larger than the round-off there helps.
 static const char *singular_advice(struct ct_run *r)
 {
-    if (has_switched(r))
-        return "; a switch changes there: let switches change, and drivers rest, a little "
-               "before or after it";
-    if (is_driven_to_rest(r))
-        return driver_advice;
     // Definition: the largest tolerance that 'accuracy' compares, docs/cli.md; no advice above it
     const double most = 1e-2;
     const double part = r->singular->closest, enough = DBL_EPSILON / (part * part);
+    const char *first = is_driven(r)
+                          ? "; drivers may not rest there, nor jump in rate or "
+                            "acceleration: let them do so a little before or after it"
+                          : "";
     if (enough > r->o->output_rtol && enough < most)
         return ct_arena_printf(r->arena,
-                               "; round-off has an effect there of %.0e: with a tolerance of "
+                               "%s; round-off has an effect there of %.0e: with a tolerance of "
                                "that, or a start farther from it, the run may go on",
-                               enough);
-    return "; with a larger tolerance, or a start farther from it, the run may go on";
+                               first, enough);
+    return ct_arena_printf(
+        r->arena, "%s; with a larger tolerance, or a start farther from it, the run may go on",
+        first);
 }
 
 void ct_run_explain_end(struct ct_run *r)
@@ -253,7 +237,7 @@ void ct_run_explain_end(struct ct_run *r)
         note_singular(r, "");
     } else if (code == CT_E_STEP_OPEN) {
         note_open_row(r);
-        note_singular(r, has_switched(r) ? singular_advice(r) : driver_advice);
+        note_singular(r, singular_advice(r));
     } else if (code == CT_E_SAMPLE_REFUSED) {
         note_open_row(r);
         if (r->ctx->ndiagnostic == n)

@@ -25,12 +25,9 @@ struct ct_rank_monitor *ct_rank_monitor_create(struct ct_arena *arena, struct ct
     w->x = CT_NEWN(arena, double, m->nrow + 1);
     w->there = ct_tangent_basis_create(arena);
     w->here = ct_tangent_basis_create(arena);
-    w->along = ct_tangent_basis_create(arena);
-    w->u = CT_NEWN(arena, double, m->nu + 1);
-    w->a = CT_NEWN(arena, double, m->nu + 1);
     w->last = CT_NEWN(arena, double, m->nq + m->nu + 1);
     w->passed = CT_NEWN(arena, struct ct_singular_configuration, kept + 1);
-    for (size_t i = 0; i < kept + 1; i++) // the last one is workspace
+    for (size_t i = 0; i < kept; i++)
         w->passed[i].row = CT_NEWN(arena, bool, m->nrow + 1);
     ct_rank_monitor_start(w);
     return w;
@@ -44,14 +41,12 @@ void ct_rank_monitor_start(struct ct_rank_monitor *w)
         = 0;
     w->switches = -1;
     w->npassed = w->ncrossed = 0;
-    w->npole = 0;
+    w->pole = NAN;
     w->closest = INFINITY;
-    w->largest_speed = 0;
     ct_tangent_basis_reserve(w->s, w->there);
     ct_tangent_basis_reserve(w->s, w->here);
-    ct_tangent_basis_reserve(w->s, w->along);
     w->s->nearness = 1;
-    w->reference_pivot = w->output_rtol = 0;
+    w->output_rtol = 0;
     w->rank = 0;
 }
 
@@ -82,15 +77,14 @@ double ct_rank_monitor_pivot_after(struct ct_rank_monitor *w, const struct ct_ra
 
 // A singular configuration is predicted when the smallest pivot is below `predicted_pivot`
 // times its largest value so far and decreases. Below near_pivot new pivots are chosen at every
-// evaluation. Below CT_SINGULAR_PIVOT accelerations are not computed if that can be avoided;
-// methods that retain their rows avoid it below near_pivot.
+// evaluation. Below CT_SINGULAR_PIVOT accelerations are not computed if that can be avoided.
 // Default: shorter steps near small pivots against the accuracy of accelerations.
 // Test: singular_approach.
 static const double predicted_pivot = 0.8, near_pivot = 0.5;
-// No step ends where the pivot is below this fraction of its largest value. Derived: round-off
-// is divided by its square; eps / 1e-14 leaves one digit to distinguish the motions through the
-// singular configuration.
-static const double smallest_pivot = 1e-7;
+// No step ends where the pivot is below this fraction of its largest value. Derived: round-off,
+// divided by its square, is 0.01 there. That is the largest tolerance which is compared
+// (docs/cli.md), and less distinguishes the motions through the singular configuration.
+static const double smallest_pivot = 1.5e-7;
 
 // Round-off of accelerations is eps over the square of the relative pivot. Accelerations are
 // too inaccurate if that exceeds this fraction of the tolerance. Derived: a hundredth of it.
@@ -98,7 +92,7 @@ static const double roundoff_part = 0.01;
 
 static bool is_roundoff_limited(const struct ct_rank_monitor *w, double pivot)
 {
-    const double part = pivot / w->reference_pivot;
+    const double part = pivot / w->largest_pivot;
     return w->output_rtol > 0 && part < CT_SINGULAR_PIVOT / 2
         && part * part * roundoff_part * w->output_rtol < DBL_EPSILON;
 }
@@ -160,7 +154,7 @@ static void predict_next(struct ct_rank_monitor *w, const struct ct_rank_test *a
 {
     const double part = now / fmax(w->largest_pivot, now);
     w->time_to_singular = time_to_singular(w, ahead, now, w->dt);
-    w->reach = w->time_to_singular * (w->retains_rows ? near_pivot : CT_SINGULAR_PIVOT) / part;
+    w->reach = w->time_to_singular * CT_SINGULAR_PIVOT / part;
 }
 
 // Is the last rank test still valid, as the solver's pivots have not changed? Where J loses
@@ -189,36 +183,11 @@ static bool is_unchanged_by_solver(const struct ct_rank_monitor *w, double dt, b
         && ct_is_within(f->volume / w->volume, unchanged_ratio);
 }
 
-// Have speeds changed since the last rank test, dt before, by far more than accelerations
-// explain? The motions that meet at a singular configuration have different speeds.
-static bool have_speeds_jumped(const struct ct_rank_monitor *w, double dt, const double *u,
-                               const double *a)
-{
-    // Fraction of the largest speed so far. Chosen: far more than the error of steps, less than
-    // the difference between speeds of two motions that meet
-    const double part = 0.2;
-    const size_t nu = w->m->nu;
-    const double least = part * fmax(w->largest_speed, ct_vector_largest(u, nu));
-    for (size_t i = 0; i < nu; i++)
-        if (fabs(u[i] - w->u[i]) > least + dt * fmax(fabs(a[i]), fabs(w->a[i])))
-            return true;
-    return false;
-}
-
-static void store_speeds(struct ct_rank_monitor *w, const struct ct_rank_test *at)
-{
-    const size_t nu = w->m->nu;
-    memcpy(w->u, at->y + w->m->nq, nu * sizeof *w->u);
-    memcpy(w->a, at->dy + w->m->nq, nu * sizeof *w->a);
-    w->largest_speed = fmax(w->largest_speed, ct_vector_largest(w->u, nu));
-}
-
-static void store_tangent_basis(struct ct_rank_monitor *w, const struct ct_rank_test *at)
+static void store_tangent_basis(struct ct_rank_monitor *w)
 {
     struct ct_tangent_basis *v = w->there;
     w->there = w->here;
     w->here = v;
-    store_speeds(w, at);
 }
 
 // Find the tangent basis at the last state, where the solver's pivots replaced the rank test:
@@ -234,15 +203,12 @@ struct rank_test_result {
     double now,
         part; // the pivot, and the relative pivot; lower bounds where is_far
     bool is_far;
-    bool
-        // a singular configuration was crossed since the last test, or left on another motion
-        is_crossed;
+    bool is_crossed; // a singular configuration was crossed since the last test
 };
 
 static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
-                                                   const struct ct_rank_test *at, double dt)
+                                                   const struct ct_rank_test *at)
 {
-    const double *u = at->y + w->m->nq, *a = at->dy + w->m->nq;
     struct rank_test_result l = {.is_crossed = false};
     if (w->solver_unchanged)
         test_last_state(w, at->pending);
@@ -254,8 +220,7 @@ static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
     l.part = l.now / fmax(w->largest_pivot, l.now);
     ct_tangent_basis_find(w->s, w->here);
     if (w->here->rank && w->there->rank)
-        l.is_crossed = ct_singularity_test_sign_changed(w->s, w->there, w->here)
-                    || have_speeds_jumped(w, dt, u, a);
+        l.is_crossed = ct_singularity_test_sign_changed(w->s, w->there, w->here);
     return l;
 }
 
@@ -277,15 +242,10 @@ static bool restore_rows(struct ct_rank_monitor *w, double pending)
     return true;
 }
 
-// Must the step to this state be repeated with a shorter one? Pivots of different choices of
-// rows and columns cannot be compared.
-static bool must_be_repeated(const struct ct_rank_monitor *w, const struct rank_test_result *l)
+// Must the step to this state be repeated with a shorter one?
+static bool must_be_repeated(const struct rank_test_result *l)
 {
-    const bool was_unpredicted = w->s->switches == w->switches && isinf(w->time_to_singular)
-                              && w->relative_pivot > near_pivot;
-    return l->is_crossed || l->part < smallest_pivot
-        || (was_unpredicted
-            && l->part < (w->solver_unchanged ? CT_SINGULAR_PIVOT : near_pivot));
+    return l->is_crossed || l->part < smallest_pivot;
 }
 
 // Would the pivot have reached zero, or nearly, at its rate on the step before? Where the rank
@@ -298,7 +258,7 @@ static bool falls_to_zero(const struct ct_rank_monitor *w, double dt)
 static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
                        const struct rank_test_result *l, double dt)
 {
-    store_tangent_basis(w, at);
+    store_tangent_basis(w);
     store_state(w, at->t, at->y);
     w->rank = w->s->rank > w->rank ? w->s->rank : w->rank;
     w->solver_unchanged = false;
@@ -314,7 +274,6 @@ static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
     w->s->is_near_singular = l->part < near_pivot;
     w->s->nearness = l->part;
     w->dt = dt;
-    w->reference_pivot = fmax(w->reference_pivot, fmax(w->largest_pivot, l->now));
 }
 
 // Record for the report how near a step that is not a crossing has come to a singular
@@ -339,16 +298,15 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
         return true;
     if (is_unchanged_by_solver(w, dt, step->is_fixed)) {
         store_state(w, t, y);
-        store_speeds(w, &at);
         w->solver_unchanged = true;
         w->pivot = 0;
         return true;
     }
-    struct rank_test_result l = test_accepted_state(w, &at, dt);
+    struct rank_test_result l = test_accepted_state(w, &at);
     if (step->is_fixed && !l.is_crossed && falls_to_zero(w, dt))
         l.is_crossed = ct_rank_monitor_is_crossed(w, &at, w->pivot, l.now);
     if (!step->is_across) {
-        if (!step->is_fixed && (restore_rows(w, at.pending) || must_be_repeated(w, &l)))
+        if (!step->is_fixed && (restore_rows(w, at.pending) || must_be_repeated(&l)))
             return false;
         record_closest(w, t, &l);
     }
@@ -358,40 +316,15 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
     return true;
 }
 
-void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w)
-{
-    w->there->rank = 0;
-    w->pivot = 0;
-    w->solver_unchanged = false;
-}
-
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
                            const double *dy)
 {
     const struct ct_rank_test ahead = {t, *w->pending, y, dy};
     w->there->rank = 0;
     w->pivot = 0;
-    store_speeds(w, &ahead); // the state before is tested again with these
     if (!(w->largest_pivot > 0) || w->relative_pivot > predicted_pivot || !(w->dt > 0))
         return;
     predict_next(w, &ahead, ct_rank_monitor_pivot(w, ct_time_just_before(t, ahead.pending), y));
-}
-
-void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
-                                 double times)
-{
-    w->reference_pivot = times * ct_rank_monitor_pivot(w, t, y);
-}
-
-void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
-                                double times)
-{
-    ct_rank_monitor_announce(w, t, y, in);
-    w->largest_pivot *= times;
-    w->relative_pivot = w->s->nearness = 1 / times;
-    w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
-    w->s->is_near_singular = w->relative_pivot < near_pivot;
-    w->reach = in * fmin(1, CT_SINGULAR_PIVOT * times);
 }
 
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in)
@@ -403,7 +336,6 @@ void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double 
     w->switches = w->s->switches;
     w->time_to_singular = in;
     w->reach = INFINITY;
-    w->reference_pivot = fmax(w->reference_pivot, w->largest_pivot);
 }
 
 // The stages of a crossing are at a distance from the singular configuration and are projected

@@ -33,14 +33,6 @@ bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_
 /// negative after it, infinite if the pivot does not change or is unknown.
 double ct_rank_monitor_distance(struct ct_rank_monitor *w, double t, const double *y,
                                 const double *dy, double s);
-/// y is near a singular configuration: assume that the largest pivot of the motion is this
-/// multiple of the present one.
-void ct_rank_monitor_scale_pivot(struct ct_rank_monitor *w, double t, const double *y,
-                                 double times);
-/// At the initial state y a singular configuration is `in` seconds ahead, closer than
-/// predictions usually begin: assume a largest pivot that is `times` the present one.
-void ct_rank_monitor_start_near(struct ct_rank_monitor *w, double t, const double *y, double in,
-                                double times);
 /// At y, t, a singular configuration is `in` seconds ahead. The first step crosses it, even if
 /// round-off is large there, since no later step would have less.
 void ct_rank_monitor_announce(struct ct_rank_monitor *w, double t, const double *y, double in);

@@ -1,4 +1,4 @@
-// Rank monitor: finds and records the singular configurations on a crossing, for the report and for
+// Rank monitor: finds and records the singular configuration on a crossing, for the report and for
 // dense output. See singular.h.
 #include "solve/singular/rank_monitor_internal.h"
 
@@ -65,25 +65,17 @@ static double pivot_on(struct ct_rank_monitor *w, const struct passage *p, doubl
     return ct_rank_monitor_pivot(w, ct_time_just_before(time_on(p, part), p->pending), w->y);
 }
 
-typedef double measure(struct ct_rank_monitor *w, const struct passage *p, double part);
-
 // Refine theta, which is within d of the minimum of the pivot. The pivot falls and rises about
 // linearly, so its values on both sides give the zero.
-static double narrow_interval_of(measure *pivot, struct ct_rank_monitor *w,
-                                 const struct passage *p, double theta, double d)
+static double narrow_interval(struct ct_rank_monitor *w, const struct passage *p, double theta,
+                              double d)
 {
     for (int i = 0; i < NREDUCTION; i++) {
-        const double before = pivot(w, p, theta - d), behind = pivot(w, p, theta + d);
+        const double before = pivot_on(w, p, theta - d), behind = pivot_on(w, p, theta + d);
         theta += d * (before - behind) / (before + behind);
         d *= interval_reduction;
     }
     return theta;
-}
-
-static double narrow_interval(struct ct_rank_monitor *w, const struct passage *p, double theta,
-                              double d)
-{
-    return narrow_interval_of(pivot_on, w, p, theta, d);
 }
 
 // The fraction of the step, near its middle, at which the pivot is below `zero`; else NaN.
@@ -111,31 +103,6 @@ static double find_smallest_pivot(struct ct_rank_monitor *w, const struct passag
     return pivot_on(w, p, at) < zero ? at : NAN;
 }
 
-// Find sign changes of the test function: theta (PARTS, out). Returns their number.
-static int find_sign_changes(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                             double *theta)
-{
-    const double part = 1.0 / PARTS; // Definition: of the step
-    struct ct_tangent_basis *last = w->along, *next = w->here;
-    int n = 0;
-    double before = pivot_on(w, p, 0);
-    ct_tangent_basis_find(w->s, last);
-    for (int i = 1; i <= PARTS; i++) {
-        const double at = i * part, behind = pivot_on(w, p, at);
-        ct_tangent_basis_find(w->s, next);
-        if (ct_singularity_test_sign_changed(w->s, last, next)) {
-            theta[n]
-                = narrow_interval(w, p, at - behind / (before + behind) * part, test_distance);
-            n += pivot_on(w, p, theta[n]) < zero;
-        }
-        struct ct_tangent_basis *v = last;
-        last = next;
-        next = v;
-        before = behind;
-    }
-    return n;
-}
-
 // Find the dependent rows and the loss of rank: at a distance d from the singular configuration
 // det J_d ~ d^loss.
 static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, double theta,
@@ -155,121 +122,36 @@ static void find_dependence(struct ct_rank_monitor *w, const struct passage *p, 
     mark_rows(w, at->row);
 }
 
-// Does the sign of the test function at the end of the step, relative to its beginning
-// (w->along), agree with this loss of rank? True if the sign at the beginning is unknown.
-static bool is_side_consistent(struct ct_rank_monitor *w, const struct passage *p,
-                               int rank_loss)
-{
-    pivot_on(w, p, 1);
-    ct_tangent_basis_find(w->s, w->here);
-    return !w->along->rank || w->along->rank != w->here->rank
-        || ct_singularity_test_sign_changed(w->s, w->along, w->here) == (rank_loss % 2 == 1);
-}
-
-// Singular configurations on a step, as parts of it.
-struct found_configurations {
-    double theta[PARTS];
-    int n;
-    bool has_dependence; // one is found, and its dependent rows are in the last of w->passed
-};
-
-// The usual case: one in the middle, where it was predicted. False if there may be others. Of
-// two that are close together, multipliers have a pole at each.
-static bool find_predicted(struct ct_rank_monitor *w, const struct passage *p, double zero,
-                           struct found_configurations *f)
-{
-    struct ct_singular_configuration *last = &w->passed[CT_MOST_SINGULAR];
-    ct_tangent_basis_find(w->s,
-                          w->along); // at the beginning, where the pivot was computed last
-    f->theta[0] = find_zero_in_middle(w, p, zero);
-    f->n = isfinite(f->theta[0]);
-    if (!f->n)
-        return false;
-    find_dependence(w, p, f->theta[0], last);
-    if (!is_side_consistent(w, p, last->rank_loss))
-        return false;
-    f->has_dependence = last->rank_loss % 2 == 1 || !w->has_poles;
-    return f->has_dependence;
-}
-
-static void find_singular_configurations(struct ct_rank_monitor *w, const struct passage *p,
-                                         struct found_configurations *f)
+// The fraction of the step at which J loses rank: usually in the middle, as predicted. NaN if there
+// is none.
+static double find_singular_configuration(struct ct_rank_monitor *w, const struct passage *p)
 {
     // the pivot falls linearly from the beginning of the crossing: its zero is resolved to this
-    const double zero = resolved * pivot_on(w, p, 0);
-    double theta[PARTS];
-    if (find_predicted(w, p, zero, f))
-        return;
-    int n = find_sign_changes(w, p, zero, theta);
-    if (!n && !f->n) {
-        theta[0] = find_smallest_pivot(w, p, zero);
-        n = isfinite(theta[0]);
-    }
-    if (!n)
-        return;
-    memcpy(f->theta, theta, sizeof theta);
-    f->n = n;
-}
-
-static void record_configuration(struct ct_rank_monitor *w, const struct passage *p,
-                                 const struct found_configurations *f, int i)
-{
-    if (w->npassed++ >= CT_MOST_SINGULAR)
-        return;
-    struct ct_singular_configuration *at = &w->passed[w->npassed - 1],
-                                     *last = &w->passed[CT_MOST_SINGULAR];
-    if (!f->has_dependence)
-        find_dependence(w, p, f->theta[i], last);
-    memcpy(at->row, last->row, w->m->nrow * sizeof *at->row);
-    at->rank_loss = last->rank_loss;
-    at->t = fmax(time_on(p, f->theta[i]), 0); // a run that starts at one begins before it
-}
-
-// The pivot of the retained rows, which are dependent where J loses rank: singular values have
-// only half the precision.
-static double retained_pivot_on(struct ct_rank_monitor *w, const struct passage *p, double part)
-{
-    pivot_on(w, p, part);
-    return ct_partition_retained_pivot(w->s);
-}
-
-// Times of the poles, refined to round-off of the step, since multipliers are divided by the
-// time to the pole.
-static void record_poles(struct ct_rank_monitor *w, const struct passage *p,
-                         const struct found_configurations *f)
-{
-    w->npole = 0;
-    for (int i = 0; i < f->n && w->has_poles && w->npole < CT_MOST_POLES; i++)
-        w->pole[w->npole++] = time_on(
-            p, narrow_interval_of(retained_pivot_on, w, p, f->theta[i], 4 * resolved));
+    const double zero = resolved * pivot_on(w, p, 0), theta = find_zero_in_middle(w, p, zero);
+    return isnan(theta) ? find_smallest_pivot(w, p, zero) : theta;
 }
 
 bool ct_rank_monitor_record(struct ct_rank_monitor *w, const struct ct_stepper_span *span,
                             double begin, double t1)
 {
     const struct passage p = {.span = span, .begin = begin, .pending = *w->pending};
-    struct found_configurations f = {.n = 0};
-    bool has_passed = false;
-    find_singular_configurations(w, &p, &f);
-    record_poles(w, &p, &f);
-    for (int i = 0; i < f.n; i++)
-        if (time_on(&p, f.theta[i]) <= t1) {
-            record_configuration(w, &p, &f, i);
-            has_passed = true;
-        }
-    return has_passed;
+    const double theta = find_singular_configuration(w, &p);
+    w->pole = time_on(&p, theta);
+    if (!(w->pole <= t1))
+        return false;
+    if (w->npassed++ >= CT_MOST_SINGULAR)
+        return true;
+    struct ct_singular_configuration *at = &w->passed[w->npassed - 1];
+    at->t = fmax(w->pole, 0); // a run that starts at one begins before it
+    find_dependence(w, &p, theta, at);
+    return true;
 }
-
-// A step crosses a singular configuration, or passes near it, if the pivot falls below this
-// fraction of its values at both ends.
-// Chosen: configurations that are passed nearby against those that are crossed.
-static const double crossed_pivot_ratio = 0.1;
 
 bool ct_rank_monitor_is_crossed(struct ct_rank_monitor *w, const struct ct_rank_test *to,
                                 double before, double behind)
 {
     const struct passage p = {.to = to};
-    const double part = find_smallest_pivot(w, &p, crossed_pivot_ratio * fmin(before, behind));
+    const double part = find_smallest_pivot(w, &p, CT_SINGULAR_PIVOT * fmin(before, behind));
     return part > 0 && part < 1;
 }
 

@@ -16,7 +16,6 @@
 #include "solve/constraint/partition.h"
 
 enum { CT_MOST_SINGULAR = 100 }; // Limit: recorded for the report, which counts the rest
-enum { CT_MOST_POLES = 4 };      // Limit: of multipliers, on one crossing
 
 /// Smallest pivot, relative to its largest value so far, at which accelerations are computed
 /// without a crossing. Derived: their error grows by 1/0.25^2 = 16 there, a decimal digit.
@@ -39,30 +38,20 @@ struct ct_rank_monitor {
     // time to the next singular configuration; INFINITY: none is predicted
     double time_to_singular;
     double output_rtol; // relative tolerance of outputs; 0: unknown
-    // largest pivot so far, or its estimate after a start near a singular configuration
-    double reference_pivot;
-    int rank;     // the largest rank of J so far
+    int rank;           // the largest rank of J so far
     double reach; // time before the singular configuration in which f should not be computed
     double largest_pivot; // so far
     // last pivot / largest_pivot; time and step size of the last state
     double relative_pivot, t, dt;
     double pivot, pivot_rate; // last pivot, 0: unknown; its decrease per second
-    // the method retains rows during a step, and some rows are redundant
-    bool retains_rows;
-    bool solver_unchanged;  // at the last state the solver's pivots had not changed
-    long switches, nmade;   // of the coordinate partitioning at the last rank test
-    double weakest, volume; // pivots of its solver at the last rank test
-    // at the last test, at the present one, between both
-    struct ct_tangent_basis *there, *here, *along;
-    double *u, *a;             // (nu) speeds and accelerations at the last state
-    double largest_speed;      // at accepted states
+    bool solver_unchanged;    // at the last state the solver's pivots had not changed
+    long switches, nmade;     // of the coordinate partitioning at the last rank test
+    double weakest, volume;   // pivots of its solver at the last rank test
+    struct ct_tangent_basis *there, *here; // at the last test, at the present one
     long ncrossed;             // singular configurations that fixed steps have crossed
     double t_crossed;          // time of the first of them
     double closest, t_closest; // smallest relative pivot at steps that do not cross; its time
-    bool has_poles;            // times of poles of multipliers are requested
-    int npole;
-    // times of singular configurations on the last crossing, to round-off
-    double pole[CT_MOST_POLES];
+    double pole; // time of the singular configuration on the last crossing; NaN: none
     long npassed;
     struct ct_singular_configuration *passed; // the first of them (CT_MOST_SINGULAR)
     double *last;                             // the last accepted state  (nq + nu)
@@ -88,9 +77,6 @@ struct ct_rank_monitor_step {
 /// have passed.
 bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *y,
                              const double *dy, const struct ct_rank_monitor_step *step);
-/// Do not compare the next state with earlier ones: speeds have changed other than by
-/// accelerations, for example by a projection.
-void ct_rank_monitor_forget_motion(struct ct_rank_monitor *w);
 /// After a jump of speeds at y, the last accepted state: predict again, as the motion has
 /// changed.
 void ct_rank_monitor_reset(struct ct_rank_monitor *w, double t, const double *y,
@@ -127,10 +113,10 @@ struct ct_singular_start {
     const bool *is_given; // (nu) speeds of coordinates with demanded values
     const char *joints; // whose constraints are dependent at the initial state only; NULL: none
     double rtol, atol, output_rtol;
-    bool is_fixed, is_implicit; // steps of fixed size; the method
-    double *y, *dy;             // in: the initial state; y out: where steps begin
-    double *stage, *scratch;    // workspace (ny)
-    double t0;                  // out: where steps begin, 0 or before
+    bool is_fixed;           // steps of fixed size
+    double *y, *dy;          // in: the initial state; y out: where steps begin
+    double *stage, *scratch; // workspace (ny)
+    double t0;               // out: where steps begin, 0 or before
 };
 
 /// Move the initial state, y at t0, from a singular configuration to a little before it, along

@@ -3,14 +3,13 @@
 //
 // Accelerations are smooth across a singular configuration. Multipliers are not: a load on the
 // motion that is free only in that configuration is carried by rows that become dependent. Their
-// multipliers grow like 1/(t - t_k) towards a configuration at t_k. The rest of them is smooth:
+// multipliers grow like 1/(t - t_s) towards a configuration at t_s. The rest of them is smooth:
 //
-//     lam(t) = P(t) + sum_k R_k/(t - t_k),                                                (8.43)
-//     R_k = [lam prod_l (t - t_l)](t_k)/prod_{l != k} (t_k - t_l)
+//     lam(t) = P(t) + R/(t - t_s),   R = [lam (t - t_s)](t_s)                             (8.43)
 //
-// with P and the product in brackets interpolated between stages. Only poles that improve the
-// interpolation of the stages are used. Results that are linear in multipliers are interpolated in
-// the same way. Computed from interpolated multipliers, they would contain errors of y in the gap
+// with P and the product in brackets interpolated between stages. The pole is used only if it
+// improves the interpolation of the stages. Results that are linear in multipliers are interpolated
+// in the same way. Computed from interpolated multipliers, they would contain errors of y in the gap
 // times unbounded loads, even where they do not depend on these loads.
 #include "solve/singular/singular.h"
 
@@ -24,7 +23,7 @@
 // Definition: stages on both sides of the gap
 enum { N = CT_CROSSING_STAGES, CHECKED = 2 };
 
-// An interpolant with or without poles: weights of the stages at t, and weights of the other
+// An interpolant with or without the pole: weights of the stages at t, and weights of the other
 // stages in the prediction of the two stages next to the gap, for the error.
 struct interpolant {
     double weight[N], check[CHECKED][N];
@@ -38,10 +37,8 @@ struct numbers {
 
 struct ct_singular_dense_output {
     const struct ct_rank_monitor *w;
-    double *stage; // (ny)
-    int n;         // poles
-    double pole[CT_MOST_POLES];
-    struct interpolant smooth, singular; // without poles, with all of them
+    double *stage;                       // (ny)
+    struct interpolant smooth, singular; // without the pole, with it
     struct numbers a, lam, result;
     bool *is_linear; // (nresult) in multipliers
     bool any_linear;
@@ -112,31 +109,23 @@ static double lagrange(const struct ct_gap_interpolation *b, const bool *some, i
     return weight;
 }
 
-// Weights of the stages for t, with the first n poles.
-static void find_weights(const struct ct_singular_dense_output *s,
-                         const struct ct_gap_interpolation *b, const bool *some, int n,
-                         double t, double *weight)
+// Weights of the stages for t; pole: NULL for none.
+static void find_weights(const struct ct_gap_interpolation *b, const bool *some,
+                         const double *pole, double t, double *weight)
 {
-    double plain[N];
     for (int j = 0; j < N; j++)
-        weight[j] = plain[j] = lagrange(b, some, j, t);
-    for (int k = 0; k < n; k++) {
-        double factor = 1 / distance_to_pole(t, s->pole[k]);
-        for (int j = 0; j < N; j++)
-            factor -= some[j] ? plain[j] / distance_to_pole(b->t[j], s->pole[k]) : 0;
-        for (int j = 0; j < N; j++) {
-            double residue = lagrange(b, some, j, s->pole[k]) * (b->t[j] - s->pole[k]);
-            for (int l = 0; l < n; l++)
-                if (l != k)
-                    residue *= (b->t[j] - s->pole[l]) / (s->pole[k] - s->pole[l]);
-            weight[j] += factor * residue;
-        }
-    }
+        weight[j] = lagrange(b, some, j, t);
+    if (!pole)
+        return;
+    double factor = 1 / distance_to_pole(t, *pole);
+    for (int j = 0; j < N; j++)
+        factor -= some[j] ? weight[j] / distance_to_pole(b->t[j], *pole) : 0;
+    for (int j = 0; j < N; j++)
+        weight[j] += factor * lagrange(b, some, j, *pole) * (b->t[j] - *pole);
 }
 
-// m (out): the interpolant with the first n poles, for t.
-static void find_model(const struct ct_singular_dense_output *s,
-                       const struct ct_gap_interpolation *b, double t, int n,
+// m (out): the interpolant for t.
+static void find_model(const struct ct_gap_interpolation *b, const double *pole, double t,
                        struct interpolant *m)
 {
     bool all[N], others[N];
@@ -144,24 +133,12 @@ static void find_model(const struct ct_singular_dense_output *s,
         all[j] = true;
         others[j] = j != N / 2 - 1 && j != N / 2;
     }
-    find_weights(s, b, all, n, t, m->weight);
+    find_weights(b, all, pole, t, m->weight);
     for (int c = 0; c < CHECKED; c++) {
         const int j = N / 2 - 1 + c;
-        find_weights(s, b, others, n, b->t[j], m->check[c]);
+        find_weights(b, others, pole, b->t[j], m->check[c]);
         m->check[c][j] -= 1;
     }
-}
-
-// Poles of the crossing; two that are very close count as one.
-static void find_poles(struct ct_singular_dense_output *s, const struct ct_gap_interpolation *b)
-{
-    const struct ct_rank_monitor *w = s->w;
-    // Chosen: far below the distance between stages
-    const double pole_separation = 1e-7 * (b->t[N - 1] - b->t[0]);
-    s->n = 0;
-    for (int k = 0; k < w->npole; k++)
-        if (!s->n || w->pole[k] - s->pole[s->n - 1] > pole_separation)
-            s->pole[s->n++] = w->pole[k];
 }
 
 static void store_value(struct numbers *x, const double *at, int j)
@@ -178,18 +155,16 @@ static double error_of(const struct interpolant *m, const double *at)
     return error;
 }
 
-// A value has poles if they reduce the error of predicting the two stages next to the gap from
-// the others to `pole_gain`.
+// A value has the pole if that reduces the error of predicting the two stages next to the gap from
+// the others.
 static void interpolate(const struct ct_singular_dense_output *s, struct numbers *x,
-                        bool has_poles)
+                        bool may_have_pole)
 {
-    // Chosen: as above
-    const double pole_gain = 0.1;
     for (size_t i = 0; i < x->n; i++) {
         const double *at = x->at + i * N;
-        const bool is_singular
-            = has_poles && error_of(&s->singular, at) < pole_gain * error_of(&s->smooth, at);
-        x->value[i] = ct_vector_dot((is_singular ? &s->singular : &s->smooth)->weight, at, N);
+        const bool has_pole
+            = may_have_pole && error_of(&s->singular, at) < error_of(&s->smooth, at);
+        x->value[i] = ct_vector_dot((has_pole ? &s->singular : &s->smooth)->weight, at, N);
     }
 }
 
@@ -223,15 +198,15 @@ bool ct_singular_dense_output(struct ct_singular_dense_output *s, double t, cons
                               const struct ct_gap_interpolation *b, double *value)
 {
     struct ct_evaluator *m = s->w->m;
-    find_poles(s, b);
-    find_model(s, b, t, 0, &s->smooth);
-    find_model(s, b, t, s->n, &s->singular);
+    const double pole = s->w->pole;
+    find_model(b, NULL, t, &s->smooth);
+    find_model(b, &pole, t, &s->singular);
     for (int j = 0; j < N; j++)
         if (!store_stage(s, b, j))
             return false;
     interpolate(s, &s->a, false);
-    interpolate(s, &s->lam, true);
-    interpolate(s, &s->result, true);
+    interpolate(s, &s->lam, !isnan(pole));
+    interpolate(s, &s->result, !isnan(pole));
     ct_evaluator_set(m, t, y);
     memcpy(value, results(m, s->a.value, s->lam.value), m->e->nresult * sizeof *value);
     for (size_t i = 0; i < m->e->nresult; i++)

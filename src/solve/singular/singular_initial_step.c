@@ -20,11 +20,8 @@
 #include <math.h>
 #include <string.h>
 
-// Largest change of a coordinate from the middle to either end of the step [rad, m], at first;
-// halved where the step is inaccurate.
-// Chosen: round-off of short steps against errors of long ones.
-static const double longest_displacement = 0.4;
-// Limit: halvings of the step; a motion that stays near the singular configuration for long
+// Limit: halvings of the step, which at first moves the fastest coordinate by a radian or metre to
+// either side; a motion that stays near the singular configuration for long
 // later leaves faster than its initial accelerations predict
 enum { MOST_HALVINGS = 12 };
 
@@ -33,9 +30,6 @@ enum { MOST_HALVINGS = 12 };
 // Default: refusal for lack of accuracy against errors of steps.
 // Test: near_singular_slow
 static const double crossing_distance = 0.2;
-// Within this distance [rad, m] an initial state does not show how the smallest pivot falls.
-// Default: as above. Test: singular
-static const double near_distance = 0.5;
 
 // Accepted error of the step, relative to the largest state: the first, or the second times the
 // tolerance if that is larger.  (8.35)
@@ -50,7 +44,6 @@ struct initial_step {
     double largest_error;    // of the step, relative to the largest state
     double *before;          // (ny, out)
     double *end, *dend;      // (ny)
-    struct ct_tangent_basis *tangents[2];
 };
 
 // A step of length h across the singular configuration, centred `middle` seconds after the
@@ -110,8 +103,7 @@ static bool choose_partition(struct ct_singular_start *r, double h, const double
 
 // Largest distance of y from the initial state, relative to the largest state, on the intended
 // motion: speeds near a singular configuration are not more accurate; other motions differ by
-// the speeds themselves.
-// Chosen: between both.
+// the speeds themselves. Default: between both. Test: near_singular
 static const double same_motion_tolerance = 1e-4;
 
 // Largest difference between y (ny) and the start, without the work, relative to the largest state.
@@ -147,24 +139,19 @@ static bool leads_across(struct ct_singular_start *r, const struct initial_step 
     return ct_singular_meets_start(r->assembled, r->stage, (size_t)r->p->ny);
 }
 
-// Solve the collocation equations into l->before to the smallest error that round-off allows:
-// the tolerance is raised tenfold until the iteration converges. Returns the error, or
-// INFINITY.
+// Solve the collocation equations into l->before. Returns the error, or INFINITY.
 static double collocate_backwards(struct ct_singular_start *r, const struct initial_step *l,
                                   const struct crossing_step *c)
 {
-    const double *y = r->assembled, largest = ct_vector_largest(y, (size_t)r->p->ny),
-                 t = begin_of(c);
-    double error, part = smallest_error;
-    while (part <= l->largest_error) {
-        const struct ct_tolerance tolerance = {part, part * largest};
-        if (ct_crossing_initial_step(r->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
-                                     &error, l->work, r->stats)
-            == CT_EVAL_OK)
-            return fmax(error, 1) * part;
-        part *= 10;
-    }
-    return INFINITY;
+    const double *y = r->assembled, t = begin_of(c),
+                 largest = ct_vector_largest(y, (size_t)r->p->ny);
+    const struct ct_tolerance tolerance = {l->largest_error, l->largest_error * largest};
+    double error;
+    return ct_crossing_initial_step(r->p, 0, c->h, -t / c->h, y, r->dy, &tolerance, l->before,
+                                    &error, l->work, r->stats)
+                == CT_EVAL_OK
+             ? error * l->largest_error
+             : INFINITY;
 }
 
 // Project the state at the beginning of the step as accurately as its stages.
@@ -196,28 +183,6 @@ static void find_state_before(struct ct_singular_start *r, const struct initial_
         c->error = error;
 }
 
-// Does J keep its rank on either side of the gap? A second singular configuration among the
-// stages would make samples inaccurate.
-static bool keeps_rank(struct ct_singular_start *r, const struct initial_step *l,
-                       const struct crossing_step *c)
-{
-    const struct ct_gap_interpolation b
-        = ct_crossing_interpolation(l->work, begin_of(c), c->h, 0.5);
-    struct ct_tangent_basis *there = l->tangents[0], *here = l->tangents[1];
-    for (int k = 0; k < b.n; k++) {
-        ct_evaluator_set(r->m, b.t[k], b.y + (size_t)k * (size_t)r->p->ny);
-        ct_evaluator_constraint(r->m);
-        ct_partition_pivot(r->s);
-        ct_tangent_basis_find(r->s, here);
-        if (k && k != b.n / 2 && ct_singularity_test_sign_changed(r->s, there, here))
-            return false;
-        struct ct_tangent_basis *v = there;
-        there = here;
-        here = v;
-    }
-    return true;
-}
-
 // Do root functions keep their signs? A switch within the step would change the motion.
 static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_step *l,
                              double t)
@@ -238,13 +203,11 @@ static bool keeps_root_signs(struct ct_singular_start *r, const struct initial_s
 static void find_step(struct ct_singular_start *r, const struct initial_step *l, double middle,
                       struct crossing_step *best)
 {
-    struct crossing_step c
-        = {middle, 2 * time_for(l, speed_at(l, middle), longest_displacement), INFINITY};
+    struct crossing_step c = {middle, 2 * time_for(l, speed_at(l, middle), 1), INFINITY};
     for (int i = 0; i < MOST_HALVINGS && c.h > best->h && c.h / 2 > fabs(middle);
          i++, c.h /= 2) {
         find_state_before(r, l, &c);
-        if (c.error < INFINITY && keeps_rank(r, l, &c)
-            && keeps_root_signs(r, l, begin_of(&c))) {
+        if (c.error < INFINITY && keeps_root_signs(r, l, begin_of(&c))) {
             *best = c;
             return;
         }
@@ -300,14 +263,8 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
 {
     double **const vector[] = {&l->before, &l->end, &l->dend};
     struct crossing_step best = {.error = INFINITY};
-    for (size_t i = 0; i < COUNT(l->tangents); i++) {
-        l->tangents[i] = ct_tangent_basis_create(r->arena);
-        ct_tangent_basis_reserve(r->s, l->tangents[i]);
-    }
     for (size_t i = 0; i < COUNT(vector); i++)
         *vector[i] = CT_NEWN(r->arena, double, (size_t)r->p->ny);
-    r->singular->time_to_singular = 0; // closer than crossings usually begin
-    r->singular->reach = INFINITY;
     l->work = ct_crossing.create(r->arena, &ct_crossing, r->p);
     find_step(r, l, l->time_to_singular, &best);
     if (best.error < INFINITY)
@@ -321,7 +278,6 @@ static bool begin_before(struct ct_singular_start *r, struct initial_step *l)
         warn_of_roundoff(r, unknown);
     r->t0 = begin_of(&best);
     memcpy(r->y, l->before, (size_t)r->p->ny * sizeof *r->y);
-    r->singular->retains_rows = r->is_implicit && (size_t)r->s->rank < r->m->nrow;
     ct_rank_monitor_announce(r->singular, r->t0, r->y, best.h / 2);
     return true;
 }
@@ -366,28 +322,25 @@ static double find_singular_distance(struct ct_rank_monitor *w, const double *y,
                                     small_part * time_for(l, l->u, crossing_distance));
 }
 
-// Initial state near a singular configuration: begin before it, or pass its predicted distance
-// to the rank monitor.
+// Initial state near a singular configuration: begin before it. If that fails and the motion leads
+// to it, the first step crosses it.
 static void begin_near_singular(struct ct_singular_start *r, struct initial_step *l)
 {
     const double distance = find_singular_distance(r->singular, r->y, r->dy, l),
                  size = fabs(distance);
-    if (!(size > 0 && size < near_distance))
+    if (!(size > 0 && size < crossing_distance))
         return;
-    const double along = fmax(size, l->u * time_for(l, l->u, longest_displacement));
+    const double along = fmax(size, l->u * time_for(l, l->u, 1));
     set_largest_error(l, r->output_rtol, fmin(1, along));
     l->time_to_singular = copysign(time_for(l, l->u, size), distance);
-    ct_rank_monitor_scale_pivot(r->singular, 0, r->y, near_distance / size);
-    if (size > crossing_distance || !begin_before(r, l))
-        ct_rank_monitor_start_near(r->singular, 0, r->y,
-                                   distance > 0 ? l->time_to_singular : INFINITY,
-                                   near_distance / size);
+    if (!begin_before(r, l) && distance > 0)
+        ct_rank_monitor_announce(r->singular, 0, r->y, l->time_to_singular);
 }
 
 bool ct_singular_starts_near(struct ct_rank_monitor *w, const double *y, const double *dy)
 {
     struct initial_step l = {.time_to_singular = 0};
-    return w->m->nrow && fabs(find_singular_distance(w, y, dy, &l)) < near_distance;
+    return w->m->nrow && fabs(find_singular_distance(w, y, dy, &l)) < crossing_distance;
 }
 
 bool ct_singular_initial_step(struct ct_singular_start *r)

@@ -170,7 +170,7 @@ static struct probe make_probe(struct ct_arena *scratch, struct ct_evaluator *m,
 // round-off as the lower limit. p->largest: that row, in its own unit.
 static int find_rank_here(struct probe *p, struct ct_arena *scratch, const double *y)
 {
-    // Chosen: far enough for J to change, near enough to be similar
+    // Default: far enough for J to change, near enough to be similar. Test: singular_start
     const double distance = 0.1;
     const size_t ny = p->m->nq + p->m->nu + 1;
     move(p, scratch, distance);
