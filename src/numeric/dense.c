@@ -516,29 +516,6 @@ size_t ct_symmetric_eigenvalues_work(int n)
     return (size_t)max_int(1, 3 * n - 1);
 }
 
-int ct_symmetric_count_below(double *A, int n, int lda, double x)
-{
-    // Derived: with growth of at most 1/1e-6 the round-off of the pivots is about n 1e-10 of the
-    // largest entry
-    const double certain = 1e-6;
-    double largest = 0;
-    int count = 0;
-    for (int k = 0; k < n; k++) {
-        const double size = fabs(A[k + lda * k] -= x);
-        largest = size > largest ? size : largest;
-    }
-    for (int k = 0; k < n; k++) {
-        const double *column = A + lda * k;
-        const double pivot = column[k], inverse = 1 / pivot;
-        if (!(fabs(pivot) > certain * largest))
-            return -1;
-        count += pivot < 0;
-        for (int j = k + 1; j < n; j++)
-            ct_vector_add(A + lda * j + j, -(column[j] * inverse), column + j, (size_t)(n - j));
-    }
-    return count;
-}
-
 bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work)
 {
     int info;

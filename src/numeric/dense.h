@@ -101,9 +101,6 @@ size_t ct_pencil_eigen_work(int n);
 /// Eigenvalues w (n, ascending) of a symmetric matrix (lower; destroyed).
 bool ct_symmetric_eigenvalues(double *w, double *A, int n, int lda, double *work);
 size_t ct_symmetric_eigenvalues_work(int n);
-/// Number of eigenvalues below x by Sylvester's law of inertia: signs of the pivots of A - x 1 =
-/// L D L'. -1 where a pivot is too small for its sign to be certain. Cost n^3/3.
-int ct_symmetric_count_below(double *A, int n, int lda, double x);
 /// Eigenvalues with orthonormal eigenvectors, which take the place of A. Workspace as above.
 bool ct_symmetric_eigen(double *w, double *A, int n, int lda, double *work);
 

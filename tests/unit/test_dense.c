@@ -409,26 +409,6 @@ static void eigenvalues_of_a_chain_are_known(void **unused)
         check_close("eigenvalue", w[i], 2 - 2 * cos((i + 1) * pi / (N + 1)), close_enough);
 }
 
-// Of the same chain, where the eigenvalues are known: between two of them the count is certain.
-static void eigenvalues_below_a_number_are_counted(void **unused)
-{
-    (void)unused;
-    enum { N = 9 };
-    const double pi = acos(-1);
-    for (int below = 0; below <= N; below++) {
-        double A[N * N] = {0};
-        for (int i = 0; i < N; i++) {
-            A[i + N * i] = 2;
-            if (i + 1 < N)
-                A[i + 1 + N * i] = -1;
-        }
-        const double x = 2 - 2 * cos((below + 0.4) * pi / (N + 1));
-        assert_int_equal(ct_symmetric_count_below(A, N, N, x), below);
-    }
-    double singular[] = {1, 1, 0, 1}; // eigenvalues 0 and 2; its second pivot is 0
-    assert_int_equal(ct_symmetric_count_below(singular, 2, 2, 0), -1);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -444,7 +424,6 @@ int main(void)
         cmocka_unit_test(least_squares_is_shortest_for_every_shape_and_rank),
         cmocka_unit_test(empty_least_squares_gives_zero),
         cmocka_unit_test(eigenvalues_of_a_chain_are_known),
-        cmocka_unit_test(eigenvalues_below_a_number_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

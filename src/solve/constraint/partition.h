@@ -136,9 +136,6 @@ bool ct_partition_has_pivot(const struct ct_partition *s);
 /// smallest of the largest `rank` singular values of J, as the retained rows may lose rank where J
 /// does not.
 double ct_partition_pivot(struct ct_partition *s);
-/// Is ct_partition_pivot between the two values? With redundant rows this is cheaper than
-/// computing it. False if that is uncertain, and without redundant rows.
-bool ct_partition_pivot_is_between(struct ct_partition *s, double low, double high);
 /// Bases of the null space and the left null space of J at one state, to compare the signs of
 /// the test function (8.40) at two states.
 struct ct_tangent_basis {

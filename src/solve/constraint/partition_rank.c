@@ -107,17 +107,6 @@ bool ct_partition_has_pivot(const struct ct_partition *s)
         && !(ct_partition_has_redundant_rows(s) && ct_partition_is_large(s));
 }
 
-bool ct_partition_pivot_is_between(struct ct_partition *s, double low, double high)
-{
-    const int m = (int)s->m->nrow, nzero = m - s->rank;
-    if (!ct_partition_has_redundant_rows(s))
-        return false;
-    find_JJt(s, s->A);
-    memcpy(s->MB, s->A, (size_t)(m * m) * sizeof *s->A);
-    return ct_symmetric_count_below(s->A, m, m, low * low) == nzero
-        && ct_symmetric_count_below(s->MB, m, m, high * high) > nzero;
-}
-
 // The smallest pivot of J_d, each divided by the unit of its row.
 static double smallest_pivot(struct ct_partition *s)
 {

@@ -200,10 +200,8 @@ static void test_last_state(struct ct_rank_monitor *w, double pending)
 
 // Result of the rank test at an accepted state.
 struct rank_test_result {
-    double now,
-        part; // the pivot, and the relative pivot; lower bounds where is_far
-    bool is_far;
-    bool is_crossed; // a singular configuration was crossed since the last test
+    double now, part; // the pivot, and the relative pivot
+    bool is_crossed;  // a singular configuration was crossed since the last test
 };
 
 static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
@@ -213,10 +211,7 @@ static struct rank_test_result test_accepted_state(struct ct_rank_monitor *w,
     if (w->solver_unchanged)
         test_last_state(w, at->pending);
     evaluate_constraints(w, ct_time_just_before(at->t, at->pending), at->y);
-    l.is_far = w->largest_pivot > 0
-            && ct_partition_pivot_is_between(w->s, predicted_pivot * w->largest_pivot,
-                                             w->largest_pivot); // then at least so much
-    l.now = l.is_far ? predicted_pivot * w->largest_pivot : ct_partition_pivot(w->s);
+    l.now = ct_partition_pivot(w->s);
     l.part = l.now / fmax(w->largest_pivot, l.now);
     ct_tangent_basis_find(w->s, w->here);
     if (w->here->rank && w->there->rank)
@@ -269,7 +264,7 @@ static void store_test(struct ct_rank_monitor *w, const struct ct_rank_test *at,
     w->volume = w->s->has_solver ? w->s->solver[0]->volume : NAN;
     w->largest_pivot = fmax(w->largest_pivot, l->now);
     w->pivot_rate = ((w->pivot > 0 ? w->pivot : w->largest_pivot) - l->now) / dt;
-    w->pivot = l->is_far ? w->largest_pivot : l->now;
+    w->pivot = l->now;
     w->time_to_singular = INFINITY;
     w->s->is_near_singular = l->part < near_pivot;
     w->s->nearness = l->part;
@@ -311,7 +306,7 @@ bool ct_rank_monitor_predict(struct ct_rank_monitor *w, double t, const double *
         record_closest(w, t, &l);
     }
     store_test(w, &at, &l, dt);
-    if (!(l.is_far || l.part > predicted_pivot || step->is_fixed))
+    if (!(l.part > predicted_pivot || step->is_fixed))
         predict_next(w, &at, l.now);
     return true;
 }

@@ -68,15 +68,6 @@ static double speed_at(const struct initial_step *l, double t)
     return sqrt(fmax(0, l->u * l->u + t * (2 * l->ua + t * l->a * l->a)));
 }
 
-// Largest residual of the constraints at t, y [m, rad]. At the ends of the step it is large if
-// the speeds belong to no motion.
-static double constraint_residual(struct ct_singular_start *r, double t, const double *y)
-{
-    ct_evaluator_set(r->m, t, y);
-    ct_evaluator_constraint(r->m);
-    return ct_vector_largest(r->m->phi, r->m->nrow);
-}
-
 // Choose rows and columns of the coordinate partitioning at the state extrapolated by the time
 // h with the speeds of y.
 static bool choose_partition(struct ct_singular_start *r, double h, const double *y)
@@ -177,9 +168,7 @@ static void find_state_before(struct ct_singular_start *r, const struct initial_
     memset(r->dy, 0, (size_t)r->p->ny * sizeof *r->dy);
     ct_evaluator_copy(r->dy, r->m->rate, r->m->nq);
     const double error = collocate_backwards(r, l, c);
-    if (error <= l->largest_error
-        && constraint_residual(r, t, l->before) <= ct_crossing_mismatch_limit
-        && project_state(r, l, t) && leads_across(r, l, c))
+    if (error <= l->largest_error && project_state(r, l, t) && leads_across(r, l, c))
         c->error = error;
 }
 
