@@ -150,6 +150,26 @@ static void events_are_on_the_way(void **state)
     ct_system_destroy(s);
 }
 
+// A pulse by time that begins and ends within a step.
+static void pulses_of_a_third_of_a_step_are_seen(void **state)
+{
+    (void)state;
+    static const char text[]
+        = "cotree: 1\n"
+          "bodies: {cart: {mass: 1}}\n"
+          "joints: {slide: {type: prismatic, from: ground, to: cart,\n"
+          "  effort: 'if(t < 0.33, 0, if(t < 0.36, 1, 0))'}}\n"
+          "outputs: [slide.u]\n";
+    struct ct_system *s = ct_system_load_text(ctx, text, strlen(text), NULL, NULL);
+    struct ct_data *d = ct_data_create(ctx, s, NULL);
+    assert_non_null(d);
+    for (int i = 0; i < 5; i++)
+        assert_true(ct_data_step(ctx, d, 0.1));
+    CLOSE(ct_data_value(d, CT_SPEED, 0), 0.03, 1e-9);
+    ct_data_destroy(d);
+    ct_system_destroy(s);
+}
+
 static void inputs_are_held_between_steps(void **state)
 {
     (void)state;
@@ -772,6 +792,7 @@ int main(void)
         cmocka_unit_test(names_have_values_units_and_places),
         cmocka_unit_test(steps_lead_where_a_run_leads),
         cmocka_unit_test(events_are_on_the_way),
+        cmocka_unit_test(pulses_of_a_third_of_a_step_are_seen),
         cmocka_unit_test(inputs_are_held_between_steps),
         cmocka_unit_test(friction_holds_or_lets_go_as_inputs_change),
         cmocka_unit_test(parameters_carry_what_is_derived_from_them),

@@ -207,11 +207,12 @@ static double bisect(struct ct_evaluator *m, size_t i, double a, double b)
 static void find_changes(struct ct_evaluator *m, size_t i, double t0, double t1,
                          struct times *list)
 {
+    // Limit: of the time of a search; shorter changes are missed
+    enum { PIECES = 4096 };
     double g, a = t0;
     bool side = outcome(m, i, a, &g);
-    for (int k = 1; k <= CT_TIME_EVENT_PIECES; k++) {
-        const double b
-            = k == CT_TIME_EVENT_PIECES ? t1 : t0 + (t1 - t0) * k / CT_TIME_EVENT_PIECES;
+    for (int k = 1; k <= PIECES; k++) {
+        const double b = k == PIECES ? t1 : t0 + (t1 - t0) * k / PIECES;
         const bool next = outcome(m, i, b, &g);
         if (next != side) {
             const double t = bisect(m, i, a, b);

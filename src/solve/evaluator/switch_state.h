@@ -32,11 +32,9 @@ void ct_switches_follow(struct ct_evaluator *m, size_t i);
 /// Are the knots of a table kinks for methods of this order? Those of linear tables are, and of
 /// cubic ones, whose third derivative jumps, for high orders.
 bool ct_table_has_kinks(const struct ct_table *table, int order);
-/// A search for time events looks at switches at the ends of so many equal pieces of the time.
-/// Limit: changes that are nearer to each other than a piece may both be missed.
-enum { CT_TIME_EVENT_PIECES = 4096 };
 /// All time events in (t0, t1]: changes of switches of time, and knots of tables that are kinks for
-/// methods of this order. Ascending; the list lives in a.
+/// methods of this order. Ascending; the list lives in a. Two changes closer to each other than (t1
+/// - t0)/4096 may both be missed.
 size_t ct_time_events(struct ct_arena *a, struct ct_evaluator *m, int order, double t0,
                       double t1, double **time);
 

@@ -6,9 +6,9 @@
 #include <float.h>
 #include <string.h>
 
-// A search for time events goes so many calls ahead. Derived: a call is then a piece of the search,
-// so that a change is missed only if it is undone within a call.
-static const double steps_ahead = CT_TIME_EVENT_PIECES;
+// A search for time events goes so many calls ahead, a quarter of a call for each of its pieces.
+// Default: evaluations against pulses within a call that are missed. Test: live
+static const double steps_ahead = 1024;
 
 struct ct_advance {
     struct ct_run *r;
