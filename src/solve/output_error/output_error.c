@@ -401,12 +401,21 @@ void ct_output_error_accept(struct ct_output_error *p)
 
 // ---- outputs that are sensitive to errors of states ---------------------------------------------
 
+// Outputs of accelerations do not reject a step whose error of states, in tolerances, is less than
+// this. Such a step is a third, the fourth root, of what states ask for. Still shorter steps do not
+// damp vibrations that earlier steps have excited, and would have to resolve them.
+// Chosen: a third.
+static const double least_rejected_error = 1e-2;
+
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,
-                                    const double *e, const struct ct_tolerance *tolerance)
+                                    const double *e, const struct ct_tolerance *tolerance,
+                                    double states)
 {
     double most = 0;
     for (size_t i = 0; i < p->n; i++) {
         struct group *g = &p->group[i];
+        if (g->outputs.kind == CT_OUTPUTS_OF_SOLUTIONS && !(states >= least_rejected_error))
+            continue;
         const struct ct_tolerance own
             = ct_controlled_outputs_tolerance(g->outputs.kind, tolerance);
         for (size_t k = 0; k < g->record.n; k++)

@@ -54,9 +54,10 @@ void ct_output_error_expect_size(struct ct_output_error *p, double t, const doub
 void ct_output_error_accept(struct ct_output_error *p);
 
 /// As ct_output_sensitivity_error and ct_output_sensitivity_any, of all outputs that are
-/// controlled.
+/// controlled; states: norm of their error, where 1 is the tolerance.
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,
-                                    const double *e, const struct ct_tolerance *tolerance);
+                                    const double *e, const struct ct_tolerance *tolerance,
+                                    double states);
 bool ct_output_error_has_sensitive(struct ct_output_error *p, double t, const double *y,
                                    const struct ct_tolerance *tolerance);
 

@@ -78,11 +78,10 @@ static double sensitive_output_error(void *user, double t, const double *y, cons
                                      const struct ct_tolerance *tolerance, double states)
 {
     struct ct_run *r = user;
-    (void)states; // steps of any error of the states are controlled
     if (!r->method->is_implicit)
         return 0;
     return ct_output_error_of_sensitive(r->output_error, ct_run_time_before_event(r, t), y, e,
-                                        tolerance);
+                                        tolerance, states);
 }
 
 // A followed angle that turns faster at the end of a step than at its start must still stay within
