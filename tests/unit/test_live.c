@@ -154,12 +154,11 @@ static void events_are_on_the_way(void **state)
 static void pulses_of_a_third_of_a_step_are_seen(void **state)
 {
     (void)state;
-    static const char text[]
-        = "cotree: 1\n"
-          "bodies: {cart: {mass: 1}}\n"
-          "joints: {slide: {type: prismatic, from: ground, to: cart,\n"
-          "  effort: 'if(t < 0.33, 0, if(t < 0.36, 1, 0))'}}\n"
-          "outputs: [slide.u]\n";
+    static const char text[] = "cotree: 1\n"
+                               "bodies: {cart: {mass: 1}}\n"
+                               "joints: {slide: {type: prismatic, from: ground, to: cart,\n"
+                               "  effort: 'if(t < 0.33, 0, if(t < 0.36, 1, 0))'}}\n"
+                               "outputs: [slide.u]\n";
     struct ct_system *s = ct_system_load_text(ctx, text, strlen(text), NULL, NULL);
     struct ct_data *d = ct_data_create(ctx, s, NULL);
     assert_non_null(d);

@@ -16,9 +16,9 @@ static const double kappa_most = 0.03;
 // unit round-off.
 static const struct ct_tolerance roundoff_tolerance = {1e-12, 1e-12};
 static const double kappa_roundoff = 1e-4; // Derived: see above
-// It is accepted at this size, 1e-12 of the states, where it stalls or reaches the limit of
-// corrections. Definition: the tolerance above.
-static const double largest_stalled = 1;
+// It is accepted at this size, 1e-10 of the states, where it stalls or reaches the limit of
+// corrections. Chosen: steps refused for round-off against the error of the iteration.
+static const double largest_stalled = 100;
 // A factor on kappa in the index-3 form, which tests positions alone. Errors of speeds are those of
 // positions over the step. Default: corrections against the error of speeds. Test: dae
 static const double kappa_index3 = 0.1;

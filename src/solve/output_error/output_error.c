@@ -404,7 +404,8 @@ void ct_output_error_accept(struct ct_output_error *p)
 // Outputs of accelerations do not reject a step whose error of states, in tolerances, is less than
 // this. Such a step is a third, the fourth root, of what states ask for. Still shorter steps do not
 // damp vibrations that earlier steps have excited, and would have to resolve them.
-// Chosen: a third.
+// Default: accelerations as accurate as states against runs that do not end.
+// Test: energy_flexible_four_bar.
 static const double least_rejected_error = 1e-2;
 
 double ct_output_error_of_sensitive(struct ct_output_error *p, double t, const double *y,
