@@ -68,8 +68,8 @@ struct ct_partition {
     bool needs_refinement;        // according to the last check
     bool is_renewed; // a projection has checked the choice since the last step ended
     long nweak;      // consecutive failed checks, or projections without a solver
-    double checked_at,
-        correction_checked; // strength (0: none) and `correction` at the last check
+    int nunchecked; // projections until the next check, while strength and corrections are alike
+    double checked_at, correction_checked; // strength and `correction` at the last check
     // largest correction of a coordinate over the residual, last projection; 0: no correction
     double correction;
     struct ct_strength strength; // of solver[0]
