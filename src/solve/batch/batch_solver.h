@@ -173,7 +173,7 @@ static inline set judge(const struct ct_batch *s, const vec *phi, int i, vec *be
         const double scale = s->lane[l].scale;
         const bool is_closed
             = ct_is_projected(s->sigma[l], size[l] / scale, (*before)[l] / scale);
-        if (is_closed || ct_is_diverging(i, size[l]))
+        if (is_closed || ct_is_diverging(i, size[l], (*before)[l]))
             active &= ~(1u << l);
         if (!is_closed && !ct_has_lane(active, l))
             *wanted &= ~(1u << l);

@@ -109,10 +109,12 @@ static inline bool ct_is_remainder_below_roundoff(double sigma, double dq, doubl
     return dq * dq <= least && dq * du <= least * (u > 1 ? u : 1);
 }
 
-/// Does Newton's iteration number i (from 0) end without a solution?
-static inline bool ct_is_diverging(int i, double size)
+/// Does Newton's iteration number i (from 0) diverge? A residual that grows far may end in another
+/// assembly mode.
+static inline bool ct_is_diverging(int i, double size, double before)
 {
-    return i == CT_MOST_NEWTON || !isfinite(size);
+    // Chosen: growth that large steps may have before they converge
+    return i == CT_MOST_NEWTON || !isfinite(size) || size > 1e3 * before;
 }
 
 /// Strength of a solver now, and strength and sigma where sigma was last computed by dense

@@ -75,7 +75,7 @@ static enum ct_eval project_by_matrices(struct ct_partition *s, double t, double
         const double size = ct_vector_max_norm(m->phi, m->nrow) / s->scale;
         if (ct_is_projected(nearness(s), size, before))
             break;
-        if (ct_is_diverging(i, size))
+        if (ct_is_diverging(i, size, before))
             return CT_EVAL_RETRY;
         before = size;
         (is_partitioned(s) ? partitioned_step : minimum_norm_step)(s, m->phi, s->r);
@@ -184,7 +184,7 @@ static enum ct_eval project_by_solver(struct ct_partition *s, double t, double *
     for (int i = 0; evaluate_closing(s, t, y); i++) {
         const double size = ct_vector_max_norm(f->phi, m->nrow) / s->scale;
         const bool is_closed = ct_is_projected(nearness(s), size, before);
-        if (!is_closed && ct_is_diverging(i, size))
+        if (!is_closed && ct_is_diverging(i, size, before))
             return CT_EVAL_RETRY;
         if (i == 0)
             s->correction = is_closed ? 0 : ct_vector_max_norm(f->dq, m->nu) / size;
